@@ -1,4 +1,4 @@
-//! `bulge air`: the air in a muscle: shut in, flowing through a valve, and used in a cycle.
+//! `bulge air`: the air in a muscle, shut in, flowing through a valve, and used in a cycle.
 
 use bulge_design::gas::{
     AMBIENT_TEMPERATURE_K, Chamber, ClosedMuscle, ClosedState, CycleResult, Filling, GasModel, History, Lift,
@@ -20,11 +20,11 @@ use crate::text::{significant, table};
 
 /// Units of a sonic conductance, l/(s bar) = 1e-8 m^3/(s Pa).
 const CONDUCTANCE: [(&str, f64); 2] = [("l/(s bar)", 1e-8), ("m^3/(s Pa)", 1.0)];
-/// Rows of a table.
+/// Rows of the table.
 const ROWS: usize = 11;
-/// Points of a rising load.
+/// Points of the plot of a rising load.
 const RISING: u32 = 40;
-/// Moments of a filling.
+/// Output times of a filling.
 const SAMPLES: usize = 200;
 
 /// The air in a muscle: shut in, flowing through a valve, and used in a cycle.
@@ -187,7 +187,7 @@ impl Shut {
             let at = from + (to - from) * k as f64 / (ROWS - 1) as f64;
             match closed.at_contraction(at) {
                 Ok(state) => states.push((state, closed.split(&state)?)),
-                // What wasn't asked for may lie beyond the muscle.
+                // Contractions of the default range may lie outside the range of the muscle.
                 Err(_) if self.range.is_none() && k != ROWS / 2 => (),
                 Err(error) => return Err(error.into()),
             }
@@ -240,7 +240,7 @@ impl Shut {
     }
 }
 
-/// Force with the valve shut, and at the pressure of the filling.
+/// Plot of the force with the valve shut, and at the pressure of the filling.
 fn compared(
     title: &str,
     muscle: &MuscleWithEffects,
@@ -284,7 +284,7 @@ impl Fill {
         Ok(text + &wrote)
     }
 
-    /// A hole that fits into the muscle's end.
+    /// A hole, which must fit into the end of the muscle.
     fn hole(muscle: &Muscle, text: &str) -> Result<Orifice, Failure> {
         let diameter = quantity::<Length>("--hole", text)?.si();
         let most = 2.0 * muscle.end_radius().si();
@@ -324,7 +324,8 @@ impl Fill {
         };
         let mut chamber = Chamber::muscle(muscle, load)?.with_dead_volume(self.common.dead()?)?;
         let support = self.support.as_deref().map(|text| quantity::<Ratio>("--support", text)).transpose()?;
-        // A braid without pressure carries nothing: its load stands where the muscle is as long as at rest.
+        // A braid without pressure carries nothing: its load stands on a support where the muscle has its
+        // rest length.
         let stands = !muscle.muscle().is_pleated() && self.load.is_some();
         if let Some(support) = support.map(Quantity::si).or(stands.then_some(0.0)) {
             chamber = chamber.on_support(support)?;
@@ -359,7 +360,7 @@ fn told(name: &str, history: &History) -> String {
     for at in kept {
         rows.push(vec![
             significant(at.time_s, 4),
-            // Rounding at the start is no pressure.
+            // A tiny pressure at the start is rounding.
             if at.pressure_pa.abs() < 1e-6 { "0".to_owned() } else { significant(1e-5 * at.pressure_pa, 4) },
             significant(100.0 * at.contraction, 4),
             significant(at.force_n, 4),
@@ -414,7 +415,7 @@ fn csv(history: &History) -> String {
     text
 }
 
-/// Pressure in bar and contraction in 10 % on one axis.
+/// Plot of the pressure in bar and the contraction in 10 % on one axis.
 fn drawn(title: &str, history: &History) -> Result<String, Failure> {
     let line = |name: &str, read: &dyn Fn(&bulge_design::gas::Sample) -> f64| {
         (name.to_owned(), history.samples.iter().map(|at| [at.time_s, read(at)]).collect::<Vec<_>>())
@@ -448,7 +449,7 @@ impl Cycle {
     }
 }
 
-/// The pressure as the load goes up: that at the end of shorter and shorter strokes.
+/// Plot of the pressure as the load rises: the pressures at the end of strokes of increasing length.
 fn rising(title: &str, stroke: &Stroke<'_>, found: &CycleResult) -> Result<String, Failure> {
     let mut points = vec![[100.0 * stroke.from, 1e-5 * found.start_pressure_pa]];
     for k in 1..=RISING {

@@ -1,4 +1,4 @@
-//! What several commands take: the muscle, quantities with units, the method.
+//! Arguments of several commands: the muscle, quantities with units, the method.
 
 use bulge_effects::{Catalogue, Effect, known};
 use bulge_fibre::{Approach, FibreError};
@@ -39,7 +39,7 @@ impl MethodArgument {
     }
 }
 
-/// A muscle file, or a shipped muscle where no file of that name exists.
+/// A muscle file, or a shipped muscle if no file of that name exists.
 pub(crate) fn muscle(name: &str) -> Result<Muscle, Failure> {
     let shipped = PRESETS.iter().any(|preset| preset.name == name);
     let looks_like_a_name = !name.contains(['/', '.', '\\']) && !name.is_empty();
@@ -49,7 +49,8 @@ pub(crate) fn muscle(name: &str) -> Result<Muscle, Failure> {
     Ok(read(name)?)
 }
 
-/// A muscle, or one of its specimens, with the effects that its file states, from the built-in ones and the user's own.
+/// A muscle or one of its specimens, with the effects stated in its file, from the built-in ones and the
+/// user's own.
 pub(crate) fn extended(
     name: &str,
     own: Option<&Path>,
@@ -65,7 +66,7 @@ pub(crate) fn extended(
     Ok((muscle, extended))
 }
 
-/// Refuses the name of a specimen that the muscle doesn't state.
+/// Rejects the name of a specimen that the muscle doesn't have.
 fn check_specimen(muscle: &Muscle, name: &str) -> Result<(), Failure> {
     let names: Vec<&str> = muscle.specimens().iter().map(Specimen::name).collect();
     if names.contains(&name) {
@@ -86,7 +87,7 @@ pub(crate) fn quantity<Q: Quantity>(option: &'static str, text: &str) -> Result<
     units::parse(text).map_err(|source| Failure::Option { option, source: Box::new(source) })
 }
 
-/// A number with one of some units, in the first of them.
+/// A number with one of the given units, converted to the first one.
 pub(crate) fn in_unit(option: &'static str, text: &str, units: &[(&str, f64)]) -> Result<f64, Failure> {
     let text = text.trim();
     let unit = text.trim_start_matches(|c: char| c.is_ascii_digit() || "+-.eE".contains(c));
@@ -111,14 +112,14 @@ pub(crate) fn list<Q: Quantity>(option: &'static str, text: &str) -> Result<Vec<
     units::parse_list(text).map_err(|source| Failure::Option { option, source: Box::new(source) })
 }
 
-/// Both ends of a range of quantities, as they are written: neither need be the smaller.
+/// Both ends of a range of quantities, in the order written: either may be the smaller one.
 pub(crate) fn range<Q: Quantity>(option: &'static str, text: &str) -> Result<[f64; 2], Failure> {
     let (from, to): (Q, Q) =
         units::parse_range(text).map_err(|source| Failure::Option { option, source: Box::new(source) })?;
     Ok([from.si(), to.si()])
 }
 
-/// A solver's error with the muscle and the pressure it is about.
+/// Wraps an error of the solver with the muscle and the pressure.
 pub(crate) fn about(muscle: &Muscle, pressure: Pressure) -> impl Fn(FibreError) -> Failure {
     let (muscle, pressure) = (muscle.name().to_owned(), pressure.to_string());
     move |source| Failure::Equilibrium {
@@ -128,7 +129,7 @@ pub(crate) fn about(muscle: &Muscle, pressure: Pressure) -> impl Fn(FibreError) 
     }
 }
 
-/// The same of a muscle with its effects.
+/// As [`about`], for a muscle with its effects.
 pub(crate) fn about_extended(
     muscle: &Muscle,
     pressure: Pressure,
@@ -141,7 +142,7 @@ pub(crate) fn about_extended(
     }
 }
 
-/// The built-in effects, and the user's own if there is a file of them.
+/// The built-in effects, and the user's own if a file is given.
 pub(crate) fn catalogue(own: Option<&Path>) -> Result<Catalogue, Failure> {
     let mut catalogue = Catalogue::builtin();
     if let Some(path) = own {
@@ -152,12 +153,12 @@ pub(crate) fn catalogue(own: Option<&Path>) -> Result<Catalogue, Failure> {
     Ok(catalogue)
 }
 
-/// The effects of a list of names, in their order.
+/// The effects named in a list, in their order.
 pub(crate) fn effects(catalogue: &Catalogue, names: &[String]) -> Result<Vec<Arc<dyn Effect>>, Failure> {
     names.iter().map(|name| Ok(Arc::clone(catalogue.find(name.trim())?))).collect()
 }
 
-/// Names of the effects to which a search is restricted; none if it isn't.
+/// Names of the effects to which a search is restricted; `None` if it isn't.
 pub(crate) fn among(catalogue: &Catalogue, names: &[String]) -> Result<Option<Vec<String>>, Failure> {
     let found = effects(catalogue, names)?;
     let names: Vec<String> = found.iter().map(|effect| effect.card().name.to_owned()).collect();

@@ -1,4 +1,4 @@
-//! Isobars as CSV, table and plot: what `curve` and `demo` share.
+//! Isobars as CSV, table and plot, for `curve` and `demo`.
 
 use bulge_fibre::{Isobar, Response};
 use bulge_muscles::Pressure;
@@ -10,7 +10,7 @@ use crate::text::{significant, table};
 
 type Column = (&'static str, fn(&Response) -> f64);
 
-/// Columns of the CSV: names as data files have them, units in brackets, SI.
+/// Columns of the CSV: names as in data files, units in brackets, SI.
 const COLUMNS: [Column; 14] = [
     ("pressure [Pa]", |r| r.pressure_pa),
     ("contraction [-]", |r| r.contraction),
@@ -65,7 +65,7 @@ pub(crate) fn summary(isobars: &[Isobar]) -> String {
         for r in isobar.points.iter().step_by(every) {
             rows.push(vec![
                 significant(100.0 * r.contraction, 4),
-                // The force at the limit itself is rounding.
+                // At the limit itself the force is only rounding.
                 if r.force_n.abs() < 1e-9 * largest { "0".to_owned() } else { significant(r.force_n, 5) },
                 significant(1e6 * r.volume_m3, 5),
                 significant(1e3 * r.max_radius_m, 4),
@@ -79,7 +79,7 @@ pub(crate) fn summary(isobars: &[Isobar]) -> String {
     text
 }
 
-/// Force and volume against contraction.
+/// Plot of force and volume against contraction.
 pub(crate) fn svg(title: &str, isobars: &[Isobar]) -> Result<String, Failure> {
     let curves: Vec<Curve> = isobars
         .iter()

@@ -85,14 +85,14 @@ impl CompareCommand {
     }
 }
 
-/// Writes the report: a page, its plots one by one, and the numbers. Returns what to look at first.
+/// Writes the report: a page, its plots as single files, and the numbers. Returns the files to look at first.
 pub(crate) fn report(
     folder: &Path,
     comparison: &Comparison,
     rows: &Rows,
     document: &str,
 ) -> Result<[PathBuf; 2], Failure> {
-    // Everything is made before anything is written.
+    // Everything is generated before anything is written.
     let page = html(comparison, Some(rows))?;
     let plots = plots(comparison)?;
     let [numbers, first] = [folder.join("compare.json"), folder.join("report.html")];
@@ -102,7 +102,7 @@ pub(crate) fn report(
     Ok([first, numbers])
 }
 
-/// The comparison for people.
+/// The comparison as text.
 pub(crate) fn text(comparison: &Comparison, effects: &[Arc<dyn Effect>]) -> String {
     let mut out = String::new();
     let data = &comparison.data;
@@ -194,7 +194,7 @@ pub(crate) fn ladder(out: &mut String, comparison: &Comparison) {
     }
 }
 
-/// Numbers that were held at a value, or have that of another one.
+/// Parameters that were fixed at a value or tied to another one.
 fn held(out: &mut String, numbers: &[HeldNumber]) {
     if numbers.is_empty() {
         return;
@@ -217,7 +217,7 @@ fn held(out: &mut String, numbers: &[HeldNumber]) {
     }
 }
 
-/// The fitted numbers with their intervals, and those that were held.
+/// The fitted parameters with their intervals, and the fixed ones.
 pub(crate) fn parameters(out: &mut String, fit: &Fit, held_numbers: &[HeldNumber]) {
     fitted(out, fit);
     held(out, held_numbers);

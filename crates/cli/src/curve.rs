@@ -17,11 +17,12 @@ use crate::shape::bulge;
 
 /// Most points of all isobars together.
 const MAX_POINTS: usize = 1_000_000;
-/// Most members of a VTK series: each is about a megabyte.
+/// Most members of a VTK series; each takes about a megabyte.
 const MAX_FRAMES: usize = 1000;
-/// Part of the way from drawn-out fibres to the limit at which a curve starts by itself: 1 % of a pleated muscle that contracts by 40 %.
+/// Start of the default range, as a fraction of the way from straight fibres to the limit: 1 % for a pleated
+/// muscle that contracts by 40 %.
 const DRAWN_OUT: f64 = 0.025;
-/// How far before its limit the curve of elastic fibres starts that pull only where they are stretched.
+/// Distance between start and limit of the default range, for elastic fibres that pull only when stretched.
 const FIRST_STRETCH: f64 = 0.05;
 
 /// Isobaric characteristics: force and volume over the contraction.
@@ -130,13 +131,15 @@ impl CurveCommand {
         within("--frames", self.frames, 2, MAX_FRAMES)
     }
 
-    /// The characteristics, each over the range in which the muscle pulls at its pressure where the option doesn't give one for all.
+    /// The characteristics. Without the option, each covers the range in which the muscle pulls at its
+    /// pressure.
     fn isobars(&self, extended: &MuscleWithEffects, pressures: &[Pressure]) -> Result<Vec<Isobar>, Failure> {
         let mut found = Vec::with_capacity(pressures.len());
         let mut rest = pressures;
         while let Some(first) = rest.first() {
             let contractions = self.contractions(extended, *first)?;
-            // Those with the same range are solved together: where the shape doesn't depend on the pressure, once.
+            // Pressures with the same range are solved together: a shape that doesn't depend on the pressure
+            // is then solved once.
             let mut same = 1;
             for pressure in &rest[1..] {
                 if self.contractions(extended, *pressure)? != contractions {
@@ -151,7 +154,7 @@ impl CurveCommand {
         Ok(found)
     }
 
-    /// The contractions, from the option or over the range in which the muscle pulls at the pressure.
+    /// The contractions from the option, or over the range in which the muscle pulls at the pressure.
     fn contractions(&self, extended: &MuscleWithEffects, pressure: Pressure) -> Result<Vec<f64>, Failure> {
         let [low, high] = if let Some(text) = &self.contraction {
             range::<Ratio>("--contraction", text)?
@@ -162,9 +165,9 @@ impl CurveCommand {
             let longest =
                 Problem::new(extended.parts(), pressure).map_err(about(muscle, pressure))?.longest();
             match longest {
-                // Next to where the fibres are drawn straight the force has no limit.
+                // The force diverges as the fibres become straight.
                 Some(longest) if longest >= 0.0 => [longest + DRAWN_OUT * (limit - longest), limit],
-                // It pulls only where it is drawn out.
+                // It pulls only when it is stretched.
                 Some(longest) if limit <= 0.0 => [limit + 0.5 * (longest - limit), limit],
                 None if limit <= 0.0 => [limit - FIRST_STRETCH, limit],
                 _ => [0.0, limit],
@@ -182,7 +185,7 @@ impl CurveCommand {
     }
 }
 
-/// A time series over the contractions of an isobar; "time" is the contraction in per cent.
+/// A time series over the contractions of an isobar; its "time" is the contraction in per cent.
 fn series(
     extended: &MuscleWithEffects,
     isobar: &Isobar,
@@ -216,7 +219,7 @@ fn series(
     Ok(write_series(folder, "bulge", &frames)?)
 }
 
-/// What was asked for and doesn't exist, with one reason for each end of the range.
+/// Requested states that don't exist, with one reason for each end of the range.
 fn left_out(isobars: &[Isobar]) -> String {
     let mut text = String::new();
     for isobar in isobars {

@@ -1,4 +1,4 @@
-//! Measured rows on the command line: the files, which column is which, and how they were read.
+//! Measured rows on the command line: the files, the assignment of columns, and how they were read.
 
 use bulge_effects::{Catalogue, Effect, known};
 use bulge_inference::{Options, rows_to_exclude};
@@ -15,7 +15,7 @@ use crate::failure::Failure;
 use crate::files;
 use crate::text::table;
 
-/// Rows set apart and columns that are shown to people.
+/// Most rejected rows and columns shown in text.
 const MOST_SHOWN: usize = 3;
 const MOST_COLUMNS: usize = 40;
 
@@ -36,7 +36,7 @@ pub(crate) struct DataArguments {
 }
 
 impl DataArguments {
-    /// Refuses a file that could not be written, or that would be written over what is read: before anything is computed.
+    /// Rejects an output file that can't be written or would overwrite an input, before anything is computed.
     pub(crate) fn can_write(
         &self,
         written: files::Named<'_>,
@@ -49,7 +49,7 @@ impl DataArguments {
         files::can_be_written(written.1)
     }
 
-    /// The files of measurements, and that of the user's own effects.
+    /// The files that are read: measurements, and the user's own effects.
     pub(crate) fn read_with<'a>(
         &'a self,
         effects: Option<&'a Path>,
@@ -58,7 +58,8 @@ impl DataArguments {
         data.chain(effects.map(|path| ("the file of --effects", path)))
     }
 
-    /// What is compared: these effects beside those that the muscle's file states, without the rows that are left out.
+    /// Options of a comparison: these effects in addition to those in the muscle file, without the excluded
+    /// rows.
     pub(crate) fn options(
         &self,
         data: &Data,
@@ -74,18 +75,18 @@ impl DataArguments {
         })
     }
 
-    /// The rows that are left out.
+    /// The excluded rows.
     pub(crate) fn excluded(&self, data: &Data) -> Result<Vec<usize>, Failure> {
         let rows = self.exclude.as_deref().map(|lines| rows_to_exclude(lines, data)).transpose()?;
         Ok(rows.unwrap_or_default())
     }
 
-    /// Reads the files of a muscle's measurements.
+    /// Reads the files of measurements of a muscle.
     pub(crate) fn read(&self, muscle: &Muscle) -> Result<Data, Failure> {
         Ok(Data::read_with(&self.data, &self.reading_options(muscle)?)?)
     }
 
-    /// The same of files that may have no force.
+    /// As [`Self::read`], for files that may have no force.
     pub(crate) fn read_with_or_without_force(&self, muscle: &Muscle) -> Result<Data, Failure> {
         let options = ReadOptions { force_may_lack: true, ..self.reading_options(muscle)? };
         Ok(Data::read_with(&self.data, &options)?)
@@ -96,7 +97,7 @@ impl DataArguments {
         Ok(read_options(muscle, columns.as_ref())?)
     }
 
-    /// The command line as far as the next step takes it over, with further files.
+    /// The arguments that a proposed next command reuses, with further files.
     pub(crate) fn call(&self, muscle: &str, with: &[String], effects: Option<&Path>, more: &[&str]) -> Call {
         Call {
             data: self.names().into_iter().chain(more.iter().map(|name| (*name).to_owned())).collect(),
@@ -109,7 +110,7 @@ impl DataArguments {
         }
     }
 
-    /// Lines to leave out, as they are stated beside other files: each with its file.
+    /// The lines to exclude in the notation for several files: each with its file.
     fn lines_of(&self, lines: &str, beside_others: bool) -> String {
         let [only] = &self.data[..] else { return lines.to_owned() };
         let ranges = lines.split(',').map(str::trim).filter(|range| !range.is_empty());
@@ -123,13 +124,14 @@ impl DataArguments {
         ranges.map(named).collect::<Vec<_>>().join(",")
     }
 
-    /// The names of the files, as they were given.
+    /// The names of the files, as given.
     pub(crate) fn names(&self) -> Vec<String> {
         self.data.iter().map(|path| path.display().to_string()).collect()
     }
 }
 
-/// How files were read, for people: what the columns were taken for where this was guessed, and which rows can't be used.
+/// How files were read, as text: the assignment of columns if it was guessed, and the rows that can't be
+/// used.
 pub(crate) fn told(reading: &Reading) -> String {
     let mut out = String::new();
     if reading.is_guessed() {
@@ -157,7 +159,7 @@ pub(crate) fn told(reading: &Reading) -> String {
     out
 }
 
-/// One table: column, quantity, unit, first values; the columns that aren't read are named once.
+/// One table with column, quantity, unit and first values; the columns that aren't read are listed once.
 fn columns(reading: &Reading) -> String {
     let mut rows = vec![["column", "taken for", "unit", "first values", ""].map(String::from).to_vec()];
     let is_read = |column: &&bulge_measurements::ColumnUse| column.quantity.is_some();

@@ -28,12 +28,12 @@ use crate::shape::bulge;
 use crate::sketch::sketch;
 use crate::text::{significant, table};
 
-/// Measurements of the tour, and the muscle as its data sheet describes it.
+/// Measurements of the tour, and the muscle as described in its data sheet.
 pub(crate) const DATA: (&str, &str) = ("braid-loops.csv", include_str!("../data/braid-loops.csv"));
 pub(crate) const MUSCLE: (&str, &str) = ("braid.toml", include_str!("../data/braid.toml"));
-/// Effects that the tour adds to it.
+/// Effects that the tour adds to the muscle.
 const ADDED: [&str; 3] = ["end-taper", "bladder-elasticity", "coulomb-friction"];
-/// Frames of the bulging in the time series.
+/// Frames of the time series.
 const FRAMES: u32 = 21;
 
 /// The tour, on shipped muscles.
@@ -53,7 +53,7 @@ impl Default for Demo {
     }
 }
 
-/// One model of the braid and what it says.
+/// One model of the braid and its result.
 #[derive(Debug, Serialize)]
 struct Step {
     model: &'static str,
@@ -70,21 +70,22 @@ struct Document {
     braid: Vec<Step>,
     /// Titles of the rungs with their errors \[N\].
     ladder: Vec<(String, f64)>,
-    /// What was found in measurements with a hidden effect, and what when it was added.
+    /// Diagnosis of measurements with a hidden effect, and diagnosis after it was added.
     hidden: [Found; 2],
-    /// The same where the hidden effect has a form of its own, and where that was written as an effect.
+    /// The same for a hidden effect of another form than its formula, and after that form was written as an
+    /// effect.
     own_form: [Found; 2],
     /// The table of a family of muscles.
     table: TableDescription,
     files: Vec<PathBuf>,
 }
 
-/// The gist of a diagnosis.
+/// Summary of a diagnosis.
 #[derive(Debug, Serialize)]
 struct Found {
     verdict: Verdict,
     missing: Vec<String>,
-    /// Error of the model with what is missing, by its formula, and of the noise \[N\].
+    /// Error of the model with the missing effects by their formulas, and the noise floor \[N\].
     rmse_n: f64,
     noise_floor_n: f64,
 }
@@ -191,13 +192,13 @@ fn pleated(out: &Path, text: &mut String, written: &mut Vec<PathBuf>) -> Result<
     Ok((exact, difference))
 }
 
-/// The braided muscle: what the ends and the bladder do to the textbook formula.
+/// The braided muscle: how the ends and the bladder change the textbook formula.
 fn braid(out: &Path, text: &mut String, written: &mut Vec<PathBuf>) -> Result<Vec<Step>, Failure> {
     let textbook = preset("dmsp-20-250")?;
     let pressure = Pressure::bar(3.0);
     let about = about(&textbook, pressure);
     let given = Given::Contraction(0.2);
-    // 0.3 MPa is what Festo muscles show when a neo-Hookean bladder is fitted to their forces (0.28 to 0.39 MPa).
+    // 0.3 MPa is typical of a neo-Hookean bladder fitted to the forces of Festo muscles (0.28 to 0.39 MPa).
     let models = models(&textbook, Bladder::new(Pressure::mpa(0.3), Pressure::pa(0.0), Length::mm(2.0)));
     let models = models.map_err(|error| Failure::Value { option: "demo", what: error.to_string() })?;
     let mut steps = Vec::new();
@@ -260,7 +261,7 @@ fn measured(out: &Path, text: &mut String, written: &mut Vec<PathBuf>) -> Result
     Ok(comparison)
 }
 
-/// The same braid as a cylinder, with its ends clamped, and with its bladder.
+/// The same braid as a cylinder, with clamped ends, and with its bladder.
 fn models(
     textbook: &Muscle,
     bladder: Result<Bladder, MuscleError>,
@@ -287,7 +288,7 @@ mod tests {
     use crate::schema::holds;
     use bulge_table::Table;
 
-    /// Muscles of the tour, and a shipped table; diagnoses as numbers, for they take long.
+    /// Muscles of the tour and a shipped table; the diagnoses are given as numbers, since they take long.
     #[test]
     fn the_document_holds_what_its_schema_names() {
         let folder = tempfile::tempdir().unwrap();

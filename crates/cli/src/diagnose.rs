@@ -61,7 +61,7 @@ impl DiagnoseCommand {
         let among = arguments::among(&catalogue, &self.among)?;
         let data = self.data.read(&muscle)?;
         let base = self.data.options(&data, &muscle, catalogue, effects)?;
-        // What a diagnosis fits along: widths that no file states are the usual ones.
+        // Parameters without a width in the file get the usual one, as in the diagnosis.
         let base = self.restricted.apply(base, &data, &muscle.clone().with_usual_widths().0)?;
         let bar = Bar::new(self.json);
         let progress = bar.progress();
@@ -86,7 +86,7 @@ impl DiagnoseCommand {
     }
 }
 
-/// A misfit that doesn't matter \[N\].
+/// A misfit that is tolerated \[N\].
 fn tolerance(text: &str) -> Result<f64, Failure> {
     let tolerance_n = arguments::quantity::<Force>("--tolerance", text)?.si();
     if tolerance_n < 0.0 {
@@ -97,9 +97,9 @@ fn tolerance(text: &str) -> Result<f64, Failure> {
     Ok(tolerance_n)
 }
 
-/// Writes the report: a page, its plots one by one, and the numbers. Returns what to look at first.
+/// Writes the report: a page, its plots as single files, and the numbers. Returns the files to look at first.
 pub(crate) fn report(folder: &Path, diagnosis: &Diagnosis, document: &str) -> Result<[PathBuf; 2], Failure> {
-    // Everything is made before anything is written.
+    // Everything is generated before anything is written.
     let page = html(diagnosis)?;
     let plots = plots(diagnosis)?;
     let [numbers, first] = [folder.join("diagnosis.json"), folder.join("report.html")];

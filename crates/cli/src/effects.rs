@@ -1,4 +1,4 @@
-//! `bulge effects`: the catalogue of physical effects and of force laws, as a reference to read.
+//! `bulge effects`: reference of the catalogue of physical effects and force laws.
 
 use bulge_effects::law::{LAWS, PAPERS, reference};
 use bulge_effects::{CardDocument, Catalogue, describe, overview};

@@ -1,4 +1,4 @@
-//! What went wrong, as one message and an exit status.
+//! Errors of the command, each as one message and an exit status.
 
 use bulge_design::gas::GasError;
 use bulge_design::heat::HeatError;
@@ -20,7 +20,7 @@ use bulge_table::TableError;
 use bulge_vtk::VtkError;
 use std::path::PathBuf;
 
-/// Why a command gives up.
+/// Why a command fails.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum Failure {
     #[error("{0}")]
@@ -75,7 +75,7 @@ pub(crate) enum Failure {
     Table(#[from] TableError),
     #[error("{0}")]
     Outside(String),
-    /// As [`Self::Outside`], with what standard output says of it.
+    /// As [`Self::Outside`], with an answer on standard output.
     #[error("{why}")]
     NoneFound { answer: String, why: String },
     #[error("{origin}: {source}{kept}")]
@@ -91,12 +91,13 @@ pub(crate) enum Failure {
 }
 
 impl Failure {
-    /// What stands on standard output all the same: a script that asked for JSON reads there that nothing was found.
+    /// The answer on standard output in spite of the failure: a script that requested JSON reads there that
+    /// nothing was found.
     pub(crate) fn answer(&self) -> &str {
         if let Self::NoneFound { answer, .. } = self { answer } else { "" }
     }
 
-    /// 1 the input is wrong, 3 no solution exists, 4 it did not converge.
+    /// Exit status: 1 the input is wrong, 3 no solution exists, 4 it did not converge.
     pub(crate) fn status(&self) -> u8 {
         match self {
             Self::Equilibrium { source, .. } => status(source.fault()),
@@ -146,7 +147,7 @@ impl Failure {
     }
 }
 
-/// Exit status of a fault.
+/// Exit status of a kind of error.
 fn status(fault: Fault) -> u8 {
     match fault {
         Fault::Input => 1,
@@ -177,7 +178,7 @@ impl From<StatementError> for Failure {
     }
 }
 
-/// The option that states it.
+/// The option to which the error belongs.
 fn option(about: Stated) -> &'static str {
     match about {
         Stated::Exclude => "--exclude",
@@ -187,7 +188,7 @@ fn option(about: Stated) -> &'static str {
     }
 }
 
-/// Errors of the libraries become failures behind a box: they carry much, and are rare.
+/// Converts errors of the libraries into failures. They are boxed, since they are large and rare.
 macro_rules! boxed {
     ($($variant:ident($error:ty)),*) => {
         $(impl From<$error> for Failure {

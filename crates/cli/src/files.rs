@@ -12,10 +12,10 @@ use crate::failure::Failure;
 /// Names of standard output.
 const STDOUT: [&str; 4] = ["-", "/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"];
 
-/// Whether a file was written to standard output: what the command says to people would spoil it.
+/// Whether a file was written to standard output: messages of the command would corrupt it.
 static IS_TAKEN: AtomicBool = AtomicBool::new(false);
 
-/// Writes a file whole, or into what a name stands for that is no regular file; "-" is standard output.
+/// Writes a whole file, or writes into the target of a name that is no regular file; "-" is standard output.
 pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     let failed = |source| Failure::Output { path: path.to_path_buf(), source };
     if is_stdout(path) {
@@ -25,7 +25,7 @@ pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     output::write(path, bytes).map_err(failed)
 }
 
-/// Writes one file, and nothing else, to standard output.
+/// Writes one file to standard output, which then takes nothing else.
 fn take_stdout(bytes: &[u8]) -> io::Result<()> {
     let wants_json = std::env::args_os().any(|argument| argument == OsStr::new("--json"));
     if wants_json || IS_TAKEN.swap(true, Ordering::Relaxed) {
@@ -36,7 +36,7 @@ fn take_stdout(bytes: &[u8]) -> io::Result<()> {
     print(bytes)
 }
 
-/// Writes to standard output, at once. A reader who has seen enough (`| head`) is no error.
+/// Writes to standard output and flushes it. A reader that closes early (`| head`) is no error.
 pub(crate) fn print(bytes: &[u8]) -> io::Result<()> {
     let mut out = io::stdout().lock();
     match out.write_all(bytes).and_then(|()| out.flush()) {
@@ -50,7 +50,7 @@ pub(crate) fn stdout_is_taken() -> bool {
     IS_TAKEN.load(Ordering::Relaxed)
 }
 
-/// Writes a file if it is asked for; the line that says so.
+/// Writes a file if requested; returns the line that reports it.
 pub(crate) fn wrote(
     path: Option<&Path>,
     content: impl FnOnce() -> Result<String, Failure>,
@@ -60,12 +60,12 @@ pub(crate) fn wrote(
     Ok(format!("  wrote {}\n", path.display()))
 }
 
-/// Whether a file is asked for on standard output, as "-": there it takes the place of all else.
+/// Whether the path is standard output (such as "-"), where the file replaces all other output.
 pub(crate) fn is_stdout(path: &Path) -> bool {
     STDOUT.iter().any(|name| path == Path::new(name))
 }
 
-/// Writes a table as CSV and its picture, as far as they are asked for; the lines that say so.
+/// Writes a table as CSV and its plot, if requested; returns the lines that report them.
 pub(crate) fn wrote_both(
     [csv, plot]: [Option<&Path>; 2],
     table: impl FnOnce() -> String,
@@ -75,7 +75,8 @@ pub(crate) fn wrote_both(
     Ok(table + &wrote(plot, picture)?)
 }
 
-/// Writes files into a folder, which is created if it isn't there; none of them if one of the names is that of a folder.
+/// Writes files into a folder, which is created if needed. Nothing is written if one of the names is that of
+/// a folder.
 pub(crate) fn write_all(into: &Path, contents: &[(PathBuf, &str)]) -> Result<(), Failure> {
     folder(into)?;
     if let Some((path, _)) = contents.iter().find(|(path, _)| path.is_dir()) {
@@ -85,7 +86,7 @@ pub(crate) fn write_all(into: &Path, contents: &[(PathBuf, &str)]) -> Result<(),
     contents.iter().try_for_each(|(path, content)| write(path, content.as_bytes()))
 }
 
-/// Creates a folder with its parents, if it isn't there.
+/// Creates a folder with its parents if it doesn't exist.
 pub(crate) fn folder(path: &Path) -> Result<(), Failure> {
     if path.exists() && !path.is_dir() {
         let source = io::Error::new(io::ErrorKind::NotADirectory, "it is a file; give the name of a folder");
@@ -94,7 +95,7 @@ pub(crate) fn folder(path: &Path) -> Result<(), Failure> {
     fs::create_dir_all(path).map_err(|source| Failure::Output { path: path.to_path_buf(), source })
 }
 
-/// Removes files of an earlier run, if they are there.
+/// Removes files of an earlier run if they exist.
 pub(crate) fn remove(paths: &[PathBuf]) -> Result<(), Failure> {
     for path in paths {
         match fs::remove_file(path) {
@@ -107,10 +108,11 @@ pub(crate) fn remove(paths: &[PathBuf]) -> Result<(), Failure> {
     Ok(())
 }
 
-/// A file that a command writes or reads, by what the command line calls it.
+/// A file that a command reads or writes, with its name on the command line.
 pub(crate) type Named<'a> = (&'static str, &'a Path);
 
-/// Refuses to write one file twice, or over a file that is read: before anything is computed. Whether a file is there already makes no difference, and links are followed.
+/// Rejects writing one file twice or over a file that is read, before anything is computed. It doesn't matter
+/// whether a file exists already, and links are followed.
 pub(crate) fn are_apart(written: &[Named<'_>], read: &[Named<'_>]) -> Result<(), Failure> {
     let is_same = |a: &Path, b: &Path| {
         is_stdout(a) && is_stdout(b)
@@ -131,7 +133,7 @@ pub(crate) fn are_apart(written: &[Named<'_>], read: &[Named<'_>]) -> Result<(),
     Ok(())
 }
 
-/// Refuses a file that could not be written at the end of a long run.
+/// Rejects, before a long run, a file that could not be written at its end.
 pub(crate) fn can_be_written(path: &Path) -> Result<(), Failure> {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let source = if is_stdout(path) {

@@ -1,4 +1,4 @@
-//! `bulge fit`: effects fitted to measurements, and the muscle file that holds them.
+//! `bulge fit`: effects fitted to measurements, and the muscle file that contains them.
 
 use bulge_inference::{DrawnForms, Options, drawn_forms, fit_effects};
 use bulge_measurements::Data;
@@ -64,7 +64,8 @@ impl FitCommand {
             return Ok(serde_json::to_string_pretty(&document)? + "\n");
         }
         if self.out.is_none() {
-            // A file as it is, so that it can be piped into one; the numbers are in its comments.
+            // Standard output holds only the file, so that it can be redirected; the numbers are in its
+            // comments.
             eprint!("{}", told(data.reading()));
             eprint!("{}", drawn.map_or_else(String::new, |(_, says)| says));
             return Ok(learnt.model);
@@ -82,14 +83,14 @@ impl FitCommand {
         Ok(text)
     }
 
-    /// Refuses files that could not be written, or that would be written over: before hours of work, and before one of two is written. A learnt muscle may take the
-    /// place of the muscle that was read.
+    /// Rejects files that could not be written or would be overwritten: before hours of work, and before one
+    /// of two is written. The fitted muscle may replace the muscle file that was read.
     fn check_files(&self) -> Result<(), Failure> {
         let read: Vec<Named<'_>> = self.data.read_with(self.effects.as_deref()).collect();
         let form_error: Vec<Named<'_>> =
             self.form_error.as_deref().map(|path| ("--form-error", path)).into_iter().collect();
         files::are_apart(&form_error, &[("the muscle file", Path::new(&self.muscle))])?;
-        // Without a name and without JSON the learnt muscle goes to standard output.
+        // Without a name and without JSON the fitted muscle goes to standard output.
         let out = self.out.as_deref().or((!self.json).then_some(Path::new("-")));
         let out = out.map(|path| ("--out", path));
         let written: Vec<Named<'_>> = form_error.into_iter().chain(out).collect();
@@ -98,7 +99,8 @@ impl FitCommand {
     }
 }
 
-/// Draws the forms that the data want, and writes those that an expression can follow. Returns them, and what to say of them.
+/// Draws the form errors that the data suggest, and writes those that an expression can approximate. Returns
+/// them, and the text about them.
 fn drawn(
     data: &Data,
     muscle: &Muscle,
@@ -129,7 +131,7 @@ pub(crate) fn learn(data: &Data, muscle: &Muscle, options: &Options) -> Result<L
     Ok(Learnt::of(fit_effects(data, muscle, options)?)?)
 }
 
-/// What was learnt, in lines: the error before and after, the numbers, and what to mind.
+/// The result of a fit as text: the error before and after, the parameters, and warnings.
 pub(crate) fn lines(learnt: &Learnt) -> String {
     let mut text = String::new();
     for line in learnt.errors() {

@@ -1,4 +1,5 @@
-//! `bulge heat`: how warm a muscle gets that is charged and discharged again and again, with and without an inner pipe.
+//! `bulge heat`: temperature of a muscle under repeated charging and discharging, with and without an inner
+//! pipe.
 
 use bulge_design::heat::{HeatProblem, HeatSolution, Pipe, trend};
 use bulge_muscles::units::Quantity;

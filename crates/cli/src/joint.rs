@@ -1,4 +1,5 @@
-//! `bulge joint`: two antagonistic muscles on a joint: where it stands, how stiff it is, and which pressures it needs.
+//! `bulge joint`: two antagonistic muscles on a joint: its equilibrium angle, its stiffness, and the
+//! pressures it needs.
 
 use bulge_design::joint::{Checks, JOINT_EXAMPLE, Joint, JointError, JointState, Outside, Readings};
 use bulge_muscles::units::Quantity;
@@ -15,9 +16,9 @@ use crate::failure::Failure;
 use crate::files;
 use crate::text::{shown, significant, table};
 
-/// Pressures of each muscle in the map.
+/// Number of pressures of each muscle in the map.
 const GRID: usize = 5;
-/// Points of a line that is drawn.
+/// Points of a plotted line.
 const DRAWN: usize = 81;
 
 /// What the gas of a closed muscle does.
@@ -75,7 +76,7 @@ pub(crate) struct JointCommand {
 
 impl JointCommand {
     pub(crate) fn run(&self) -> Result<String, Failure> {
-        // Maps and drawings need all of the ranges, a question what it asks for.
+        // Maps and plots need the whole range of the joint; a single state doesn't.
         let is_point = self.plot.is_none() && (self.pressure.is_some() || self.angle.is_some());
         let checks = if is_point { Checks::Linkage } else { Checks::Everywhere };
         let joint = JointTable::read(&self.joint, checks)?.joint;
@@ -169,7 +170,7 @@ impl JointCommand {
         Ok(readings)
     }
 
-    /// At rest without load, valves shut, loaded.
+    /// The joint at rest without load, then with shut valves under load.
     fn shut(&self, joint: &Joint, pressures: [f64; 2], torque: f64) -> Result<(Value, String), Failure> {
         let dead = self.dead_volume.as_deref().map(|text| quantity::<Volume>("--dead-volume", text));
         let dead = dead.transpose()?.map_or(0.0, Quantity::si);
@@ -213,7 +214,7 @@ const STIFFNESS: [(&str, f64); 4] = [
 ];
 
 fn degrees(angle: f64) -> String {
-    // A rest at zero is no angle of 1e-12.
+    // A tiny angle at rest is rounding.
     if angle.abs() < 1e-9 { "0".to_owned() } else { significant(angle.to_degrees(), 4) }
 }
 
@@ -221,7 +222,7 @@ fn bar(pressure: f64) -> String {
     significant(1e-5 * pressure, 4)
 }
 
-/// A stand in words and numbers.
+/// A state of the joint in words and numbers.
 fn standing(how: &str, stand: &JointState, outside: f64) -> String {
     let under = if outside == 0.0 {
         String::new()
@@ -252,7 +253,7 @@ fn standing(how: &str, stand: &JointState, outside: f64) -> String {
     text + &table(&rows)
 }
 
-/// How sure an outside torque is.
+/// Uncertainty of an external torque.
 fn surely(outside: &Outside) -> String {
     let [pressure, angle, force, learnt] = outside.from_nm.map(|part| significant(part, 2));
     if outside.sd_nm == 0.0 {
@@ -265,13 +266,13 @@ fn surely(outside: &Outside) -> String {
     )
 }
 
-/// Pressures of the joint's range, evenly.
+/// Evenly spaced pressures over the joint's range.
 fn pressures(joint: &Joint) -> Vec<f64> {
     let [low, high] = joint.pressure;
     (0..GRID).map(|k| low + (high - low) * k as f64 / (GRID - 1) as f64).collect()
 }
 
-/// Angles and stiffnesses over both pressures.
+/// Equilibrium angles and stiffnesses over both pressures.
 fn mapped(joint: &Joint, torque: f64) -> Result<(Value, String), Failure> {
     let [low, high] = joint.angle;
     let mut text = format!(
@@ -309,7 +310,7 @@ fn mapped(joint: &Joint, torque: f64) -> Result<(Value, String), Failure> {
         }
         rows.push(row);
     }
-    // Nowhere a rest: the last reason is as good as any.
+    // No pair of pressures has an equilibrium: the last reason is reported.
     if let (Some(error), true) = (refused, map.iter().all(|at| at.get("why").is_some())) {
         return Err(error.into());
     }
@@ -318,7 +319,7 @@ fn mapped(joint: &Joint, torque: f64) -> Result<(Value, String), Failure> {
     Ok((json!({ "map": map }), text))
 }
 
-/// Torque of both muscles against the angle, for pressures that go up together and against each other.
+/// Plot of the torque of both muscles against the angle, for equal pressures and for opposite extremes.
 fn drawn(joint: &Joint) -> Result<String, Failure> {
     let ([low, high], all) = (joint.angle, pressures(joint));
     let pairs = all.iter().map(|p| [*p, *p]).chain([[all[GRID - 1], all[0]], [all[0], all[GRID - 1]]]);
@@ -326,7 +327,7 @@ fn drawn(joint: &Joint) -> Result<String, Failure> {
     for [one, other] in pairs {
         let mut points = Vec::new();
         for k in 0..DRAWN {
-            // Rounding doesn't lead out of the range.
+            // Rounding must not lead out of the range.
             let angle = (low + (high - low) * k as f64 / (DRAWN - 1) as f64).min(high);
             points.push([angle.to_degrees(), joint.torque(angle, one, other)?]);
         }

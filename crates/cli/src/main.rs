@@ -1,4 +1,5 @@
-//! The command `bulge`: one file per command, this one chooses among them and turns errors into messages and exit statuses.
+//! The command `bulge`: one file per command. This file selects the command and turns errors into messages
+//! and exit statuses.
 
 mod air;
 mod arguments;
@@ -101,21 +102,22 @@ enum Command {
     Validate(validate::Validate),
 }
 
-/// Exit status for a mistaken command line, as clap's own.
+/// Exit status for a wrong command line, the same as clap's.
 const USAGE: u8 = 2;
 
 fn main() -> ExitCode {
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
         Err(error) => {
-            // Help and version come this way too, on standard output with status 0.
+            // Help and version arrive here too; they go to standard output with status 0.
             let status = if error.use_stderr() { USAGE } else { 0 };
             let _ = error.print();
             return ExitCode::from(status);
         }
     };
     let command = arguments.command.unwrap_or(Command::Demo(demo::Demo::default()));
-    // On one thread of the pool, where the work is: what is read and what is computed share its heap.
+    // The command runs on a thread of the pool, as the computations do: input and results then share its
+    // heap.
     let outcome = rayon::scope(|_| match command {
         Command::Demo(command) => command.run(),
         Command::Shape(command) => command.run(),
@@ -144,7 +146,7 @@ fn main() -> ExitCode {
     match outcome.and_then(|text| said(&text)) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
-            // Nothing is left to be done where this can't be written either.
+            // If this can't be written either, nothing more can be done.
             let _ = said(failure.answer());
             let _ = writeln!(std::io::stderr(), "error: {failure}");
             ExitCode::from(failure.status())
@@ -152,7 +154,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// Everything a command says on standard output.
+/// Writes the output of a command to standard output.
 fn print(text: &str) -> Result<(), Failure> {
     files::print(text.as_bytes()).map_err(|source| Failure::Output { path: "standard output".into(), source })
 }

@@ -1,4 +1,4 @@
-//! `bulge membrane`: a finite-element membrane case, state after state.
+//! `bulge membrane`: a finite-element membrane case, state by state.
 
 use bulge_inference::{Fitting, Options};
 use bulge_measurements::Data;
@@ -119,7 +119,7 @@ impl MembraneCommand {
         bar
     }
 
-    /// The muscle with the effect of its cloth.
+    /// The muscle with the fitted effect of its cloth.
     fn learn(&self, case: &Case, output: &Output, path: &Path) -> Result<Learnt, Failure> {
         let muscle = learns(case)?;
         let Some(forces) = forces(&output.rows) else {
@@ -167,13 +167,13 @@ impl MembraneCommand {
     }
 }
 
-/// What a run leaves in its folder.
+/// The files of a run in its folder.
 struct Output {
     folder: PathBuf,
     stem: String,
     series: MembraneSeries,
     rows: Vec<Row>,
-    /// How each state is drawn, and the last one.
+    /// What is drawn of each state, and of the last one.
     each: Whole,
     whole: Whole,
     has_forces: bool,
@@ -182,11 +182,11 @@ struct Output {
 }
 
 impl Output {
-    /// An empty folder: what an earlier run of this case left there would pass for this one's.
+    /// Clears the folder: files of an earlier run of this case would be taken for results of this one.
     fn new(command: &MembraneCommand, case: &Case, stem: &str) -> Result<Self, Failure> {
         let folder = command.out.clone();
         let whole = Whole::of(case);
-        // A sector repeated all round makes files a hundred times larger.
+        // A sector repeated all round makes the files a hundred times larger.
         let is_sector = matches!(whole, Whole::Sector { .. });
         let each = if is_sector && !command.whole { Whole::AsMeshed } else { whole };
         let series = MembraneSeries::new(&folder, stem)?;
@@ -214,7 +214,7 @@ impl Output {
         Ok(())
     }
 
-    /// The whole muscle in its last state, and the forces for other commands.
+    /// Writes the whole muscle in its last state, and the forces for other commands.
     fn finish(&mut self, run: &mut CaseRun<'_>) -> Result<(), Failure> {
         let clock = Instant::now();
         if self.each != self.whole && !self.rows.is_empty() {
@@ -236,7 +236,7 @@ impl Output {
         Ok(())
     }
 
-    /// What stands of a run that ended early.
+    /// What remains of a run that ended early, as text.
     fn kept(&self, is_rescued: bool) -> String {
         match self.rows.last() {
             Some(row) => format!(
@@ -284,7 +284,7 @@ fn describe(case: &Case, run: &CaseRun<'_>, output: &Output, time: Duration) -> 
     text
 }
 
-/// The muscle that a case can teach the effect of its cloth.
+/// The muscle whose effect of the cloth can be fitted to a case.
 fn learns(case: &Case) -> Result<&Muscle, Failure> {
     let is_shortened = case
         .steps
@@ -300,10 +300,11 @@ fn learns(case: &Case) -> Result<&Muscle, Failure> {
     }
 }
 
-/// How far the radius that is fitted may lie from that of the cloth without a fold: lobes come taut a little before it.
+/// Largest relative difference between the fitted radius and the radius of the cloth without a fold: lobes
+/// become taut a little before it.
 const NEAR: f64 = 0.2;
 
-/// Refuses an effect that stands for something else: the cloth must end where the fit says that it does.
+/// Rejects a fit that describes something else: the cloth must be unfolded at the fitted radius.
 fn is_the_cloth(case: &Case, fitted: &Learnt) -> Result<(), Failure> {
     let parameters = &fitted.fitting.fit.parameters;
     let radius = parameters.iter().find(|parameter| parameter.name == "unfolded_radius");
@@ -325,10 +326,10 @@ fn is_the_cloth(case: &Case, fitted: &Learnt) -> Result<(), Failure> {
     )))
 }
 
-/// Bytes of a file name, which systems allow 255, without the state's number.
+/// Bytes of a file name without the number of the state; systems allow 255.
 const LONGEST_STEM: usize = 80;
 
-/// A file name from a case's name.
+/// A file name derived from the name of a case.
 fn stem(name: &str) -> String {
     let mut stem = String::new();
     for c in name.chars() {
@@ -346,7 +347,7 @@ fn stem(name: &str) -> String {
     if stem.is_empty() { "membrane".to_owned() } else { stem }
 }
 
-/// The states as measurements are written, if they have a contraction and a force.
+/// The states in the format of measurements, if they have a contraction and a force.
 fn forces(rows: &[Row]) -> Option<String> {
     let mut text = String::from("pressure [Pa],contraction,force [N],diameter [m],volume [m^3]\n");
     for row in rows.iter().filter(|row| row.pressure > 0.0) {
@@ -382,7 +383,7 @@ fn line(row: &Row) -> String {
     text
 }
 
-/// The result table: columns that say nothing are left out.
+/// The table of results, without empty columns.
 fn cells(rows: &[Row]) -> Vec<Vec<String>> {
     let has = |what: &dyn Fn(&Row) -> bool| rows.iter().any(what);
     let has_contraction = has(&|row| row.contraction.is_some());

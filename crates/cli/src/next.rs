@@ -20,7 +20,7 @@ use crate::restricted::RestrictedArguments;
 
 const PRESSURE: &str = "--pressure";
 const CONTRACTION: &str = "--contraction";
-/// What stands before the effects that could not be looked for.
+/// Words before the effects that could not be tested.
 const UNTESTED: &str = "  could not be looked for ";
 
 /// The next experiment: the test within your limits that best separates the effects that these data leave open.
@@ -67,7 +67,7 @@ impl NextCommand {
         let effects = arguments::effects(&catalogue, &self.with)?;
         let data = self.data.read(&muscle)?;
         let base = self.data.options(&data, &muscle, catalogue.clone(), effects)?;
-        // As a diagnosis has them.
+        // Usual widths, as in a diagnosis.
         let base = self.restricted.apply(base, &data, &muscle.clone().with_usual_widths().0)?;
         let bar = Bar::new(self.json);
         let progress = bar.progress();
@@ -82,7 +82,7 @@ impl NextCommand {
         Ok(self.text(&found, &step) + &wrote)
     }
 
-    /// Writes the protocol, if there is a place for it and a test to make.
+    /// Writes the protocol, if a file was requested and there is a test.
     fn write(&self, step: &NextStep<'_>) -> Result<String, Failure> {
         let Some(path) = &self.out else { return Ok(String::new()) };
         let Some(protocol) = step.next.and_then(|next| next.protocol.as_deref()) else {
@@ -92,7 +92,7 @@ impl NextCommand {
         Ok(format!("  wrote {}\n", path.display()))
     }
 
-    /// What the next test may use.
+    /// Limits of the next test.
     fn limits(&self) -> Result<NextLimits, Failure> {
         let pressure_pa = self
             .pressure
@@ -113,7 +113,7 @@ impl NextCommand {
         Ok(limits)
     }
 
-    /// The answer for people.
+    /// The answer as text.
     fn text(&self, diagnosis: &Diagnosis, step: &NextStep<'_>) -> String {
         let mut out = format!("{}, after {}\n\n", diagnosis.muscle, self.data.names().join(", "));
         out.push_str(&told(&diagnosis.data.reading));
@@ -150,7 +150,7 @@ impl NextCommand {
     }
 }
 
-/// A range with units, the smaller end first.
+/// A range with units, smaller end first.
 fn rising<Q: Quantity>(option: &'static str, text: &str, example: &str) -> Result<[f64; 2], Failure> {
     let [low, high] = arguments::range::<Q>(option, text)?;
     if low < high {
@@ -161,7 +161,7 @@ fn rising<Q: Quantity>(option: &'static str, text: &str, example: &str) -> Resul
     Err(Failure::Value { option, what })
 }
 
-/// The verdict in a line.
+/// The verdict in one line.
 fn verdict(diagnosis: &Diagnosis) -> String {
     if diagnosis.verdict == Verdict::Missing {
         let names: Vec<&str> = diagnosis.missing.iter().map(|missing| missing.effect.as_str()).collect();

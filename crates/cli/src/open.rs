@@ -49,7 +49,7 @@ pub(crate) struct OpenCommand {
 impl OpenCommand {
     pub(crate) fn run(&self) -> Result<String, Failure> {
         let is_stated = !self.data.is_empty() || self.muscle.is_some() || !self.with.is_empty();
-        // What is there with the tour goes with this value.
+        // The temporary files of the tour are removed when this value is dropped.
         let tour = tempfile::Builder::new()
             .prefix("bulge-tour-")
             .tempdir()
@@ -79,7 +79,7 @@ impl OpenCommand {
         Ok(String::new())
     }
 
-    /// The data files, those of the tour where none are named.
+    /// The data files; those of the tour if none are named.
     fn files(&self, folder: &Path) -> Result<Vec<DataFile>, Failure> {
         if self.data.is_empty() {
             let (name, text) = demo::DATA;
@@ -96,13 +96,13 @@ impl OpenCommand {
         self.data.iter().map(one).collect()
     }
 
-    /// The muscle as it is named; that of the tour where none is.
+    /// The muscle named; that of the tour if none is.
     fn muscle_file(&self) -> Result<MuscleFile, Failure> {
         let Some(name) = &self.muscle else {
             let (_, toml) = demo::MUSCLE;
             return Ok(MuscleFile { toml: toml.to_owned(), origin: None });
         };
-        // Read as every command reads it, so that what is wrong is said in the same words.
+        // Read as by every command, so that errors have the same wording.
         arguments::muscle(name)?;
         let path = Path::new(name);
         let shipped = PRESETS.iter().find(|preset| preset.name == name && !path.exists());
@@ -110,7 +110,7 @@ impl OpenCommand {
         Ok(MuscleFile { toml, origin: Some(name.clone()) })
     }
 
-    /// Says now what would otherwise stand on the page: effects that there are not, columns that can't be.
+    /// Reports errors that would otherwise appear on the page: unknown effects, impossible columns.
     fn check(&self, choices: &Choices) -> Result<(), Failure> {
         let catalogue = arguments::catalogue(self.effects.as_deref())?;
         arguments::effects(&catalogue, &self.with)?;
@@ -127,7 +127,7 @@ impl OpenCommand {
     }
 }
 
-/// A file of text.
+/// The content of a text file.
 fn text_of(path: &Path) -> Result<String, Failure> {
     std::fs::read_to_string(path).map_err(|source| Failure::Value {
         option: "bulge open",
@@ -135,7 +135,7 @@ fn text_of(path: &Path) -> Result<String, Failure> {
     })
 }
 
-/// Opens an address as the desktop does; whether that could be tried.
+/// Opens an address as the desktop does; returns whether that could be tried.
 fn browser(address: &str) -> bool {
     let (program, arguments): (&str, &[&str]) = if cfg!(target_os = "macos") {
         ("open", &[])

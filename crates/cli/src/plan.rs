@@ -1,4 +1,4 @@
-//! `bulge plan`: before measuring, what a test would show and which effects it could not tell apart.
+//! `bulge plan`: before measuring, what a test would show and which effects it could not distinguish.
 
 use bulge_effects::known;
 use bulge_inference::{ConfusedPair, CorrelationTime, Plan, PlannedEffect, Protocol, plan};
@@ -18,20 +18,20 @@ use crate::files;
 use crate::text::{significant, table};
 use bulge_report::shell_word;
 
-/// Sigmas at which an effect is seen, and from which two are told apart.
+/// Sigmas at which an effect is detected, and from which two are distinguished.
 const SEEN: f64 = 3.3;
 const APART: f64 = 3.29;
-/// A compensation that is spoken of.
+/// Compensations above this are mentioned.
 const MUCH: f64 = 0.5;
-/// Lines of a kind that are shown; JSON has all.
+/// Most lines of a kind; JSON has all.
 const EASIEST: usize = 8;
 const HARDEST: usize = 7;
 const MOST_NAMES: usize = 12;
 const MOST_PAIRS: usize = 5;
 const MOST_WARNINGS: usize = 2;
-/// A cosine from which two are the same: no number of tests that anybody makes tells them apart.
+/// Effects with a larger cosine are the same: no practical number of tests distinguishes them.
 const SAME: f64 = 1.0 - 1e-9;
-/// What stands before the effects that a test can't show.
+/// Words before the effects that a test can't show.
 const UNTESTED: &str = "  cannot be seen ";
 
 /// Before measuring: detection limits, and which effects this test could not tell apart.
@@ -78,7 +78,7 @@ impl PlanCommand {
         }
     }
 
-    /// The protocol, or that of some measurements with how they were read.
+    /// The protocol; or the protocol derived from measurements, with the text on how they were read.
     fn test(&self, muscle: &Muscle) -> Result<(Protocol, String), Failure> {
         if let Some(out) = &self.out {
             let read = [
@@ -96,17 +96,17 @@ impl PlanCommand {
             let columns = self.columns.as_deref().map(str::parse::<ColumnMap>).transpose()?;
             let data = Data::read_with(&[path], &read_options(muscle, columns.as_ref())?)?;
             let like = Protocol::like(&data, muscle.length().si());
-            // As it is read again from a file.
+            // Written and read again, so that it is the protocol in the file.
             return Ok((
                 Protocol::from_toml(&like.to_toml(), "the test of these data")?,
                 told(data.reading()),
             ));
         }
-        // The one or the other is there: the parser of the command line sees to it.
+        // The parser of the command line ensures that one of the two is given.
         Ok((Protocol::read(self.protocol.as_deref().unwrap_or(Path::new("")))?, String::new()))
     }
 
-    /// The plan for people.
+    /// The plan as text.
     fn text(&self, plan: &Plan) -> String {
         let mut out = String::new();
         test(&mut out, plan);
@@ -138,7 +138,7 @@ fn three(value: f64) -> String {
     significant(value, 3)
 }
 
-/// What the test is.
+/// Description of the test.
 fn test(out: &mut String, plan: &Plan) {
     let [low, high] = plan.pressure_pa.map(|p| three(p / 1e5));
     let [short, long] = plan.contraction.map(|e| three(100.0 * e));
@@ -171,10 +171,10 @@ fn test(out: &mut String, plan: &Plan) {
     );
 }
 
-/// What is seen from which size on, and what is not.
+/// Detection limits, and the effects without one.
 fn limits(out: &mut String, plan: &Plan) {
     let seen: Vec<&PlannedEffect> = plan.effects.iter().filter(|e| e.detection_limit_n.is_some()).collect();
-    // The easiest and the hardest to see are shown; what lies between them is named.
+    // The easiest and the hardest ones are shown; those between them are only named.
     let (easiest, hardest) = if seen.len() <= EASIEST + HARDEST {
         (seen.len(), seen.len())
     } else {
@@ -230,9 +230,9 @@ fn row(effect: &PlannedEffect) -> Vec<String> {
     ]
 }
 
-/// Effects that look alike.
+/// Effects that the test can't distinguish.
 fn pairs(out: &mut String, plan: &Plan) {
-    // Of what isn't seen nobody asks whether it is something else.
+    // Confusion only matters for effects that are detected.
     let is_seen = |name: &str| plan.effects.iter().any(|e| e.effect == name && e.usual_sigma >= SEEN);
     let (never, others): (Vec<&ConfusedPair>, Vec<&ConfusedPair>) =
         plan.confused.iter().filter(|pair| pair.sigma < APART).partition(|pair| pair.cosine >= SAME);
@@ -262,7 +262,7 @@ fn pairs(out: &mut String, plan: &Plan) {
     }
 }
 
-/// Pairs that share an effect become one list.
+/// Merges pairs that share an effect into one list.
 fn twins<'a>(pairs: &[&'a ConfusedPair]) -> Vec<Vec<&'a str>> {
     let mut lists: Vec<Vec<&str>> = Vec::new();
     for pair in pairs {

@@ -1,4 +1,4 @@
-//! `bulge predict`: a (learnt) muscle on new rows.
+//! `bulge predict`: the force of a (fitted) muscle on new rows.
 
 use bulge_inference::{Predicted, predict};
 use bulge_measurements::written;
@@ -52,7 +52,7 @@ impl PredictCommand {
     }
 }
 
-/// The prediction for people: what it is like as a whole, rows being in the file.
+/// The prediction as text: summary figures, since the rows are in the file.
 fn text(found: &Predicted) -> String {
     let three = |value: f64| significant(value, 3);
     let mut out = format!("{} predicted on {}\n\n", found.muscle, found.files.join(", "));

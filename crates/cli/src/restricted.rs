@@ -1,4 +1,4 @@
-//! Numbers held, bounded or tied on the command line.
+//! Parameters fixed, bounded or tied on the command line.
 
 use bulge_inference::{Options, Statements};
 use bulge_measurements::Data;
@@ -22,7 +22,8 @@ pub(crate) struct RestrictedArguments {
 }
 
 impl RestrictedArguments {
-    /// The options of a fit with what is stated of its numbers. `muscle` is the one that is fitted: its widths say what is fitted along.
+    /// Adds these restrictions to the options of a fit. `muscle` is the muscle that is fitted; its widths
+    /// determine the geometry fitted along.
     pub(crate) fn apply(&self, options: Options, data: &Data, muscle: &Muscle) -> Result<Options, Failure> {
         let Self { hold, bound, tie } = self.clone();
         Ok(options.stating(&Statements { hold, bound, tie }, data, muscle)?)

@@ -1,4 +1,4 @@
-//! `bulge sense`: a channel of liquid metal wound round a muscle, whose resistance tells the contraction.
+//! `bulge sense`: a channel of liquid metal wound around a muscle, whose resistance gives the contraction.
 
 use bulge_design::sensing::{
     Curve, EGAIN_RESISTIVITY_OHM_M, Goal, Layer, Linearity, Options, Placement, Range, Reference, Search,
@@ -22,7 +22,7 @@ use crate::text::{significant, table};
 const RESISTANCE: [(&str, f64); 4] = [("ohm", 1.0), ("mohm", 1e-3), ("uohm", 1e-6), ("kohm", 1e3)];
 /// Rows of the table.
 const ROWS: usize = 11;
-/// Zones of the search for the best place.
+/// Centres in the search for the best zone.
 const CENTRES: usize = 81;
 
 /// A channel of liquid metal wound round a muscle, whose resistance tells the contraction (S3, section 5).
@@ -215,7 +215,7 @@ fn csv(curve: &Curve) -> String {
     text
 }
 
-/// The curve and the best straight line.
+/// Plot of the curve and the best straight line.
 fn drawn(title: &str, curve: &Curve) -> Result<String, Failure> {
     let read: Vec<[f64; 2]> =
         curve.readings.iter().map(|at| [100.0 * at.contraction, at.resistance_ohm]).collect();

@@ -16,7 +16,7 @@ use crate::files;
 use crate::sketch::sketch;
 use crate::text::significant;
 
-/// Most meridian points: a file of 100 MB is a mistake.
+/// Most meridian points: more would make a file of over 100 MB, which must be a mistake.
 const MAX_POINTS: usize = 100_001;
 
 /// One equilibrium: force, length, volume, fibre tension, stiffness, meridian.
@@ -135,7 +135,7 @@ impl ShapeCommand {
         } else if let Some(text) = &self.force {
             Ok(Given::Force(quantity::<Force>("--force", text)?.si()))
         } else {
-            // The group makes clap refuse a command line without any of the four.
+            // The argument group makes clap reject a command line without any of the four.
             let text = self.volume.as_deref().unwrap_or_default();
             Ok(Given::Volume(quantity::<Volume>("--volume", text)?.si()))
         }
@@ -221,7 +221,7 @@ fn largest_angle(meridian: &[MeridianPoint]) -> Option<f64> {
     (largest > 0.0).then_some(largest)
 }
 
-/// What to draw of a muscle.
+/// The bulge to be drawn.
 pub(crate) fn bulge<'a>(
     muscle: &Muscle,
     shape: &'a Shape,
@@ -237,7 +237,7 @@ pub(crate) fn bulge<'a>(
     Bulge::of(muscle, shape, style)
 }
 
-/// What effects of the muscle file do.
+/// Contribution of the effects in the muscle file, as text.
 fn effects_text(extended: &MuscleWithEffects, alone: Option<f64>) -> String {
     let mut text = String::new();
     if let Some(alone) = alone {

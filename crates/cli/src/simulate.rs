@@ -1,4 +1,5 @@
-//! `bulge simulate`: synthetic measurements of a muscle with chosen effects, noise and rig errors, and what is hidden in them.
+//! `bulge simulate`: synthetic measurements of a muscle with chosen effects, noise and rig errors, and the
+//! hidden truth.
 
 use bulge_inference::{
     HiddenEffect, PROTOCOL_EXAMPLE, Protocol, RigErrors, Simulation, Truth, simulate_with,
@@ -71,7 +72,7 @@ impl SimulateCommand {
 }
 
 impl SimulateCommand {
-    /// What the user wrote is not written over, nor is anything written where a file can't be.
+    /// Rejects overwriting the user's files, and writing to a place where no file can be.
     fn check_out(&self) -> Result<(), Failure> {
         let is = |path: &Path, own: &Path| {
             path.canonicalize().is_ok_and(|path| own.canonicalize().is_ok_and(|own| own == path))
@@ -90,7 +91,7 @@ impl SimulateCommand {
     }
 }
 
-/// The three files, each whole.
+/// Writes the three files, each whole.
 fn write(folder: &Path, found: &Simulation, document: &str) -> Result<[PathBuf; 3], Failure> {
     files::folder(folder)?;
     let paths = FILES.map(|name| folder.join(name));
@@ -101,7 +102,7 @@ fn write(folder: &Path, found: &Simulation, document: &str) -> Result<[PathBuf; 
     Ok(paths)
 }
 
-/// The simulation for people.
+/// The simulation as text.
 fn text(found: &Simulation, [data, muscle, truth]: &[PathBuf; 3]) -> String {
     let hidden = &found.truth;
     let mut out = format!("{}, simulated with seed {}\n\n", hidden.muscle, hidden.seed);

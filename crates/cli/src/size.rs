@@ -19,16 +19,16 @@ use crate::failure::Failure;
 use crate::files;
 use crate::text::{significant, table};
 
-/// What a kilogram weighs \[N\].
+/// Weight of a kilogram \[N\].
 const GRAVITY: f64 = 9.806_65;
-/// What is looked through if no muscle is named.
+/// Muscles considered if none is named.
 const MUSCLES: &str = "dmsp-10,dmsp-20,dmsp-40,ppam-2-r16";
-/// Steps of pressure if none is given \[Pa\], and how many at most.
+/// Default step of the pressure \[Pa\], and the most steps.
 const PRESSURE_STEP: f64 = 5e4;
 const MOST_PRESSURES: u32 = 40;
-/// The longest muscle that is looked for by itself, over the stroke.
+/// Default limit of the length of a muscle, in strokes.
 const LONG: f64 = 10.0;
-/// Isobars that are drawn, and the points of one.
+/// Most isobars of the plot, and points of each.
 const MOST_ISOBARS: u32 = 8;
 const DRAWN: usize = 121;
 
@@ -162,7 +162,7 @@ impl SizeCommand {
                 }
                 (None, law) => self.family(name, law)?,
             };
-            // Two files may state the same name: what was written tells them apart.
+            // Two files may have the same name: the argument distinguishes them.
             let is_taken = families.iter().any(|other: &Family| other.name() == family.name());
             let family =
                 if is_taken { family.clone().named(&format!("{} ({name})", family.name())) } else { family };
@@ -238,7 +238,7 @@ impl SizeCommand {
         Ok(limits)
     }
 
-    /// Each muscle by itself, since without a pressure asked for each goes up to its own highest.
+    /// Sizes each muscle separately: without a given pressure each goes up to its own limit.
     fn sized(&self, families: &[Family], load: &LoadCase) -> Result<Sizing, Failure> {
         let si = |pressures: Vec<Pressure>| pressures.into_iter().map(Quantity::si).collect::<Vec<_>>();
         let pressures = self.pressure.as_deref().map(|text| list("--pressure", text)).transpose()?.map(si);
@@ -310,7 +310,7 @@ fn shipped() -> String {
     PRESETS.iter().map(|preset| preset.name).collect::<Vec<_>>().join(", ")
 }
 
-/// Newtons, or what kilograms weigh.
+/// A force in newtons, or the weight of kilograms.
 fn force(option: &'static str, text: &str) -> Result<f64, Failure> {
     let text = text.trim();
     let Some(number) = text.strip_suffix("kg") else { return Ok(quantity::<Force>(option, text)?.si()) };
@@ -343,7 +343,7 @@ fn row(choice: &Choice) -> Vec<String> {
     ]
 }
 
-/// The way of the best choice.
+/// The path of the best choice, as text.
 fn way(best: &Choice) -> String {
     let mut text = format!(
         "\nthe kindest: {} of {} mm at {} bar\n\n",
@@ -367,7 +367,7 @@ fn way(best: &Choice) -> String {
     text
 }
 
-/// The first reason for each muscle, and how many more.
+/// The first reason for each muscle, and the number of further ones.
 fn refused(infeasible: &[Infeasible]) -> String {
     let mut text = String::new();
     let mut seen: Vec<&str> = Vec::new();
@@ -388,7 +388,7 @@ fn refused(infeasible: &[Infeasible]) -> String {
     if text.is_empty() { text } else { format!("\nnot:\n\n{text}") }
 }
 
-/// Where the forces come from.
+/// The sources of the forces.
 fn bases(choices: &[Choice]) -> String {
     let mut text = "\nforces:\n\n".to_owned();
     let mut seen: Vec<&str> = Vec::new();
@@ -406,7 +406,7 @@ fn bases(choices: &[Choice]) -> String {
     text
 }
 
-/// The same with choices and without.
+/// The JSON document, with or without choices.
 fn document(sizing: &Sizing) -> Result<String, Failure> {
     let document = json!({
         "schema": "bulge.size/1",
@@ -417,7 +417,7 @@ fn document(sizing: &Sizing) -> Result<String, Failure> {
     Ok(serde_json::to_string_pretty(&document)? + "\n")
 }
 
-/// Nothing carries the load.
+/// Text for the case that nothing carries the load.
 fn nothing(sizing: &Sizing) -> String {
     format!(
         "none of these muscles carries {} N over {} mm\n{}",
@@ -427,13 +427,13 @@ fn nothing(sizing: &Sizing) -> String {
     )
 }
 
-/// Isobars of the best choice with the way of the load.
+/// Plot of the isobars of the best choice with the path of the load.
 fn drawn(best: &Choice, families: &[Family]) -> Result<String, Failure> {
     let Some(family) = families.iter().find(|family| family.name() == best.family) else {
         return Ok(String::new());
     };
     let muscle = family.at(best.length_m)?;
-    // Whole bars, but no more than a legend holds.
+    // Whole bars, and no more isobars than fit into a legend.
     let highest = family.limits().pressure_pa;
     let step = 1e5 * (highest / (1e5 * f64::from(MOST_ISOBARS))).ceil().max(1.0);
     let mut pressures: Vec<f64> =

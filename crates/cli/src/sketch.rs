@@ -1,4 +1,4 @@
-//! A meridian drawn in the terminal with braille dots, to scale: both outlines and the fittings.
+//! A meridian drawn to scale in the terminal with braille dots: both outlines and the fittings.
 
 use bulge_fibre::MeridianPoint;
 
@@ -14,7 +14,7 @@ pub(crate) fn sketch(meridian: &[MeridianPoint], columns: usize) -> String {
     if length <= 0.0 || radius <= 0.0 || columns < 4 {
         return String::new();
     }
-    // A very short or fat muscle would fill the screen: at most 20 lines high.
+    // A very short or thick muscle would fill the screen, so the height is at most 20 lines.
     let dots_x = (columns * DOTS.0 - 1) as f64;
     let scale = (dots_x / length).min((20 * DOTS.1 - 1) as f64 / (2.0 * radius));
     let cell = |value: f64| -> usize {

@@ -19,9 +19,9 @@ use crate::files;
 use crate::table::errors;
 use crate::text::shown;
 
-/// Points from which a sweep has to be confirmed.
+/// Number of points from which a sweep must be confirmed.
 const MANY: u128 = 1_000_000_000;
-/// Points per second and core that a size is judged by: closed form.
+/// Points per second and core for the estimated duration: closed form.
 const PER_SECOND: f64 = 1e6;
 
 /// A parallel sweep over the axes of a family of muscles, into Parquet files and a certified table.
@@ -84,7 +84,7 @@ impl SweepCommand {
         Ok(self.text(&plan, summary.as_ref(), table.as_ref()))
     }
 
-    /// Options that mean nothing where only a table is built.
+    /// Rejects options that make no sense if only a table is built.
     fn check_options(&self, plan: &Plan) -> Result<(), Failure> {
         let options =
             [("--chunks", self.chunks.is_some()), ("--merge", !self.merge.is_empty()), ("--csv", self.csv)];
@@ -127,7 +127,7 @@ impl SweepCommand {
         Ok(run(plan, &self.out, &options, &|progress| bar.at(progress))?)
     }
 
-    /// The table of the plan: built, or the one that is there if it is the same.
+    /// The table of the plan: built, or the existing one if it is the same.
     fn table(&self, plan: &Plan) -> Result<Option<(TableDescription, bool)>, Failure> {
         let Some(wish) = &plan.table else { return Ok(None) };
         files::folder(&self.out)?;
@@ -161,7 +161,7 @@ impl SweepCommand {
         Ok(Some((description, is_met)))
     }
 
-    /// What the table says of itself, beside it; also where a kill has left the table alone.
+    /// Writes the description of the table beside it, also if a killed run has left only the table.
     fn describe(&self, description: &TableDescription) -> Result<(), Failure> {
         let json = serde_json::to_string_pretty(description)? + "\n";
         let path = self.out.join("table.json");
@@ -205,14 +205,14 @@ impl SweepCommand {
     }
 }
 
-/// What is described by a table file, if that is whole and says the same of itself.
+/// The description of a table file, if the file is intact and its text is `text`.
 fn same_table(path: &Path, text: &str) -> Option<TableDescription> {
     let bytes = fs::read(path).ok()?;
     let table = Table::from_bytes(&bytes).ok().filter(|table| table.text() == text)?;
     TableDescription::of(&table).ok()
 }
 
-/// A bar on standard error for whoever waits at a terminal: rate and time left.
+/// A progress bar on standard error, for a user at a terminal: rate and time left.
 struct Bar(ProgressBar);
 
 impl Bar {
@@ -226,7 +226,7 @@ impl Bar {
     }
 
     fn at(&self, progress: Progress) {
-        // Rate and time left are those of what is computed now.
+        // Rate and time left refer only to the points computed in this run.
         let all = progress.all.saturating_sub(progress.there);
         if self.0.length() != Some(all) {
             self.0.set_length(all);

@@ -1,4 +1,4 @@
-//! `bulge table`: looking into tables, and taking them elsewhere.
+//! `bulge table`: looking values up in tables, and exporting tables.
 
 mod export;
 
@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 use crate::failure::Failure;
 use crate::text::{significant, table as columns};
 
-/// Larger files are no tables of ours.
+/// Larger files can't be tables of Bulge.
 const MOST_BYTES: u64 = 1 << 30;
 
 /// Look into a table, and take it elsewhere.
@@ -175,7 +175,7 @@ impl Eval {
         Ok(columns(&rows))
     }
 
-    /// The values of the axes, in their order.
+    /// The values of the axes, in the order of the table.
     fn point(&self, description: &TableDescription) -> Result<Vec<f64>, Failure> {
         let failed = |what: String| Failure::Value { option: "--at", what };
         let names: Vec<&str> = description.axes.iter().map(|axis| axis.name.as_str()).collect();
@@ -203,7 +203,7 @@ impl Eval {
     }
 }
 
-/// Why a point has no value.
+/// The reason why a point has no value.
 fn outside(table: &Table<'_>, description: &TableDescription, point: &[f64]) -> Failure {
     for (i, (axis, x)) in description.axes.iter().zip(point).enumerate().rev() {
         let high = if i == 0 { table.upper_end(point).unwrap_or(axis.high) } else { axis.high };
@@ -225,7 +225,7 @@ fn outside(table: &Table<'_>, description: &TableDescription, point: &[f64]) -> 
     ))
 }
 
-/// A value in SI: a number in the axis' unit, or one with a unit of the same dimension.
+/// A value in SI: a number in the unit of the axis, or one with a unit of the same dimension.
 fn value(text: &str, unit: &str) -> Result<f64, String> {
     if let Ok(number) = text.parse::<f64>() {
         return Ok(number);

@@ -1,8 +1,8 @@
-//! Numbers for people: four to six significant digits, and the unit that suits the size.
+//! Numbers in text: four to six significant digits, and a unit that suits the size.
 
 pub(crate) use bulge_muscles::units::significant;
 
-/// A value and the ends of its interval, so that the interval can be seen.
+/// A value and the ends of its interval, with enough decimals to show the interval.
 pub(crate) fn with_interval(value: f64, low: f64, high: f64) -> [String; 3] {
     bulge_report::with_interval(value, [low, high])
         .unwrap_or_else(|| [value, low, high].map(|x| significant(x, 3)))
@@ -27,7 +27,7 @@ pub(crate) fn table(rows: &[Vec<String>]) -> String {
     text
 }
 
-/// A file as the long help shows it.
+/// A file in the format of the long help.
 pub(crate) fn shown(title: &str, file: &str) -> String {
     let mut text = format!("{title}:\n\n");
     for line in file.lines() {

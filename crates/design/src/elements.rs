@@ -1,7 +1,8 @@
 //! The equilibrium of a muscle by membrane finite elements of revolution.
 //!
-//! Fibres as threads on a line of quadratic elements, a bladder as a sheet of rubber on the same line. A pleated muscle of n fibres is one of
-//! revolution under the pressure p sin(2 pi/n)/(2 pi/n): the polygon's area.
+//! Fibres are threads on a line of quadratic elements, a bladder is a sheet of rubber on the same line. A
+//! pleated muscle of n fibres is treated as one of revolution under the pressure p sin(2 pi/n)/(2 pi/n), the
+//! ratio of the area of the polygon to that of the circle.
 
 use bulge_fibre::{
     ADIABATIC, AMBIENT_PRESSURE, Approach, Convergence, FibreError, Given, MeridianPoint, Method, Problem,
@@ -18,9 +19,9 @@ use std::f64::consts::{PI, TAU};
 
 /// Elements at least.
 const ELEMENTS: usize = 200;
-/// Steps of contraction on the way: a long braid has more than one equilibrium, and small steps keep to the first.
+/// Step of contraction: a long braid has more than one equilibrium, and small steps stay on the first branch.
 const STEP: f64 = 0.025;
-/// Difference of contraction for the derivatives.
+/// Difference of contraction for the derivatives by central differences.
 const DIFFERENCE: f64 = 1e-4;
 
 /// Why elements give no shape of a muscle.
@@ -40,12 +41,12 @@ pub enum ElementsError {
 /// What the elements are made from.
 struct Elements {
     solver: Solver,
-    /// Effective pressure \[Pa\], and the share of the circle that carries it.
+    /// Effective pressure \[Pa\], and the ratio of the polygon's area to that of the circle.
     pressure: f64,
     share: f64,
     length: f64,
     radius: f64,
-    /// sin(alpha0), threads, and the mesh's nodes per point of the meridian.
+    /// sin(alpha0), number of threads, and nodes of the mesh per point of the meridian.
     sine: f64,
     threads: f64,
     every: usize,
@@ -74,7 +75,7 @@ pub fn shape(
     };
     let mut state = elements.at(contraction)?;
     let mut slopes = elements.slopes(contraction, &state)?;
-    // The two solutions are so close that one step of Newton's method is enough.
+    // The two solutions are so close that one Newton step suffices.
     let off = match given {
         Given::Force(force) => (force - state.forces[1]) / (-elements.length * slopes[0]),
         Given::Volume(volume) => (volume - state.volume) / (-elements.length * slopes[1]),
@@ -141,7 +142,7 @@ impl Elements {
             let sheet = Sheet { cloth: Cloth::Isotropic(law), wrinkles: false, residual: 0.0 };
             layers.push(RingLayer::Sheet { sheet, fullness: 1.0 });
         }
-        // As many nodes as points, or a multiple.
+        // The number of elements makes every point of the meridian a node.
         let halves = points.div_ceil(2).max(2) - usize::from(points % 2 == 1);
         let every = ELEMENTS.div_ceil(halves);
         let mesh = revolved(|t| [radius, length * t], halves * every, true, Grading::Ends(3.0));
@@ -216,13 +217,13 @@ impl Elements {
                 fibre_tension_n: mean(&|e| threads[e].tension),
                 fibre_strain: strain,
                 membrane_force_n_per_m: carried / slope.cos() / (TAU * x),
-                // The material keeps its azimuth, and the mesh is the muscle at rest: a tube.
+                // The material keeps its azimuth, and the mesh is the muscle at rest, a tube.
                 fibre_length_m: (z - fields.displacements[node][2]) / cosine,
                 turn_rad: (z - fields.displacements[node][2]) * self.sine / (cosine * self.radius),
             }
         };
         let meridian: Vec<MeridianPoint> = (0..=last).step_by(self.every).map(point).collect();
-        // In the middle of every element N cos(psi) = F + p A.
+        // Equilibrium in the middle of every element: N cos(psi) = F + p A.
         for (e, thread) in threads.iter().enumerate() {
             let at = point(2 * e + 1);
             let sheet = rubber.map_or(0.0, |sheet| sheet[e].force[0] * TAU * at.r_m);
@@ -232,12 +233,12 @@ impl Elements {
             departure = departure.max((net * at.slope_rad.cos() - carried).abs() / scale);
         }
         let [stiffness, volume_slope, swelling] = slopes;
-        // The gas's pressure falls as the volume grows: dp/dl = -g p_abs dV/dl/(V + g p_abs dV/dp).
+        // The pressure of enclosed gas falls as the volume grows: dp/dl = -g p_abs dV/dl/(V + g p_abs dV/dp).
         let enclosed = |exponent: f64| {
             let absolute = exponent * (pressure + AMBIENT_PRESSURE);
             let (v, dv, swelling) =
                 (self.share * state.volume, self.share * volume_slope, self.share * swelling * self.share);
-            // dF/dp = -dV/dl at constant length (Maxwell), of the polygon's volume.
+            // dF/dp = -dV/dl at constant length (Maxwell), for the volume of the polygon.
             stiffness + dv * absolute * dv / (v + absolute * swelling)
         };
         let largest = meridian.iter().fold(0.0_f64, |a, at| a.max(at.r_m));

@@ -1,9 +1,9 @@
-//! Heat in a muscle that is charged and discharged over and over, with or without an inner pipe.
+//! Heat in a muscle under repeated charging and discharging, with or without an inner pipe.
 //!
-//! The air at the closed end is compressed and expanded, but hardly exchanged, and that end gets hot. A pipe that brings
-//! the air near to it keeps it cool (S3: "Study on Mechanical Behaviour of Pneumatic Artificial Muscle and Methods to
-//! Improve it", section 4, which gives trends and no equations). The model is one-dimensional along the axis x from the
-//! inlet, 0, to the closed end, L.
+//! The air at the closed end is compressed and expanded but hardly exchanged, so that end gets hot. A pipe
+//! that carries the air close to the end keeps it cool (S3: "Study on Mechanical Behaviour of Pneumatic
+//! Artificial Muscle and Methods to Improve it", section 4, which gives trends and no equations). The model
+//! is one-dimensional along the axis x, from the inlet at 0 to the closed end at L.
 //!
 //! ```text
 //! P(t)           uniform in space (low Mach), prescribed: low, ramp up, high, ramp down
@@ -15,13 +15,14 @@
 //! pipe wall      C_p dT_pw/dt = U_i (T_p - T_pw) + U_o (T - T_pw) + d/dx(k_p S_p dT_pw/dx)
 //! pipe gas       as the muscle's, with q = U_i (T_pw - T_p) and without mixing
 //! ```
-//! Without a pipe air passes the inlet x = 0; charged air has the temperature T_s. With a pipe x = 0 is closed around it,
-//! and air enters and leaves the muscle in the first cell behind the mouth, x = L_p, from where it flows both ways.
-//! T_w is the temperature in the middle of the thickness; U holds the film and half of the wall, of a cylinder.
+//! Without a pipe air passes the inlet x = 0, and charged air has the temperature T_s. With a pipe x = 0 is
+//! closed around it. Air then enters and leaves the muscle in the first cell behind the mouth, x = L_p, and
+//! flows from there in both directions. T_w is the temperature at mid-thickness. U contains the film and half
+//! of the wall, for a cylinder.
 //!
 //! # Closures
 //!
-//! All are assumptions. Constants in [`Closures`], ranges beside them.
+//! All closures are assumptions. Their constants are in [`Closures`], with their ranges.
 //!
 //! ```text
 //! air         R = 287.05 J/(kg K), gamma = 1.4, Pr = 0.71, mu by Sutherland, k = mu cp/Pr
@@ -35,17 +36,19 @@
 //! mixing      D_m = k/(rho cp) + c_m chi u_e D_h, chi from 0 at Re = 2300 to 1 at 4000; c_m = 0.3 (Taylor 1954, turbulent tubes)
 //! ageing      exp(Ea/R (1/T_a - 1/T_w)), mean over the cycle; Ea = 85 kJ/mol (70 to 110, oxidation of natural rubber)
 //! ```
-//! The ageing factor is relative to the same rubber at the ambient temperature. It is no life, and above some 100 degC no more
-//! than a warning. Left out: end fittings (they take heat; the ends are insulated here), heat of friction and of the rubber's
-//! hysteresis, pressure drop in the pipe, kinetic energy, humidity, memory of the turbulence from stroke to stroke.
+//! The ageing factor is relative to the same rubber at the ambient temperature. It is not a service life, and
+//! above some 100 degC it is only a warning. Neglected: end fittings (they take up heat; the ends are
+//! insulated here), heat from friction and from the hysteresis of the rubber, pressure drop in the pipe,
+//! kinetic energy, humidity, and persistence of turbulence from stroke to stroke.
 //!
 //! # Method
 //!
-//! Finite volumes, upwind, backward Euler; first order in both. The gas's internal energy is `cv P V/R` whatever its
-//! temperatures, so the heats of a step fix all enthalpy flows, and energy and mass are kept to rounding. The periodic state is
-//! found by Anderson's extrapolation of cycles; the time to it with jumps over many cycles, and therefore to some 3 %.
+//! Finite volumes with upwind fluxes and backward Euler: first order in space and time. The internal energy
+//! of the gas is `cv P V/R` whatever its temperatures. So the heats of a step determine all enthalpy flows,
+//! and energy and mass are conserved to rounding. The periodic state is found by Anderson extrapolation of
+//! cycles. The time to reach it is computed with jumps over many cycles, and therefore accurate to some 3 %.
 //!
-//! # What comes out
+//! # Results
 //!
 //! Mean wall temperature above the ambient in K, default muscle (250 mm, 20 mm, 5 bar, 1 s), 40 cells, 200 steps:
 //!
@@ -55,22 +58,27 @@
 //! end                    90.8   49.6    28.4    6.5     5.0     11.6
 //! inlet                  -2.5   63.8    70.4    73.2    74.7    71.5
 //! ```
-//! So all that S3 reports comes out here: without pipe the end is hottest, and hotter than anything with one; a longer pipe cools
-//! the end and warms the inlet; a wider one warms the end and cools the inlet. It does not come out everywhere:
+//! All trends reported in S3 result: without a pipe the end is hottest, and hotter than any point with one; a
+//! longer pipe cools the end and warms the inlet; a wider one warms the end and cools the inlet. They don't
+//! hold everywhere:
 //!
-//! - *Wider pipe, cooler inlet* needs natural convection in the default muscle; the gap beside a wider pipe is narrower, and
-//!   with conduction alone (`natural_convection = 0`, and still at 0.3) a wider pipe warms the inlet. It also turns in a muscle of
-//!   40 mm, and vanishes with a pipe of 0.4 L or with a section that swells by 80 %.
-//! - *Inlet cooler than the end was without pipe*: with conduction alone and a long wide pipe it is slightly hotter. In a short
-//!   muscle of 40 mm (L = 6 D) the port's own jet already stirs the end, and a pipe does harm.
-//! - *Wider pipe, warmer end* turns between 3 and 4 mm at the strongest mixing (1.0) and in the muscle of 40 mm.
+//! - *Wider pipe, cooler inlet* needs natural convection in the default muscle. The gap beside a wider pipe
+//!   is narrower, and with conduction alone (`natural_convection = 0`, and still at 0.3) a wider pipe warms
+//!   the inlet. The trend also reverses in a muscle of 40 mm, and vanishes with a pipe of 0.4 L or with a
+//!   section that swells by 80 %.
+//! - *Inlet cooler than the end was without a pipe*: with conduction alone and a long wide pipe it is
+//!   slightly hotter. In a short muscle of 40 mm (L = 6 D) the jet of the port itself already stirs the end,
+//!   and a pipe is harmful.
+//! - *Wider pipe, warmer end* reverses between 3 and 4 mm at the strongest mixing (1.0) and in the muscle of
+//!   40 mm.
 //!
-//! Longer pipes cool the end and warm the inlet for every constant in its range, varied one at a time (20 cells, 100 steps).
-//! Half the time step lowers the rise of the end without pipe by 4 %, half the cells' length raises it by 6 %: the errors partly
-//! cancel. No constant was fitted, but natural convection was added after conduction alone had missed the two trends named above,
-//! so these two are no independent support of the model; c_n is a usual size, not taken from a measurement on a muscle. The constants move it by some 20 %,
-//! c_n by 30 %, the outer coefficient by more. Compare designs with it; trust absolute temperatures only after a measurement
-//! has fixed the coefficients.
+//! Longer pipes cool the end and warm the inlet for every constant in its range, varied one at a time (20
+//! cells, 100 steps). Halving the time step lowers the rise of the end without a pipe by 4 %, halving the
+//! cell length raises it by 6 %: the errors partly cancel. No constant was fitted. But natural convection was
+//! added after conduction alone had missed the two trends named above, so these two are no independent
+//! support of the model; c_n is a usual value, not measured on a muscle. The constants change the rise by
+//! some 20 %, c_n by 30 %, the outer coefficient by more. Use the model to compare designs; trust absolute
+//! temperatures only after a measurement has fixed the coefficients.
 
 mod check;
 mod cycle;
@@ -91,11 +99,11 @@ pub use problem::{Closures, Drive, HeatNumerics, HeatProblem, Pipe, Surroundings
 use rayon::prelude::*;
 
 impl HeatProblem {
-    /// Periodic steady state, and the time to it from the ambient temperature.
+    /// Computes the periodic steady state, and the time to reach it from the ambient temperature.
     ///
     /// # Errors
-    /// [`HeatError::Invalid`] numbers, [`HeatError::Choked`] inlets, [`HeatError::NotPeriodic`] or
-    /// [`HeatError::Step`] where the numerics don't reach their aim.
+    /// [`HeatError::Invalid`] for invalid numbers, [`HeatError::Choked`] if the inlet chokes,
+    /// [`HeatError::NotPeriodic`] or [`HeatError::Step`] if the numerics don't converge.
     pub fn solve(&self) -> Result<HeatSolution, HeatError> {
         check::check(self)?;
         let mut runner = cycle::Runner::new(self);
@@ -131,7 +139,8 @@ impl HeatProblem {
     }
 }
 
-/// Solves one problem with each of a list of pipes (`None`: without), in parallel; results in the order of the list.
+/// Solves one problem with each of a list of pipes (`None`: without a pipe), in parallel; the results are in
+/// the order of the list.
 ///
 /// # Errors
 /// Each result has its own, as [`HeatProblem::solve`].

@@ -1,4 +1,4 @@
-//! Muscles put to use.
+//! Design tools for muscles.
 //!
 //! - [`size`] goes from a load over a stroke to muscles, lengths and pressures (S4, "Sizing Fluidic Muscle Using Static Force Model"),
 //! - [`gas`] is a muscle with its valve shut, how fast one fills and what air it uses (S1, section 2.3; ISO 6358),

@@ -1,15 +1,18 @@
-//! A muscle that feels how far it is contracted: a helical channel of liquid metal in an elastomer layer around it.
+//! A muscle that senses its contraction: a helical channel of liquid metal in an elastomer layer around it.
 //!
-//! S3, "Study on Mechanical Behaviour of Pneumatic Artificial Muscle and Methods to Improve it", section 5: a layer of elastomer outside the fibres has
-//! a helical micro-channel filled with eutectic gallium-indium. As the muscle contracts it grows wider, the channel grows longer and thinner, and its
-//! resistance rises; S3 reports a resistance that is highly linear in the contraction, with little hysteresis. S3 gives no equations; here they are.
+//! In S3, "Study on Mechanical Behaviour of Pneumatic Artificial Muscle and Methods to Improve it", section
+//! 5, a layer of elastomer outside the fibres has a helical micro-channel filled with eutectic
+//! gallium-indium. As the muscle contracts it grows wider, the channel becomes longer and thinner, and its
+//! resistance rises. S3 reports a resistance that is highly linear in the contraction, with little
+//! hysteresis. It gives no equations; they follow.
 //!
-//! # Where the channel runs
+//! # Path of the channel
 //!
-//! S is the unstretched fibre length from the left fitting \[m\], S1 that of the whole muscle, s = S/S1 in \[0, 1\] the material coordinate. The layer is
-//! bonded to the fibres: its points keep s and the angle theta about the axis (crossings of a braid are pinned, its two families turn oppositely, so they
-//! keep their azimuth). With the radius r, the slope psi of the meridian, the fibre strain e and the angle alpha between fibre and meridian, all functions of s
-//! from a [`bulge_fibre::Shape`]:
+//! S is the unstretched fibre length from the left fitting \[m\], S1 that of the whole muscle, and s = S/S1
+//! in \[0, 1\] the material coordinate. The layer is bonded to the fibres: its points keep s and the angle
+//! theta about the axis. (Crossings of a braid are pinned; its two families turn in opposite directions, so
+//! the crossings keep their azimuth.) The radius r, the slope psi of the meridian, the fibre strain e and the
+//! angle alpha between fibre and meridian are functions of s from a [`bulge_fibre::Shape`]:
 //!
 //! ```text
 //! sigma = (1 + e) cos(alpha)                   meridian per unstretched fibre; against rest it is stretched by sigma/cos(alpha0)
@@ -20,12 +23,15 @@
 //! theta' = 2 pi N/((s_b - s_a) S1)             N turns between s_a and s_b                                                [rad/m]
 //! dL/dS = sqrt((rho theta')^2 + a^2)           length of the channel                                                       [m/m]
 //! ```
-//! The change of the meridian by the offset is included; that t itself changes along the muscle (see [`Layer::Thinning`]) is left out of a, an error of the
-//! order (dt/dS)^2/2. The circle around the fibres is taken, not the polygon between them (shorter by pi^2/(6 n^2): 0.1 % for 40 fibres), nor lobes of cloth.
+//! The change of the meridian by the offset is included. The variation of t along the muscle (see
+//! [`Layer::Thinning`]) is neglected in a, an error of the order (dt/dS)^2/2. The section around the fibres
+//! is taken as a circle, not as the polygon between them (shorter by pi^2/(6 n^2): 0.1 % for 40 fibres) or as
+//! lobes of cloth.
 //!
-//! # What it measures
+//! # Resistance
 //!
-//! Liquid and elastomer are incompressible. With the index 0 for the reference, in which the section is A0 everywhere:
+//! Liquid and elastomer are incompressible. The index 0 denotes the reference, in which the section is A0
+//! everywhere:
 //!
 //! ```text
 //! lambda = dL/dL0          A = A0/lambda          R = int rho_e dL/A = (rho_e/A0) int lambda^2 dL0                          [ohm]
@@ -33,18 +39,22 @@
 //! ```
 //! rho_e is the resistivity ([`EGAIN_RESISTIVITY_OHM_M`]). Gauge factor: dR/(R0 de) for the contraction e.
 //!
-//! # How exact
+//! # Accuracy
 //!
-//! Between the points of the meridian r, psi, sigma are polynomials of degree 5 through six of them; a Gauss rule of six points integrates between each two.
-//! The error falls with the sixth power of their distance. Where the law of a muscle has a kink (cloth that comes taut), with the third.
+//! Between the points of the meridian r, psi and sigma are polynomials of degree 5 through six of them; a
+//! Gauss rule of six points integrates between two neighbours. The error decreases with the sixth power of
+//! the spacing, or with the third if the law of a muscle has a kink (cloth that becomes taut).
 //!
-//! # What comes out
+//! # Results
 //!
-//! The radius of a pleated muscle grows about as the root of its contraction, so that the square of it is nearly straight, but concave: 20 turns on the middle
-//! 40 % of `ppam-2-r16` depart by 7.0 % of full scale from a line from 5 to 30 %, with a gauge factor of 19.6. Its middle is the place that is most sensitive
-//! and straightest at once. A braid is straightest near its fittings: 0.24 % for a tenth of `dmsp-20-250` from 5 to 25 %, against 3.7 % at its middle.
+//! The radius of a pleated muscle grows about as the root of its contraction, so its square is nearly
+//! straight, but concave. 20 turns on the middle 40 % of `ppam-2-r16` deviate by 7.0 % of full scale from a
+//! line from 5 to 30 %, with a gauge factor of 19.6. The middle is both the most sensitive and the most
+//! linear zone. A braid is most linear near its fittings: 0.24 % for a tenth of `dmsp-20-250` from 5 to 25 %,
+//! against 3.7 % at its middle.
 //!
-//! Deliberately absent: leads and contacts (a constant in series), temperature, viscosity of the elastomer (hysteresis), what the layer adds to the force.
+//! Deliberately absent: leads and contacts (a constant in series), temperature, viscosity of the elastomer
+//! (hysteresis), and the contribution of the layer to the force.
 
 mod channel;
 mod curve;

@@ -1,4 +1,5 @@
-//! Which effect is missing: the screen, the search, classes, confidence, and what to measure next.
+//! Diagnosis of the missing effect: the screen, the search, classes of indistinguishable effects, confidence,
+//! and the next measurement.
 
 pub(crate) mod averaged;
 pub(crate) mod averaged_data;

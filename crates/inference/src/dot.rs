@@ -1,6 +1,7 @@
 //! Sums of products.
 
-/// Sum of the products of two series as long as the shorter one, in eight interleaved parts, which are added at once.
+/// Sum of the products of two series, over the length of the shorter one. Eight interleaved partial sums are
+/// added at once.
 pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     let length = a.len().min(b.len());
     let (mut a, mut b) = (a[..length].chunks_exact(8), b[..length].chunks_exact(8));

@@ -1,4 +1,4 @@
-//! Why a comparison or a fit can't be made.
+//! Reasons why a comparison or a fit is impossible.
 
 use bulge_model::ModelError;
 use bulge_muscles::{Fault, FileError};
@@ -9,27 +9,27 @@ pub enum InferenceError {
     /// No rows are left.
     #[error("no rows are left to compare with: {left_out}")]
     NoRows {
-        /// Why they were left out.
+        /// Why the rows were left out.
         left_out: String,
     },
-    /// The muscle states other specimens than were measured.
+    /// The specimens that the muscle file states are not those that were measured.
     #[error(transparent)]
     Specimens(Box<FileError>),
-    /// More numbers than rows.
+    /// There are more free parameters than rows.
     #[error("{numbers} numbers can't be fitted to {rows} rows; measure more, or fit fewer effects at once")]
     TooFewRows {
         /// Rows that count.
         rows: usize,
-        /// Numbers to fit.
+        /// Parameters to fit.
         numbers: usize,
     },
-    /// All rows are the same, and something is to be fitted.
+    /// All rows are identical, so that nothing can be fitted.
     #[error("all {rows} rows are identical: nothing can be fitted to a single point")]
     Identical {
-        /// How many.
+        /// Number of rows.
         rows: usize,
     },
-    /// The contractions are impossible: the data are those of another muscle, or in another unit.
+    /// The contractions are impossible: the data belong to another muscle or are in another unit.
     #[error(
         "the muscle doesn't match the data: the contraction at {lines} is {:.1} % of the {:.1} mm of {muscle}; check `length` in the muscle file, and the \
          unit and the zero of the data{meant}", 100.0 * contraction, 1e3 * length_m
@@ -54,25 +54,25 @@ pub enum InferenceError {
         /// What it needs.
         needs: &'static str,
     },
-    /// Something is stated of a number that no fit changes.
+    /// A value, bound or tie is stated for a parameter that no fit changes.
     #[error("`{number}` is {says}, but it isn't fitted: {instead}")]
     Restriction {
-        /// The number, `effect.name`.
+        /// The parameter, `effect.name`.
         number: String,
-        /// `held`, `bounded` or `tied`.
+        /// What is stated of it: `held`, `bounded` or `tied`.
         says: &'static str,
-        /// Why it isn't, and what to do.
+        /// Why no fit changes it, and what to do.
         instead: String,
     },
-    /// The table `[fitted]` of a muscle file isn't about this muscle.
+    /// The table `[fitted]` of a muscle file doesn't belong to this muscle.
     #[error("`{number}` in the table `[fitted]`: {why}; fit again, or take the table out")]
     Fitted {
-        /// The number, `effect.key`.
+        /// The parameter, `effect.key`.
         number: String,
-        /// What doesn't agree.
+        /// What disagrees.
         why: String,
     },
-    /// A protocol that nobody can carry out, or with this muscle.
+    /// The protocol can't be carried out, at all or with this muscle.
     #[error("{what}; {instead}")]
     Protocol {
         /// What is wrong.
@@ -80,12 +80,12 @@ pub enum InferenceError {
         /// What to write or do instead.
         instead: String,
     },
-    /// The model has no prediction.
+    /// The model can't make a prediction.
     #[error("{what}{source}")]
     Model {
-        /// The lines, if rows are to blame: `lines 12, 33-40: `.
+        /// The lines, if rows are to blame: `lines 12, 33-40: `. Otherwise empty.
         what: String,
-        /// What it says.
+        /// The model's own error.
         source: Box<ModelError>,
     },
     /// The noise of a record can't be described or whitened.
@@ -94,7 +94,7 @@ pub enum InferenceError {
 }
 
 impl InferenceError {
-    /// Whose fault it is.
+    /// The kind of the error: wrong input, no solution, or a search that failed.
     #[must_use]
     pub fn fault(&self) -> Fault {
         if let Self::Model { source, .. } = self { source.fault() } else { Fault::Input }
@@ -102,7 +102,7 @@ impl InferenceError {
 }
 
 impl From<ModelError> for InferenceError {
-    /// Of something planned: there are no lines of a file to name.
+    /// For planned rows: there are no lines of a file to name.
     fn from(source: ModelError) -> Self {
         Self::Model { what: String::new(), source: Box::new(source) }
     }

@@ -1,16 +1,21 @@
-//! Model against measurement: fits, the ladder of errors, and which physical effect is missing.
+//! Parameter estimation and model criticism: fits, the ladder of errors, and the diagnosis of the missing
+//! effect.
 //!
-//! - `fit`: the free numbers of a model, with intervals and warnings ([`Fit`]),
-//! - `comparison`: [`compare`] climbs the ladder: the base as stated, then one effect after the other, each rung fitted together with what the rig's data sheets
-//!   leave open, with its error on the data and on held-out pressures, and the noise floor; [`fit_effects`] is the last rung alone,
-//! - `noise`: the law of the noise ([`NoiseLaw`]) and how it is taken out ([`Whitening`]),
-//! - `diagnosis`: [`diagnose`] finds what is missing, [`plan`] what a test would show,
-//! - `prediction`: [`predict`] gives the force of new rows, with intervals by what a fit knows of the numbers,
-//! - `protocol`: what a test bench does ([`Protocol`]) and would measure ([`simulate`]).
+//! - `fit`: the free parameters of a model, with intervals and warnings ([`Fit`]).
+//! - `comparison`: [`compare`] climbs the ladder. It starts with the base model as stated and adds one effect
+//!   at a time. Each rung is refitted together with what the rig's data sheets leave open, and reports its
+//!   error on the data, its error on held-out pressures, and the noise floor. [`fit_effects`] fits the last
+//!   rung alone.
+//! - `noise`: the law of the noise ([`NoiseLaw`]) and the whitening of residuals ([`Whitening`]).
+//! - `diagnosis`: [`diagnose`] finds the effect that is missing; [`plan`] predicts what a test would show.
+//! - `prediction`: [`predict`] gives the force at new rows, with intervals from the uncertainty that a fit
+//!   has left in the parameters.
+//! - `protocol`: what a test bench does ([`Protocol`]) and what it would measure ([`simulate`]).
 //!
-//! Results are plain values that text, JSON and report are functions of. `noise` knows none of the others, `fit` only `noise`; `diagnosis` knows them all.
+//! Results are plain values; text, JSON and the report are functions of them. `noise` depends on none of the
+//! other modules, `fit` only on `noise`, and `diagnosis` on all of them.
 //!
-//! Deliberately absent: equilibria (it asks `bulge-model`), files to write, plots.
+//! Deliberately absent: equilibria (`bulge-model` solves them), writing files, plots.
 
 mod chebyshev;
 mod comparison;

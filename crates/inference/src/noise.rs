@@ -1,4 +1,4 @@
-//! Noise of readings: its law, found from what a saturated model leaves, and how it is taken out.
+//! Noise of the readings: its law, estimated from the residuals of a saturated model, and whitening.
 
 pub(crate) mod error;
 pub(crate) mod estimate;

@@ -1,4 +1,4 @@
-//! A (learnt) muscle on new rows: the force of each, and how sure it is.
+//! Prediction of the force at new rows by a muscle, which may have been fitted, with its uncertainty.
 
 pub(crate) mod document;
 pub(crate) mod predict;

@@ -1,45 +1,45 @@
-//! How far a long computation is: told to whoever asked.
+//! Progress of a long computation, reported to a callback.
 
 use std::fmt;
 use std::sync::Arc;
 
-/// Called with the share that is done, 0 to 1, and what is going on.
+/// Called with the fraction that is done, 0 to 1, and what is going on.
 type Told = Arc<dyn Fn(f64, &str) + Send + Sync>;
 
 /// Called often, from several threads.
 type Beat = Arc<dyn Fn() + Send + Sync>;
 
-/// Who is told how far it is; nobody by default.
+/// Callbacks for the progress of a computation; none by default.
 #[derive(Clone, Default)]
 pub struct Progress {
     told: Option<Told>,
     beat: Option<Beat>,
 }
 
-/// Nobody.
+/// No callbacks.
 pub(crate) static NOBODY: Progress = Progress { told: None, beat: None };
 
 impl Progress {
-    /// Tells a function the share that is done, 0 to 1, and what is going on.
+    /// Reports the fraction that is done, 0 to 1, and what is going on to a function.
     pub fn to(told: impl Fn(f64, &str) + Send + Sync + 'static) -> Self {
         Self { told: Some(Arc::new(told)), beat: None }
     }
 
-    /// Also calls a function before each of the many fits that the work consists of, from several threads: a place from which a caller who has
-    /// given up may unwind it.
+    /// Also calls a function before each of the many fits that the work consists of, from several threads. A
+    /// caller who has given up may unwind the computation from there.
     #[must_use]
     pub fn beating(self, beat: impl Fn() + Send + Sync + 'static) -> Self {
         Self { beat: Some(Arc::new(beat)), ..self }
     }
 
-    /// One more fit begins.
+    /// Signals that one more fit begins.
     pub(crate) fn beat(&self) {
         if let Some(beat) = &self.beat {
             beat();
         }
     }
 
-    /// Tells.
+    /// Reports the fraction that is done.
     pub(crate) fn at(&self, share: f64, what: &str) {
         if let Some(told) = &self.told {
             told(share, what);

@@ -1,4 +1,4 @@
-//! Test benches: what they do, what they would measure, and what is hidden in it.
+//! Test benches: what they do, what they would measure, and the effects hidden in simulated measurements.
 
 pub(crate) mod bench;
 pub(crate) mod file;

@@ -1,4 +1,5 @@
-//! Which column is which quantity: as written, as the user says, else guessed; and what was taken for what.
+//! Assignment of columns to quantities: as written, as the user states, or else guessed. Also reports the
+//! result.
 
 use crate::column_map::{ColumnEntry, ColumnMap, IGNORE};
 use crate::dimension::Scale;
@@ -10,43 +11,43 @@ use crate::reading::{ColumnUse, ReadOptions};
 use crate::unit::{problem, unit};
 use bulge_muscles::units::UnitError;
 
-/// Columns beyond these aren't looked at, but where the user names them.
+/// Columns beyond this number are only read if the user names them.
 pub(crate) const MOST_COLUMNS: usize = 4096;
 
-/// What is known of the columns of a file before its rows are read.
+/// The header of a file before its rows are read.
 pub(crate) struct Header<'a> {
     pub(crate) file: &'a str,
     pub(crate) line: usize,
-    /// Headings as they are written.
+    /// Headings as written.
     pub(crate) names: &'a [String],
-    /// The row of units beneath, where there is one.
+    /// The row of units beneath, if there is one.
     pub(crate) units: Option<&'a [String]>,
     /// The first values of each column.
     pub(crate) first: &'a [Vec<String>],
 }
 
-/// Columns that are read, by place, and what each column of the file was taken for.
+/// Columns that are read, by index, and what each column of the file was taken for.
 pub(crate) struct Assignment {
     pub(crate) headings: Vec<Option<Heading>>,
     pub(crate) uses: Vec<ColumnUse>,
 }
 
-/// A column for a quantity.
+/// A column chosen for a quantity.
 struct Choice {
     place: usize,
     guess: Guess,
-    /// None: guessed.
+    /// The user's entry; none if the choice is a guess.
     entry: Option<ColumnEntry>,
 }
 
 impl Choice {
-    /// Whether its unit is written, or needn't be.
+    /// Whether its unit is written or not needed.
     fn has_unit(&self) -> bool {
         self.guess.unit.is_some() || assumed(self.guess.field).is_some()
     }
 }
 
-/// Decides, or says all that keeps it from deciding.
+/// Assigns the columns, or returns all complaints that prevent it.
 pub(crate) fn assign(header: &Header, options: &ReadOptions) -> Result<Assignment, MeasurementError> {
     let map = &options.columns;
     let mut complaints = Vec::new();
@@ -71,14 +72,14 @@ pub(crate) fn assign(header: &Header, options: &ReadOptions) -> Result<Assignmen
         chosen.extend(guessed(header, field, &open, &taken, &mut complaints));
     }
     settle_motion(&mut chosen);
-    // What an analysis can do without doesn't keep it from being read.
+    // A column that an analysis doesn't need is skipped if its unit is missing.
     chosen.retain(|choice| choice.entry.is_some() || !choice.guess.field.is_optional() || choice.has_unit());
     for (name, is_it) in [
         ("pressure", (|field| field == Field::Pressure) as fn(Field) -> bool),
         ("length` or `contraction", Field::is_motion),
         ("force", |field| field == Field::Force),
     ] {
-        // A quantity that was complained of already isn't missing as well.
+        // A quantity that already has a complaint isn't reported missing as well.
         let is_there = chosen.iter().any(|choice| is_it(choice.guess.field))
             || (name == "force" && options.force_may_lack);
         if !is_there && !complaints.iter().any(|complaint: &MeasurementError| complaint.is_about(name)) {
@@ -100,7 +101,7 @@ pub(crate) fn assign(header: &Header, options: &ReadOptions) -> Result<Assignmen
     Err(MeasurementError::NotAssigned { complaint, columns: assignment.uses })
 }
 
-/// The columns that the user names, and those that he wants ignored.
+/// The columns that the user names, and those to be ignored.
 fn stated(
     header: &Header,
     map: &ColumnMap,
@@ -152,14 +153,14 @@ fn stated(
     (chosen, ignored)
 }
 
-/// A unit in a heading whose name says nothing.
+/// The unit in a heading whose name isn't recognised.
 fn unit_in(field: Field, name: &str, beneath: Option<&str>) -> Option<crate::unit::Unit> {
     let inside = name.find(['[', '(']).map(|at| name[at + 1..].trim_end_matches([']', ')', ' ']));
     let tail = name.rsplit(['/', '_', ' ']).next();
     [beneath, inside, tail].into_iter().flatten().find_map(|text| unit(field, text))
 }
 
-/// The column that a user names: by its heading, by this without the unit, or by its number.
+/// The column that a user names: by its heading, by the heading without the unit, or by its number.
 fn find(header: &Header, column: &str) -> Result<usize, MeasurementError> {
     let plain = |text: &str| text.trim().to_lowercase();
     let bare = |text: &str| plain(text.split(['[', '(']).next().unwrap_or_default());
@@ -199,7 +200,7 @@ fn find(header: &Header, column: &str) -> Result<usize, MeasurementError> {
         return Err(MeasurementError::ColumnMap { what });
     }
     let slips = |name: &&String| strsim::damerau_levenshtein(&bare(name), without_unit);
-    // Any letter is one slip from a single one.
+    // A single letter is one typo away from any other, so names need more letters to be suggested.
     let letters = without_unit.chars().count();
     let is_near = |name: &&String| letters > 1 && slips(name) <= (letters / 3).max(1);
     let near = header.names.iter().min_by_key(slips).filter(is_near);
@@ -218,13 +219,13 @@ fn find(header: &Header, column: &str) -> Result<usize, MeasurementError> {
 pub(crate) fn has_named(header: &Header, column: &str) -> bool {
     !header.names.is_empty()
         && find(header, column).is_ok_and(|place| {
-            // A number is that of any header.
+            // A number matches the columns of any header.
             let bare = column.split('[').next().unwrap_or_default().trim();
             bare.parse::<usize>().is_err() || header.names[place].trim() == bare
         })
 }
 
-/// The headings of a file, at most as many as a message holds.
+/// The headings of a file, as many as fit in a message.
 fn listed(header: &Header) -> String {
     const MOST: usize = 15;
     let mut shown: Vec<String> =
@@ -235,7 +236,7 @@ fn listed(header: &Header) -> String {
     shown.join(", ")
 }
 
-/// The column that is probably the one of a quantity.
+/// The column that probably holds a quantity.
 fn guessed(
     header: &Header,
     field: Field,
@@ -254,7 +255,7 @@ fn guessed(
     let is_same = all.iter().all(|(place, _)| first(*place) == first(all[0].0));
     match all.as_slice() {
         [(place, guess)] => Some(Choice { place: *place, guess: (*guess).clone(), entry: None }),
-        // Each channel of a recorder has a time of its own, and all are the same.
+        // Recorders write the same time for each channel: take the first one.
         [(place, guess), ..] if field == Field::Time && (is_same || best < Strength::Exact) => {
             Some(Choice { place: *place, guess: (*guess).clone(), entry: None })
         }
@@ -268,12 +269,12 @@ fn guessed(
             });
             None
         }
-        // Which of them it is doesn't matter: none is read.
+        // Neither is read, so the ambiguity doesn't matter.
         _ if field.is_optional() || field.is_label() => None,
         _ => {
             let candidates = all.iter().map(|(place, _)| format!("`{}`", quoted(&header.names[*place])));
             let unit = all[0].1.unit.as_ref().map_or("UNIT", |unit| unit.name.as_str());
-            // Columns of one name are told apart by their numbers.
+            // Columns with the same name are named by their numbers.
             let is_unique = find(header, &header.names[all[0].0]).is_ok();
             let number = (all[0].0 + 1).to_string();
             let name = if is_unique { &header.names[all[0].0] } else { &number };
@@ -289,7 +290,7 @@ fn guessed(
     }
 }
 
-/// What to write behind `--columns`.
+/// The text to write after `--columns`.
 fn entry_text(field: Field, name: &str, unit: &str) -> String {
     let bare = name.split(['[', '(']).next().unwrap_or_default().trim();
     let bare = if bare.is_empty() { name } else { bare };
@@ -297,7 +298,8 @@ fn entry_text(field: Field, name: &str, unit: &str) -> String {
     format!("--columns \"{}={quotes}{}{quotes} [{unit}]\"", field.name(), quoted(bare)).replace("\"\"", "'\"")
 }
 
-/// One motion: the surest, else the length (most rigs measure it), and beside it a contraction that may have been computed from it.
+/// Keeps one motion: the surest guess, otherwise the length, which most rigs measure. A contraction beside it
+/// stays, because it may have been computed from the length.
 fn settle_motion(chosen: &mut Vec<Choice>) {
     let motions = chosen.iter().filter(|choice| choice.guess.field.is_motion());
     let Some(best) = motions.map(|choice| choice.guess.strength).max() else { return };
@@ -313,14 +315,14 @@ fn missing(header: &Header, name: &'static str) -> MeasurementError {
         "force" => Field::Force,
         _ => Field::Length,
     };
-    // Its name may be there, with a unit of something else.
+    // The name may be there, with a unit of another quantity.
     let motions = [Field::Length, Field::Contraction, Field::Displacement];
     let fields = if field.is_motion() { &motions[..] } else { std::slice::from_ref(&field) };
     for name in header.names {
         let Some((bare, inside)) = name.split_once(['[', '(']) else { continue };
         let inside = inside.trim_end_matches([']', ')', ' ']);
         let by_name = |guess: &Guess| guess.strength > Strength::UnitAlone;
-        // A name that goes with its unit says something else.
+        // A name that fits its unit means something else.
         if guesses(name, None).iter().any(by_name) {
             continue;
         }
@@ -350,7 +352,7 @@ fn heading(header: &Header, choice: &Choice) -> Result<Heading, MeasurementError
     let scale = match &choice.guess.unit {
         Some(unit) if unit.is_absolute => unit.scale.above_air(),
         Some(unit) => unit.scale,
-        // A clock has no unit, and one day's times none that is written.
+        // Clock times have no unit; other times need one that is written or assumed.
         None => match assumed(field) {
             Some((scale, _)) => scale,
             None => match unknown_unit(header, field, name) {
@@ -372,7 +374,7 @@ fn heading(header: &Header, choice: &Choice) -> Result<Heading, MeasurementError
     })
 }
 
-/// What is wrong with the unit that stands in the brackets of a heading; none if there is none.
+/// The problem with the unit in the brackets of a heading; none without a unit.
 fn unknown_unit(header: &Header, field: Field, name: &str) -> Option<MeasurementError> {
     let (_, inside) = name.split_once('[')?;
     let inside = inside.trim_end_matches([']', ' ']);

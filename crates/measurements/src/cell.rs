@@ -1,4 +1,4 @@
-//! One field of a table as what its column holds, or why it isn't that.
+//! Parses one field of a table as its column requires, or returns why it can't.
 
 use crate::cell_error::CellError;
 use crate::quote::quoted;
@@ -9,17 +9,17 @@ pub(crate) fn number(text: &str) -> Result<f64, CellError> {
     if value.is_finite() { Ok(value) } else { Err(CellError::NotFinite { text: quoted(text) }) }
 }
 
-/// What stands between the whole number and its decimals.
+/// The decimal sign.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Decimal {
     Point,
-    /// A comma; points stand between thousands.
+    /// A comma; points separate thousands.
     Comma,
     /// A comma in some columns, a point in others.
     Either,
 }
 
-/// A finite number in whatever way people write one that can't be mistaken.
+/// A finite number in any spelling that is unambiguous.
 pub(crate) fn written(text: &str, decimal: Decimal) -> Result<f64, CellError> {
     let number = match decimal {
         Decimal::Comma if is_in_thousands(text) => return number(&text.replace('.', "")),
@@ -34,7 +34,7 @@ pub(crate) fn written(text: &str, decimal: Decimal) -> Result<f64, CellError> {
     }
 }
 
-/// Whether points stand where those between thousands do: 1.234 and 1.234.567, but not 0.234.
+/// Whether points are placed as between thousands: 1.234 and 1.234.567, but not 0.234.
 pub(crate) fn is_in_thousands(text: &str) -> bool {
     let mut groups = text.trim_start_matches(['+', '-']).split('.');
     let is_number = |group: &str| group.bytes().all(|byte| byte.is_ascii_digit());
@@ -43,7 +43,7 @@ pub(crate) fn is_in_thousands(text: &str) -> bool {
     is_first && text.contains('.') && groups.all(|group| group.len() == 3 && is_number(group))
 }
 
-/// Larger numbers are no measurements; up to here no square of a sum overflows.
+/// Larger numbers can't be measurements; up to this limit no square of a sum overflows.
 const LARGEST: f64 = 1e30;
 
 /// Whether a value in SI could have been measured.
@@ -62,7 +62,7 @@ pub(crate) fn whole(text: &str, decimal: Decimal) -> Result<i64, CellError> {
     text.parse::<i64>().or_else(|_| whole_of(written(text, decimal)?, text))
 }
 
-/// A whole number written as a number with a point, such as 3.0.
+/// A whole number written with a decimal point, such as 3.0.
 pub(crate) fn whole_of(value: f64, text: &str) -> Result<i64, CellError> {
     /// Whole numbers up to here are exact in a double.
     const LARGEST: f64 = 9_007_199_254_740_992.0;
@@ -119,21 +119,21 @@ fn no_number(text: &str) -> CellError {
 
 /// The number and the unit of a field that has both.
 pub(crate) fn with_unit(text: &str) -> Option<(f64, &str)> {
-    // The longest beginning that is a number; numbers are short.
+    // The longest prefix that is a number; numbers are short.
     let ends = text.char_indices().map(|(at, c)| at + c.len_utf8()).take(40);
     let number = |end: usize| text[..end].trim_end().parse::<f64>().ok().filter(|number| number.is_finite());
     let (end, number) = ends.filter_map(|end| Some((end, number(end)?))).last()?;
     let unit = text[end..].trim_start();
-    // 0x1F is no unit of x.
+    // 0x1F isn't a number with the unit x.
     let is_unit = unit.starts_with(|c: char| (c.is_alphabetic() && c != 'x') || "%\u{b0}".contains(c));
     is_unit.then_some((number, unit))
 }
 
-/// The same number without separators between thousands, with a decimal point, a plain minus and an `e`.
+/// The number without separators between thousands, with a decimal point, a plain minus and an `e`.
 fn respelt(text: &str) -> Option<String> {
     let separators = [' ', '\'', '\u{a0}', '\u{2009}', '\u{2019}', '\u{202f}', ',', '.'];
     let text = text.replace(['\u{2212}', '\u{2013}'], "-").replace(['D', 'd'], "e");
-    // The last point or comma is the decimal one, unless there are two of its kind.
+    // The last point or comma is the decimal sign, unless it occurs twice.
     let decimal = text.rfind(['.', ',']).filter(|at| text.matches(&text[*at..=*at]).count() == 1);
     let (whole, rest) = text.split_at(decimal.unwrap_or(text.len()));
     let mut groups = whole.split(separators);

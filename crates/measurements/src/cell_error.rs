@@ -1,94 +1,94 @@
-//! Why a field isn't what its column holds.
+//! Reasons why a field doesn't fit its column.
 
 use thiserror::Error;
 
-/// Why a field isn't what its column holds.
+/// Why a field doesn't fit its column.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum CellError {
-    /// Nothing there.
+    /// The field is empty.
     #[error("the field is empty: write the value, or leave out the row (or the column, if it is optional)")]
     Empty,
-    /// A comma within the number.
+    /// A decimal comma among numbers with points.
     #[error(
         "`{text}` has a decimal comma where the other numbers have points: write a point, or separate the columns with semicolons"
     )]
     DecimalComma {
-        /// What is written.
+        /// The text as written.
         text: String,
     },
-    /// Separators between thousands, a typographic minus, the D of Fortran.
+    /// Separators between thousands, a typographic minus, or the exponent letter D of Fortran.
     #[error("`{text}` is not spelt as numbers are read: write `{respelt}`")]
     Spelling {
-        /// What is written.
+        /// The text as written.
         text: String,
-        /// What it means.
+        /// The number that it means.
         respelt: f64,
     },
-    /// A number and a unit that isn't one of the column.
+    /// A number with a unit that doesn't suit the column.
     #[error("`{text}` has another unit than the column: write the number alone, in the unit of the header")]
     UnitInside {
-        /// What is written.
+        /// The text as written.
         text: String,
     },
     /// A time of day among other times.
     #[error("`{text}` is a time of day, unlike the first row: write all times in one way")]
     Clock {
-        /// What is written.
+        /// The text as written.
         text: String,
     },
-    /// Another time among times of day.
+    /// A number of seconds among times of day.
     #[error("`{text}` is no time of day, unlike the first row: write all times in one way")]
     NoClock {
-        /// What is written.
+        /// The text as written.
         text: String,
     },
-    /// A comment behind a field.
+    /// A comment after a field.
     #[error("`{text}` has a comment behind it: put the comment on a line of its own that begins with `#`")]
     Comment {
-        /// What is written.
+        /// The text as written.
         text: String,
     },
-    /// Bytes that are no text.
+    /// Bytes that are not text.
     #[error("the text is not UTF-8: store it as UTF-8")]
     NotUtf8,
     /// Text.
     #[error("`{text}` is not a number: write one such as `12.5` or `1.25e1`, or leave out the row")]
     NotANumber {
-        /// What is written.
+        /// The text as written.
         text: String,
     },
-    /// Infinite, not a number, or beyond what a double holds.
+    /// Infinite, not a number, or beyond the range of a double.
     #[error("`{text}` is not a finite number: leave out the row, or write what was read")]
     NotFinite {
-        /// What is written.
+        /// The text as written.
         text: String,
     },
-    /// Beyond anything that is measured.
+    /// Larger than any measurement.
     #[error(
         "`{text}` is larger than anything that is measured (1e30 in SI units): check the number and its unit"
     )]
     TooLarge {
-        /// What is written.
+        /// The text as written.
         text: String,
     },
-    /// No whole number.
+    /// Not a whole number.
     #[error("`{text}` is not a whole number: write a count such as `3`")]
     NotWhole {
-        /// What is written.
+        /// The text as written.
         text: String,
     },
-    /// No direction.
+    /// Not a direction.
     #[error(
         "`{text}` is not a direction: write `shortening`, `contracting`, `up` or `+1`; `lengthening`, `extending`, `down` or `-1`; `rest` or `0`"
     )]
     NotADirection {
-        /// What is written.
+        /// The text as written.
         text: String,
     },
 }
 
 impl CellError {
-    /// What is wrong, in short, to count by.
+    /// The kind of error in short, for counting.
     pub(crate) fn kind(&self) -> &'static str {
         match self {
             Self::Empty => "empty",
@@ -105,7 +105,7 @@ impl CellError {
         }
     }
 
-    /// What is written there, if anything is.
+    /// The text as written, if there is any.
     pub(crate) fn text(&self) -> Option<&str> {
         match self {
             Self::Empty | Self::NotUtf8 => None,

@@ -5,16 +5,16 @@ const DAY: f64 = 86_400.0;
 /// Seconds of an hour.
 const HOUR: f64 = 3600.0;
 
-/// A point in time: days since some day (none: only the clock is known), and seconds of the day.
+/// A point in time: days since a fixed day (none if only the clock time is known), and seconds of the day.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Instant {
     day: Option<i64>,
     seconds: f64,
-    /// After which a clock without a date begins again \[s\].
+    /// Period after which a clock without a date starts again \[s\].
     round: f64,
 }
 
-/// Turns points in time into seconds since the first of them.
+/// Converts points in time into seconds since the first of them.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Clock {
     first: Option<Instant>,
@@ -22,14 +22,14 @@ pub(crate) struct Clock {
 }
 
 impl Clock {
-    /// Seconds since the first; none if one has a date and the other hasn't.
+    /// Seconds since the first one; none if only one of the two has a date.
     pub(crate) fn since_start(&mut self, now: Instant) -> Option<f64> {
         let first = *self.first.get_or_insert(now);
         let seconds = now.seconds - first.seconds;
         let time = match (first.day, now.day) {
             (Some(start), Some(day)) => (day - start) as f64 * DAY + seconds,
             (None, None) => {
-                // A clock shows no date: if it goes back by more than half a round it went on.
+                // Without a date, a step back by more than half a period is a wrap-around.
                 let rounds = ((self.last - seconds) / now.round - 0.5).ceil().max(0.0);
                 seconds + rounds * now.round
             }
@@ -40,8 +40,8 @@ impl Clock {
     }
 }
 
-/// Reads "2026-03-01T12:00:01.5Z", "01.03.2026 12:00:01,5", "3/1/2026 1:02:03 PM", "12:00:01.5", "00:01:02", and the "01:02.5" of spreadsheets, which
-/// leave out the hour.
+/// Reads "2026-03-01T12:00:01.5Z", "01.03.2026 12:00:01,5", "3/1/2026 1:02:03 PM", "12:00:01.5", "00:01:02",
+/// and the "01:02.5" of spreadsheets, which leave out the hour.
 pub(crate) fn instant(text: &str) -> Option<Instant> {
     let text = text.trim();
     if !text.contains(':') || text.len() > 40 {
@@ -59,7 +59,7 @@ pub(crate) fn instant(text: &str) -> Option<Instant> {
     Some(Instant { day, seconds: seconds_of_day(clock)? - offset, round: DAY })
 }
 
-/// Minutes, and seconds with decimals: without these it would be hours and minutes.
+/// Minutes, and seconds with decimals; without decimals it would be hours and minutes.
 fn seconds_of_hour(clock: &str) -> Option<f64> {
     let (minutes, seconds) = clock.split_once(':')?;
     let (whole_seconds, decimals) = seconds.split_once(['.', ','])?;
@@ -68,7 +68,7 @@ fn seconds_of_hour(clock: &str) -> Option<f64> {
     Some(60.0 * f64::from(whole(minutes, 9999)?) + f64::from(whole(whole_seconds, 59)?) + decimals)
 }
 
-/// The clock without its time zone, and that in seconds.
+/// The clock time without its time zone, and the zone in seconds.
 fn without_zone(clock: &str) -> Option<(&str, f64)> {
     if let Some(utc) = clock.strip_suffix(['Z', 'z']) {
         return Some((utc.trim(), 0.0));
@@ -94,7 +94,7 @@ fn seconds_of_day(clock: &str) -> Option<f64> {
     let mut parts = clock.split(':');
     let (hours, minutes) = (whole(parts.next()?, 9999)?, whole(parts.next()?, 59)?);
     let seconds = parts.next().unwrap_or("0").replacen(',', ".", 1);
-    // "12:00:01:500" has milliseconds of its own.
+    // "12:00:01:500" has a separate field for milliseconds.
     let milliseconds = parts.next().map_or(Some(0), |text| whole(text, 999))?;
     let is_plain = seconds.starts_with(|c: char| c.is_ascii_digit());
     let seconds = seconds.parse::<f64>().ok().filter(|s| is_plain && (0.0..61.0).contains(s))?;
@@ -105,7 +105,7 @@ fn seconds_of_day(clock: &str) -> Option<f64> {
     Some(f64::from(hours) * 3600.0 + f64::from(minutes) * 60.0 + seconds + 1e-3 * f64::from(milliseconds))
 }
 
-/// Days since the first of March of the year 0.
+/// Days since 1 March of the year 0.
 fn days(date: &str) -> Option<i64> {
     let parts: Vec<&str> = date.split(['-', '/', '.']).collect();
     let [a, b, c] = parts.as_slice() else { return None };
@@ -114,7 +114,7 @@ fn days(date: &str) -> Option<i64> {
     let (year, month, day) = if a.len() == 4 {
         (first, second, third)
     } else if date.contains('/') && first <= 12 {
-        // With slashes the month is written first, unless it can't be one.
+        // With slashes the month comes first, unless the number can't be a month.
         (third, first, second)
     } else {
         (third, second, first)
@@ -123,7 +123,7 @@ fn days(date: &str) -> Option<i64> {
     if !(1..=12).contains(&month) || !(1..=31).contains(&day) {
         return None;
     }
-    // Years that begin in March end with the leap day.
+    // A year that starts in March ends with the leap day.
     let shifted = (month + 9) % 12;
     let year = year - i64::from(month <= 2);
     Some(
@@ -168,7 +168,7 @@ mod tests {
             assert_eq!(seconds(&texts), [Some(0.0), Some(1.5)], "{texts:?}");
         }
         assert_eq!(seconds(&["2024-02-28 00:00:00", "2024-03-01 00:00"]), [Some(0.0), Some(172_800.0)]);
-        // A clock that is read backwards doesn't pass midnight.
+        // A clock that goes back a little hasn't passed midnight.
         assert_eq!(seconds(&["12:00:10", "12:00:05"]), [Some(0.0), Some(-5.0)]);
         for text in
             ["12", "12:61:00", "a:b", "2026-13-01 12:00", "12:00:-1", "::", "12:00:00:00:00", "1:2:nan"]

@@ -1,10 +1,10 @@
-//! What a user says that columns are: `force=Force_N [N], pressure=P1 [psi]`.
+//! Columns as the user states them: `force=Force_N [N], pressure=P1 [psi]`.
 
 use crate::error::MeasurementError;
 use crate::heading::Field;
 use crate::quote::quoted;
 
-/// Which column is which quantity, where a file doesn't say it or says it wrongly.
+/// Assigns columns to quantities where a file doesn't state them or states them wrongly.
 ///
 /// ```
 /// use bulge_measurements::ColumnMap;
@@ -18,13 +18,13 @@ pub struct ColumnMap(Vec<ColumnEntry>);
 /// One quantity and its column.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ColumnEntry {
-    /// The quantity, such as `force`; `ignore` for a column that isn't read.
+    /// The quantity, such as `force`; `ignore` if the column isn't to be read.
     pub quantity: String,
-    /// The heading of the column with or without its unit, or its number, counted from 1.
+    /// The heading of the column, with or without its unit, or its number, counted from 1.
     pub column: String,
-    /// Its unit, where one is given.
+    /// Its unit, if one is given.
     pub unit: Option<String>,
-    /// Whether it counts the other way: written as a minus before the column.
+    /// Whether its sign is reversed, written as a minus before the column.
     pub is_reversed: bool,
 }
 
@@ -35,10 +35,11 @@ impl ColumnMap {
         &self.0
     }
 
-    /// One entry, from its two sides: `force` and `Force_N [N]`.
+    /// Adds an entry from its two sides: `force` and `Force_N [N]`.
     ///
     /// # Errors
-    /// If the quantity isn't one, has a column already, or the column is one of another quantity.
+    /// If the quantity doesn't exist or already has a column, or if the column already belongs to another
+    /// quantity.
     pub fn add(&mut self, quantity: &str, column: &str) -> Result<(), MeasurementError> {
         let wrong = |what: String| Err(MeasurementError::ColumnMap { what });
         let quantity = quantity.trim().to_lowercase().replace([' ', '-'], "_");
@@ -53,7 +54,7 @@ impl ColumnMap {
             ));
         }
         let column = column.trim();
-        // A heading may begin with a minus of its own; then it is quoted.
+        // A heading that begins with a minus of its own has to be quoted.
         let (is_reversed, column) =
             column.strip_prefix('-').map_or((false, column), |rest| (true, rest.trim()));
         let column = column.strip_prefix('"').and_then(|rest| rest.strip_suffix('"')).unwrap_or(column);
@@ -78,7 +79,7 @@ impl ColumnMap {
         Ok(())
     }
 
-    /// These entries, and those of another for quantities and columns that these don't name.
+    /// These entries, completed by those of another map for quantities and columns that these don't name.
     #[must_use]
     pub fn or(mut self, other: &Self) -> Self {
         let is_new = |entry: &&ColumnEntry| {
@@ -119,7 +120,7 @@ impl std::str::FromStr for ColumnMap {
     }
 }
 
-/// The text between commas that stand outside of brackets and quotes.
+/// The parts between commas outside brackets and quotes.
 fn parts(text: &str) -> Vec<&str> {
     let (mut found, mut start, mut depth, mut is_quoted) = (Vec::new(), 0, 0_i32, false);
     for (at, c) in text.char_indices() {

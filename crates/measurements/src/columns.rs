@@ -1,9 +1,9 @@
-//! The columns of a data set in SI: what a file is read into, and what a program hands over.
+//! The columns of a data set in SI units: the result of reading a file, and the input from a program.
 
 use crate::error::MeasurementError;
 use std::collections::HashMap;
 
-/// How the motion of the muscle was measured.
+/// The measured motion of the muscle.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Trace {
     /// Contraction 1 - l/l0.
@@ -13,7 +13,7 @@ pub enum Trace {
 }
 
 impl Trace {
-    /// The values, whatever they are.
+    /// The values, whichever they are.
     #[must_use]
     pub fn values(&self) -> &[f64] {
         match self {
@@ -28,7 +28,7 @@ impl Trace {
     }
 }
 
-/// A text per row, each different text stored once.
+/// A text per row; each distinct text is stored once.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Labels {
     names: Vec<String>,
@@ -54,13 +54,13 @@ impl Labels {
         self.rows.push(place);
     }
 
-    /// The different labels in the order in which they appear.
+    /// The distinct labels in the order of their first appearance.
     #[must_use]
     pub fn names(&self) -> &[String] {
         &self.names
     }
 
-    /// For each row, the place of its label in [`Labels::names`].
+    /// For each row, the index of its label in [`Labels::names`].
     #[must_use]
     pub fn rows(&self) -> &[u32] {
         &self.rows
@@ -85,7 +85,8 @@ impl<S: AsRef<str>> FromIterator<S> for Labels {
     }
 }
 
-/// The columns of a data set, in SI, one value per row. Make it with [`Columns::new`], then fill in what else was measured.
+/// The columns of a data set, in SI, one value per row. Create it with [`Columns::new`], then set the
+/// optional columns.
 ///
 /// ```
 /// use bulge_measurements::{Columns, Data, Trace};
@@ -117,14 +118,14 @@ pub struct Columns {
     pub cycle: Option<Vec<i64>>,
     /// Stated direction: +1 shortening, -1 lengthening, 0 at rest.
     pub direction: Option<Vec<i8>>,
-    /// Label of the uninterrupted run.
+    /// Label of the uninterrupted run that the row belongs to.
     pub sweep: Option<Labels>,
-    /// Name of the specimen; absent: one specimen, "1".
+    /// Name of the specimen; if absent, there is one specimen, "1".
     pub specimen: Option<Labels>,
 }
 
 impl Columns {
-    /// The columns that every data set has.
+    /// The mandatory columns of a data set.
     #[must_use]
     pub fn new(pressure_pa: Vec<f64>, motion: Trace, force_n: Vec<f64>) -> Self {
         Self {
@@ -148,7 +149,7 @@ impl Columns {
         self.pressure_pa.len()
     }
 
-    /// Every column of numbers with its name.
+    /// Every numeric column with its name.
     pub(crate) fn numbers(&self) -> impl Iterator<Item = (&'static str, &[f64])> {
         let motion = match &self.motion {
             Trace::Contraction(values) => ("contraction", values.as_slice()),
@@ -177,7 +178,7 @@ impl Columns {
         counts.into_iter().filter_map(|(name, count)| Some((name, count?)))
     }
 
-    /// Adds the rows of another file. `names` are those of the files, for the message.
+    /// Appends the rows of another file. `names` are the names of the two files, for the message.
     pub(crate) fn append(&mut self, other: &Self, names: [&str; 2]) -> Result<(), MeasurementError> {
         fn both<T: Clone>(
             name: &'static str,
@@ -215,7 +216,7 @@ impl Columns {
                 return Err(differ("sweep", with, without));
             }
         }
-        // A file without specimens is about specimen "1".
+        // A file without specimens belongs to specimen "1".
         if self.specimen.is_some() || other.specimen.is_some() {
             let ones = |rows| std::iter::repeat_n("1", rows).collect::<Labels>();
             let rows = self.len();

@@ -1,7 +1,7 @@
-//! Text: metadata, comments, a header, units beneath, rows; every defect is one message with its line.
+//! Reads text: metadata, comments, a header, units beneath, rows. Every defect is one message with its line.
 //!
-//! Read by lines rather than by records: comments, blank lines and line breaks of any kind keep their true line numbers,
-//! and a quote that is never closed spoils its own line instead of a field with the rest of the file in it.
+//! The text is read by lines rather than by records. In this way comments, blank lines and line breaks of any
+//! kind keep their true line numbers, and a quote that is never closed only spoils its own line.
 
 use crate::assignment::{Header, assign};
 use crate::encoding;
@@ -25,14 +25,14 @@ pub(crate) fn read(file: &str, bytes: &[u8], options: &ReadOptions) -> Result<Ta
     Ok(table)
 }
 
-/// Reads the lines of a text, with a separator that is known or has to be found.
+/// Reads the lines of a text; the separator is given or detected.
 pub(crate) fn read_text(
     file: &str,
     text: &str,
     separator: Option<Separator>,
     options: &ReadOptions,
 ) -> Result<Table, MeasurementError> {
-    // A file without any line feed may have the carriage returns of old.
+    // A file without line feeds may use the old carriage returns.
     let line_end = if !text.contains('\n') && text.contains('\r') { '\r' } else { '\n' };
     let joined = layout::with_one_line_header(text, line_end);
     let text = joined.as_deref().unwrap_or(text);
@@ -46,7 +46,8 @@ pub(crate) fn read_text(
         first: &layout.first,
     };
     let assignment = assign(&header, options)?;
-    // A guess from the header's length; too small costs a few copies, too large only address space.
+    // Estimate from the length of the header. Too small an estimate costs a few copies, too large a one only
+    // address space.
     let rows =
         (text.len() / layout.names.iter().map(|name| name.len() + 1).sum::<usize>().max(1)).min(1 << 20);
     let (mut places, mut slots) = (Vec::new(), Vec::new());
@@ -116,7 +117,7 @@ pub(crate) fn read_text(
     draft.finish(file, options)
 }
 
-/// A header that can't be one: a single field, or numbers.
+/// Complains about an impossible header: a single field, or numbers.
 fn complain_of_header(file: &str, layout: &Layout) -> Result<(), MeasurementError> {
     let line = layout.line;
     if line == 0 {
@@ -219,7 +220,7 @@ mod tests {
         refuses(&vec![b'p'; 2_000_000], Some(1), &["2000000 bytes"]);
     }
 
-    /// A row that can't be used is set apart with its line and its reason, and the others are read.
+    /// An unusable row is set apart with its line and its reason, and the others are read.
     #[test]
     fn rows_that_can_not_be_used() {
         for (row, reason) in [
@@ -244,12 +245,13 @@ mod tests {
             let shown: Vec<_> = table.reading.set_apart.iter().map(|s| (s.row, s.reason.as_str())).collect();
             assert_eq!((shown, table.reading.set_apart_rows), (vec![(3, reason)], 1));
         }
-        // What is meant is certain here.
+        // The meaning is unambiguous here.
         let table = reads(&format!("{HEADER}20 kPa,0.3 m,10 N\n\u{2212}1,290,\"1,234.5\"\n"));
         assert_eq!((table.columns.pressure_pa, table.columns.force_n), (vec![2e4, -1e5], vec![10.0, 1234.5]));
     }
 
-    /// More than a fifth: one message with all reasons, counted, and their first lines.
+    /// With more than a fifth of such rows there is one message with all reasons, counted, and their first
+    /// lines.
     #[test]
     fn too_many_rows_that_can_not_be_used() {
         let good = "1,300,10\n".repeat(8);
@@ -269,7 +271,7 @@ mod tests {
             None,
             &["1 x more fields than the header (line 2)", "decimal commas"],
         );
-        // Columns that aren't needed go instead of the rows.
+        // Optional columns are dropped instead of rows.
         let table =
             reads("pressure [bar],length [mm],force [N],volume [ml]\n1,300,10,\n2,290,20,x\n2,280,30,5\n");
         assert_eq!((table.columns.force_n.len(), table.columns.volume_m3), (3, None));

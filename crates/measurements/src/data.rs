@@ -12,7 +12,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// How the motion was measured, as measured.
+/// The motion, as it was measured.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Motion<'a> {
     /// Contraction 1 - l/l0.
@@ -23,11 +23,13 @@ pub enum Motion<'a> {
 
 /// A set of measurements: at least pressure, motion and force of each row, all finite, in SI.
 ///
-/// Rows with a time or a sweep label are a path: they follow each other, and [`Data::history`] says how the muscle moved. Without both
-/// they are a static map. Sweeps are the runs with one label; without labels a new one begins with another file or specimen, where the
-/// time goes back or pauses for more than 20 times the median time between rows, and where the pressure steps from one isobaric run to another: stretches of constant
-/// pressure (within 8 % of the largest) over which the muscle is driven and its force changes. Steps of pressure at held length or under a weight begin none.
-/// A label is believed unless its rows contradict it in one of these ways but for pauses; then it falls into parts, and [`Data::quality`] says so.
+/// Rows with a time or a sweep label form a path: they follow each other, and [`Data::history`] describes the
+/// motion. Without both they are a static map. Sweeps are the runs with one label. Without labels a new sweep
+/// begins with another file or specimen, where the time goes back or pauses for more than 20 times the median
+/// time between rows, and where the pressure steps from one isobaric run to another. Isobaric runs are
+/// stretches of constant pressure (within 8 % of the largest) over which the muscle is driven and its force
+/// changes; pressure steps at held length or under a weight begin none. A label whose rows contradict it in
+/// one of these ways, pauses excepted, is split, and [`Data::quality`] reports it.
 ///
 /// ```
 /// use bulge_measurements::{Data, SweepKind};
@@ -50,28 +52,30 @@ pub struct Data {
     files: Vec<SourceFile>,
     lines: Vec<u32>,
     specimens: Vec<String>,
-    /// Unpressurised length of each specimen \[m\], where it is not the muscle's; empty if none has its own.
+    /// Unpressurised length of each specimen \[m\] if it differs from the muscle's; empty if none differs.
     lengths: Vec<Option<f64>>,
     sweeps: Vec<Sweep>,
-    /// Rows of steps of pressure between isobaric runs, in ascending order.
+    /// Rows of pressure steps between isobaric runs, in ascending order.
     between: Vec<usize>,
-    /// Where a stated sweep contradicts itself.
+    /// Rows at which a stated sweep contradicts itself.
     pub(crate) contradictions: Vec<(usize, Contradiction)>,
     reading: Reading,
     pub(crate) structure: Structure,
 }
 
 impl Data {
-    /// Reads files of text, Excel, MATLAB or Parquet, which their first bytes tell apart; `-` is standard input. Several files are one analysis; they
-    /// need the same columns, and their sweeps are distinct. Without a column `specimen` all is about specimen "1".
+    /// Reads text, Excel, MATLAB or Parquet files, recognised by their first bytes; `-` is standard input.
+    /// Several files form one analysis; they need the same columns, and their sweeps are distinct. Without a
+    /// column `specimen` there is one specimen, "1".
     ///
     /// # Errors
-    /// If a file can't be read or isn't a table of measurements: the message names file, line, column and cure of all that is wrong.
+    /// If a file can't be read or isn't a table of measurements. The message gives file, line, column and
+    /// remedy of every defect.
     pub fn read(paths: &[impl AsRef<Path>]) -> Result<Self, MeasurementError> {
         Self::read_with(paths, &ReadOptions::default())
     }
 
-    /// The same, where it is known which column is which, or how long the muscle is.
+    /// Reads files with options, such as the assignment of columns or the muscle's length.
     ///
     /// # Errors
     /// As [`Data::read`].
@@ -81,10 +85,10 @@ impl Data {
         Self::read_named(&files, options)
     }
 
-    /// The same of files that people know by other names than the paths at which they lie.
+    /// Reads files whose displayed names differ from their paths.
     ///
     /// # Errors
-    /// As [`Data::read`]; messages call the files by their names.
+    /// As [`Data::read`]; messages use the displayed names.
     pub fn read_named(files: &[(String, PathBuf)], options: &ReadOptions) -> Result<Self, MeasurementError> {
         let mut all: Option<Self> = None;
         let mut complaints = Vec::new();
@@ -101,7 +105,7 @@ impl Data {
         all.map(Self::structured).ok_or(MeasurementError::NoFile)
     }
 
-    /// Reads CSV; `origin` is the name that messages give it.
+    /// Reads CSV; `origin` is its name in messages.
     ///
     /// # Errors
     /// If it isn't a table of measurements.
@@ -109,10 +113,10 @@ impl Data {
         Self::from_bytes(text.as_bytes(), origin, &ReadOptions::default())
     }
 
-    /// Reads the bytes of a file of any kind but Parquet; `origin` is the name that messages give it.
+    /// Reads the bytes of a file of any kind but Parquet; `origin` is its name in messages.
     ///
     /// # Errors
-    /// If they are no table of measurements.
+    /// If they are not a table of measurements.
     pub fn from_bytes(bytes: &[u8], origin: &str, options: &ReadOptions) -> Result<Self, MeasurementError> {
         Ok(Self::start(Source::bytes(origin, bytes, options)?).structured())
     }
@@ -125,7 +129,7 @@ impl Data {
         Ok(Self::start(Source::columns(columns)?).structured())
     }
 
-    /// One file; specimens and sweeps come with `structured`.
+    /// Starts with one file; specimens and sweeps are found in `structured`.
     fn start(source: Source) -> Self {
         Self {
             columns: Arc::new(source.table.columns),
@@ -217,7 +221,7 @@ impl Data {
                 };
                 sweep.kind = sweep::kind(&path, scale);
                 pressure_stretches.push(filling);
-                // The rig gives way a little, and the length reading scatters: that is no motion of the muscle.
+                // At held length, the compliance of the rig and the scatter of the readings are no motion.
                 let rest = || vec![Stretch { rows: sweep.rows.clone(), direction: 0 }];
                 stretches.push(if sweep.kind == SweepKind::Isometric { rest() } else { found });
             }
@@ -226,13 +230,13 @@ impl Data {
         self
     }
 
-    /// Whether rows follow each other: they have a time or a sweep label.
+    /// Whether rows follow each other, because they have a time or a sweep label.
     #[must_use]
     pub fn is_path(&self) -> bool {
         self.columns.time_s.is_some() || self.columns.sweep.is_some()
     }
 
-    /// What grows when the muscle shortens: the contraction, or the negative length \[m\].
+    /// A quantity that grows when the muscle shortens: the contraction, or the negative length \[m\].
     pub(crate) fn shortening(&self) -> Vec<f64> {
         match &self.columns.motion {
             Trace::Contraction(values) => values.clone(),
@@ -240,7 +244,8 @@ impl Data {
         }
     }
 
-    /// The same of specimens that have unpressurised lengths of their own \[m\]: where a length `l0` is asked for below, it is that of the others.
+    /// The data with unpressurised lengths for some specimens \[m\]. A length `l0` in other methods is then
+    /// that of the remaining specimens.
     ///
     /// ```
     /// use bulge_measurements::Data;
@@ -255,13 +260,14 @@ impl Data {
         self
     }
 
-    /// Unpressurised length of a specimen \[m\], by its place in [`Data::specimens`]; `l0` where it has none of its own.
+    /// Unpressurised length of a specimen \[m\], by its index in [`Data::specimens`]; `l0` if it has none of
+    /// its own.
     #[must_use]
     pub fn length_of(&self, specimen: u32, l0: f64) -> f64 {
         self.lengths.get(specimen as usize).copied().flatten().unwrap_or(l0)
     }
 
-    /// What a shortening of 1 is as a contraction, for a specimen of a muscle of length `l0`.
+    /// Contraction per unit of shortening, for a specimen of a muscle of length `l0`.
     pub(crate) fn contraction_per_shortening(&self, specimen: u32, l0: f64) -> f64 {
         match &self.columns.motion {
             Trace::Contraction(_) => 1.0,
@@ -275,7 +281,7 @@ impl Data {
         self.columns.len()
     }
 
-    /// Whether no row is left, which only [`Data::subset`] can bring about.
+    /// Whether no row is left, which is only possible after [`Data::subset`].
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
@@ -296,7 +302,8 @@ impl Data {
         }
     }
 
-    /// Contraction of each row, 1 - l/l0 where the length was measured. `l0` is the length of the unpressurised muscle \[m\], > 0.
+    /// Contraction of each row, 1 - l/l0 if the length was measured. `l0` is the unpressurised length \[m\],
+    /// > 0.
     #[must_use]
     pub fn contraction(&self, l0: f64) -> Vec<f64> {
         match &self.columns.motion {
@@ -315,13 +322,13 @@ impl Data {
         &self.columns.force_n
     }
 
-    /// Whether every file has a column of force; without it forces are 0, where [`ReadOptions::force_may_lack`] lets such files in.
+    /// Whether every file has a force column. Without it forces are 0, see [`ReadOptions::force_may_lack`].
     #[must_use]
     pub fn has_force(&self) -> bool {
         let uses = &self.reading.columns;
         let has = |file: &SourceFile| {
             let mut own = uses.iter().filter(|used| used.file == file.name).peekable();
-            // Columns of a program come without headings.
+            // The columns of a program have no headings.
             own.peek().is_none() || own.any(|used| used.quantity.as_deref() == Some("force"))
         };
         self.files.iter().all(has)
@@ -363,38 +370,39 @@ impl Data {
         self.columns.cycle.as_deref()
     }
 
-    /// Direction of each row as stated: +1 shortening, -1 lengthening, 0 at rest. How it moved is in [`Data::history`].
+    /// Stated direction: +1 shortening, -1 lengthening, 0 at rest. The observed one is in [`Data::history`].
     #[must_use]
     pub fn stated_direction(&self) -> Option<&[i8]> {
         self.columns.direction.as_deref()
     }
 
-    /// The place of a row's specimen in [`Data::specimens`].
+    /// Index of a row's specimen in [`Data::specimens`].
     #[must_use]
     pub fn specimen_of(&self, row: usize) -> u32 {
         self.columns.specimen.as_ref().and_then(|labels| labels.rows().get(row)).map_or(0, |place| *place)
     }
 
-    /// Names of the specimens, in the order in which they appear.
+    /// Names of the specimens in the order of their first appearance.
     #[must_use]
     pub fn specimens(&self) -> &[String] {
         &self.specimens
     }
 
-    /// The sweeps, in order; their rows follow each other and are all rows.
+    /// The sweeps in order; they cover all rows without gaps.
     #[must_use]
     pub fn sweeps(&self) -> &[Sweep] {
         &self.sweeps
     }
 
-    /// Rows of steps of pressure from one isobaric run to the next within a recording, in ascending order: they belong to the run that they lead to, or are one
-    /// of their own, and lie on no isobar.
+    /// Rows of pressure steps between isobaric runs of a recording, in ascending order. They belong to the
+    /// next run or form a run of their own, and lie on no isobar.
     #[must_use]
     pub fn between_isobars(&self) -> &[usize] {
         &self.between
     }
 
-    /// Index of the file of a row, and its line there (CSV) or its number (Parquet), counted from 1; line 0 if there is no such row.
+    /// Index of the file of a row, and its line there (CSV) or its number (Parquet), counted from 1; line 0
+    /// if there is no such row.
     #[must_use]
     pub fn line(&self, row: usize) -> (usize, usize) {
         let mut end = 0;
@@ -417,13 +425,13 @@ impl Data {
         &self.reading
     }
 
-    /// Rows that can't be used and aren't among those of the data, with their reasons: the first [`Reading::MOST_LISTED`].
+    /// Unusable rows, which aren't part of the data, with their reasons: the first [`Reading::MOST_LISTED`].
     #[must_use]
     pub fn set_apart(&self) -> &[SetApart] {
         &self.reading.set_apart
     }
 
-    /// SHA-256 of the file, in hexadecimal; of several files, that of their digests written one after another.
+    /// SHA-256 of the file in hexadecimal; for several files, that of their concatenated digests.
     #[must_use]
     pub fn sha256(&self) -> String {
         match self.files.as_slice() {
@@ -434,10 +442,10 @@ impl Data {
         }
     }
 
-    /// The rows that are kept, as a data set of its own; a row beyond `keep` is not kept.
+    /// The rows with `keep` as a data set of its own; rows beyond the end of `keep` are dropped.
     ///
-    /// A sweep that loses rows stays one sweep, one that loses all of them is gone. Files and specimens keep their places. How the muscle moved is found
-    /// anew from what is left: to keep what all rows say, take [`crate::History::subset`] of the whole.
+    /// A sweep that loses some of its rows stays one sweep. Files and specimens keep their indices. The
+    /// motion is determined again from the remaining rows; [`crate::History::subset`] keeps that of all rows.
     #[must_use]
     pub fn subset(&self, keep: &[bool]) -> Self {
         let is_kept = |row: &usize| keep.get(*row).copied().unwrap_or(false);
@@ -463,7 +471,7 @@ impl Data {
         found.finished()
     }
 
-    /// All columns, to be shared: of many rows a copy is large.
+    /// All columns, shared, because copies are large.
     #[must_use]
     pub fn columns(&self) -> &Arc<Columns> {
         &self.columns
@@ -474,7 +482,7 @@ impl Data {
         self.sweeps.partition_point(|sweep| sweep.rows.end <= row)
     }
 
-    /// The stretches of the pressure in the sweeps of [`Data::paths`].
+    /// The pressure stretches in the sweeps of [`Data::paths`].
     pub(crate) fn pressure_paths(&self) -> impl Iterator<Item = &[Stretch]> {
         self.structure.pressure_stretches.iter().map(Vec::as_slice)
     }

@@ -1,4 +1,4 @@
-//! Time and temperature, which only measurements have, and the scale from a column's unit to SI.
+//! Time and temperature, which only measurements use, and the scale from a column's unit to SI.
 
 use bulge_muscles::units::{Quantity, UnitError, factor};
 
@@ -22,7 +22,7 @@ impl Quantity for Time {
     }
 }
 
-/// A temperature in kelvin; the factors are those of differences, the zero points are in [`Scale`].
+/// A temperature in kelvin. The factors are those of differences; the zero points are in [`Scale`].
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Temperature(f64);
 
@@ -47,39 +47,40 @@ const CELSIUS_ZERO: f64 = 273.15;
 /// Standard atmosphere \[Pa\].
 const ATMOSPHERE: f64 = 101_325.0;
 
-/// From numbers in a unit to SI: `si = number * factor + zero`.
+/// Converts numbers in a unit to SI: `si = number * factor + zero`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Scale {
     factor: f64,
-    /// 1/factor where that is a whole number: 5 um divided by 1e6 is the same number as 5e-6, multiplied it is not.
+    /// 1/factor if it is a whole number: 5 um divided by 1e6 gives exactly 5e-6, but multiplied by 1e-6 it
+    /// doesn't.
     divisor: Option<f64>,
     zero: f64,
 }
 
 impl Scale {
-    /// Pure numbers and SI units.
+    /// Dimensionless numbers and SI units.
     pub(crate) const SI: Self = Self { factor: 1.0, divisor: None, zero: 0.0 };
 
-    /// Degrees of Fahrenheit: 32 degF are 0 degC.
+    /// Degrees Fahrenheit: 32 degF are 0 degC.
     pub(crate) const FAHRENHEIT: Self =
         Self { factor: 5.0 / 9.0, divisor: None, zero: CELSIUS_ZERO - 32.0 * 5.0 / 9.0 };
 
-    /// A unit that is so many SI units.
+    /// A unit that equals `factor` SI units.
     pub(crate) fn by(factor: f64) -> Self {
         Self { factor, ..Self::SI }
     }
 
-    /// The same with the other sign: a sensor that counts the other way.
+    /// The scale with the opposite sign, for a sensor that counts the other way.
     pub(crate) fn reversed(self) -> Self {
         Self { factor: -self.factor, divisor: self.divisor.map(|divisor| -divisor), zero: self.zero }
     }
 
-    /// The same of absolute pressures, as gauge pressures above the standard atmosphere.
+    /// The scale of absolute pressures, as gauge pressures above the standard atmosphere.
     pub(crate) fn above_air(self) -> Self {
         Self { zero: self.zero - ATMOSPHERE, ..self }
     }
 
-    /// The scale of a unit of a dimension.
+    /// The scale of a unit of a quantity.
     pub(crate) fn of<Q: Quantity>(unit: &str) -> Result<Self, UnitError> {
         let factor = factor::<Q>(unit)?;
         let inverse = (1.0 / factor).round();

@@ -1,13 +1,13 @@
-//! What goes to and fro in a sweep.
+//! The driven quantity of a sweep.
 
 use crate::data::Data;
 use crate::stretch::{DeadBand, Stretch};
 use crate::sweep::{Sweep, SweepKind};
 
-/// What goes to and fro in a sweep: the length, or the pressure where the length is held.
+/// The driven quantity of a sweep: the length, or the pressure if the length is held.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Driven<'a> {
-    /// Its stretches.
+    /// Its monotone stretches.
     pub(crate) stretches: &'a [Stretch],
     /// Contraction, length or pressure of all rows, as measured.
     pub(crate) values: &'a [f64],
@@ -15,7 +15,7 @@ pub(crate) struct Driven<'a> {
 }
 
 impl Data {
-    /// The sweeps whose rows follow each other, with what is driven in them.
+    /// The sweeps whose rows follow each other, with their driven quantity.
     pub(crate) fn driven(&self) -> impl Iterator<Item = (&Sweep, Driven<'_>)> {
         self.paths().zip(self.pressure_paths()).map(|((sweep, stretches), filling)| {
             let structure = &self.structure;

@@ -1,11 +1,13 @@
-//! Bytes as text: UTF-8, UTF-16 with and without its mark, else the Western code page of old instruments.
+//! Decodes text: UTF-8, UTF-16 with or without a byte order mark, otherwise the Western code page of old
+//! instruments.
 
 use crate::error::MeasurementError;
 use std::borrow::Cow;
 
-/// Bytes in which UTF-16 without a mark is looked for.
+/// Number of bytes that are searched for UTF-16 without a mark.
 const LOOKED_AT: usize = 4096;
-/// Characters of Windows-1252 from 0x80 to 0x9F; the rest of it is Latin-1. Bytes that stand for nothing are the replacement character.
+/// Characters of Windows-1252 from 0x80 to 0x9F; the others equal Latin-1. Undefined bytes map to the
+/// replacement character.
 const WINDOWS: [char; 32] = [
     '\u{20ac}', '\u{fffd}', '\u{201a}', '\u{192}', '\u{201e}', '\u{2026}', '\u{2020}', '\u{2021}', '\u{2c6}',
     '\u{2030}', '\u{160}', '\u{2039}', '\u{152}', '\u{fffd}', '\u{17d}', '\u{fffd}', '\u{fffd}', '\u{2018}',
@@ -13,7 +15,7 @@ const WINDOWS: [char; 32] = [
     '\u{203a}', '\u{153}', '\u{fffd}', '\u{17e}', '\u{178}',
 ];
 
-/// The text of a file, and what its encoding is called where that was guessed.
+/// The text of a file, and the name of its encoding if it was guessed.
 pub(crate) fn text<'a>(
     file: &str,
     bytes: &'a [u8],
@@ -42,7 +44,8 @@ fn western(byte: u8) -> char {
     }
 }
 
-/// Whether bytes are UTF-16, and then whether the low byte comes first. Without a mark, every other byte of plain text is zero.
+/// If bytes are UTF-16, whether the low byte comes first. Without a mark, every other byte of plain text is
+/// zero.
 fn utf16(bytes: &[u8]) -> Option<bool> {
     if bytes.starts_with(&[0xff, 0xfe]) {
         return Some(true);
@@ -65,7 +68,7 @@ fn utf16(bytes: &[u8]) -> Option<bool> {
 
 type Text<'a> = (Cow<'a, str>, Option<&'static str>);
 
-/// A NUL is no text.
+/// A NUL is not text.
 fn checked<'a>(
     file: &str,
     text: Cow<'a, str>,

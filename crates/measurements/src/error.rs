@@ -1,4 +1,4 @@
-//! Why a file or a table is no set of measurements: one sentence each, with the place and the cure.
+//! Errors of files and tables: one sentence each, with the place and the remedy.
 
 use crate::cell_error::CellError;
 use crate::reading::ColumnUse;
@@ -6,10 +6,10 @@ use crate::wording::{bulleted, of_unit, ragged_cure};
 use bulge_muscles::units::UnitError;
 use thiserror::Error;
 
-/// Why a file or a table is no set of measurements.
+/// Why a file or a table isn't a set of measurements.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum MeasurementError {
-    /// No file is named.
+    /// No file is given.
     #[error(
         "no data file is given: name at least one file of CSV, Excel, MATLAB or Parquet, or `-` for standard input"
     )]
@@ -19,10 +19,10 @@ pub enum MeasurementError {
     Unreadable {
         /// The file.
         file: String,
-        /// What the operating system says.
+        /// The message of the operating system.
         why: String,
     },
-    /// More bytes than are read.
+    /// The file has more bytes than the limit.
     #[error(
         "{file}: has {bytes} bytes or more, but at most {limit} are read: split it, or keep fewer rows per second"
     )]
@@ -34,17 +34,17 @@ pub enum MeasurementError {
         /// The limit.
         limit: u64,
     },
-    /// More rows than are read.
+    /// The file has more rows than the limit.
     #[error("{file}:{line}: there are more than {limit} rows: keep fewer rows per second")]
     TooManyRows {
         /// The file.
         file: String,
-        /// The line of the first row too many.
+        /// The line of the first excess row.
         line: usize,
         /// The limit.
         limit: usize,
     },
-    /// A line that no table has.
+    /// The line is too long.
     #[error(
         "{file}:{line}: the line has {bytes} bytes, but at most {limit} are read: put each row on a line of its own"
     )]
@@ -58,17 +58,17 @@ pub enum MeasurementError {
         /// The limit.
         limit: usize,
     },
-    /// A file of another kind.
+    /// The file is of another kind.
     #[error("{file}: is {what}: {instead}")]
     OtherFormat {
         /// The file.
         file: String,
-        /// What it is.
+        /// Its kind.
         what: &'static str,
         /// What to do.
         instead: &'static str,
     },
-    /// A zero byte.
+    /// A NUL byte.
     #[error("{file}:{line}: holds a NUL byte: it is damaged or no text; export it again as CSV in UTF-8")]
     NulByte {
         /// The file.
@@ -84,7 +84,7 @@ pub enum MeasurementError {
         /// The line.
         line: usize,
     },
-    /// Nothing but comments and blank lines.
+    /// The file has only comments and blank lines.
     #[error(
         "{file}: is empty: write a header such as `pressure [bar],length [mm],force [N]` and one row per reading"
     )]
@@ -98,7 +98,7 @@ pub enum MeasurementError {
         /// The file.
         file: String,
     },
-    /// A header in the middle that isn't that of the rows before.
+    /// A different header in the middle of the file.
     #[error(
         "{file}:{line}: another table begins here, with the columns {columns}: write it into a file of its own, and name both files"
     )]
@@ -110,7 +110,7 @@ pub enum MeasurementError {
         /// Its columns.
         columns: String,
     },
-    /// Numbers where names should be.
+    /// A number in place of a column name.
     #[error(
         "{file}:{line}: `{text}` is a number where a column's name is needed: write a header first, such as `pressure [bar],length [mm],force [N]`, or say the columns by their numbers, such as `--columns \"time=1 [s],pressure=2 [bar],length=3 [mm],force=4 [N]\"`"
     )]
@@ -136,7 +136,7 @@ pub enum MeasurementError {
         /// All headings.
         known: String,
     },
-    /// A unit that is missing, unknown or of another dimension.
+    /// The unit is missing, unknown or of another dimension.
     #[error(
         "{file}:{line}: column `{column}` {}; write the unit in brackets behind the name, such as `{example}`",
         of_unit(problem)
@@ -148,12 +148,12 @@ pub enum MeasurementError {
         line: usize,
         /// The heading.
         column: String,
-        /// What is wrong with the unit.
+        /// The problem with the unit.
         problem: Box<UnitError>,
-        /// A heading as it should be.
+        /// A correct heading.
         example: &'static str,
     },
-    /// Units that no heading says, and the readings don't show.
+    /// Units that neither the heading nor the readings show.
     #[error(
         "{file}:{line}: {what}: write the unit in brackets behind the name, such as `{example}`, or say it, such as `--columns \"{instead}\"`"
     )]
@@ -162,14 +162,14 @@ pub enum MeasurementError {
         file: String,
         /// The line of the header.
         line: usize,
-        /// Which columns, and what they may be.
+        /// The columns, and what they may be.
         what: String,
-        /// A heading as it should be.
+        /// A correct heading.
         example: &'static str,
         /// What to write.
         instead: String,
     },
-    /// One name twice.
+    /// Two columns have the same name.
     #[error(
         "{file}:{line}: the columns {first} and {second} are both `{name}`: leave one out, or say which it is, such as `--columns \"{name}={first}\"`"
     )]
@@ -180,12 +180,12 @@ pub enum MeasurementError {
         line: usize,
         /// The name.
         name: &'static str,
-        /// The first, counted from 1.
+        /// Number of the first column, from 1.
         first: usize,
-        /// The second.
+        /// Number of the second column.
         second: usize,
     },
-    /// Contraction and length that contradict each other.
+    /// Contraction and length contradict each other.
     #[error(
         "{file}: `contraction` and `length` are both given, and do not follow from one another: leave out the one that was computed (most rigs measure `length`)"
     )]
@@ -193,7 +193,7 @@ pub enum MeasurementError {
         /// The file.
         file: String,
     },
-    /// A column that every data set needs.
+    /// A mandatory column is missing.
     #[error(
         "{file}:{line}: there is no column `{name}`: add one, such as `{example}`, or say which it is, such as `--columns \"{field}=NAME [UNIT]\"` (found: {found})"
     )]
@@ -204,14 +204,14 @@ pub enum MeasurementError {
         line: usize,
         /// The name.
         name: &'static str,
-        /// A heading as it should be.
+        /// A correct heading.
         example: &'static str,
         /// The quantity.
         field: &'static str,
-        /// The headings that are there.
+        /// The existing headings.
         found: String,
     },
-    /// Several columns may be one quantity.
+    /// Several columns may hold one quantity.
     #[error("{file}:{line}: which column is `{name}`: {candidates}? write which, such as `{instead}`")]
     Ambiguous {
         /// The file.
@@ -225,7 +225,7 @@ pub enum MeasurementError {
         /// What to write.
         instead: String,
     },
-    /// What was said of the columns can't be.
+    /// The user's statement about columns is invalid.
     #[error("--columns (or `[data.columns]`): {what}")]
     ColumnMap {
         /// What, where, and what to write instead.
@@ -241,36 +241,36 @@ pub enum MeasurementError {
         /// The heading.
         column: String,
     },
-    /// Too many rows that can't be used.
+    /// Too many unusable rows.
     #[error(
         "{file}: {unusable} of {rows} rows can't be used, more than a fifth:{reasons}\ncorrect these rows, or leave them out{hint}"
     )]
     TooManyUnusable {
         /// The file.
         file: String,
-        /// How many.
+        /// Number of unusable rows.
         unusable: usize,
-        /// Rows in all.
+        /// Number of all rows.
         rows: usize,
-        /// Their reasons, counted, with the first lines: one on each line.
+        /// Their reasons, counted, with the first lines; one per line.
         reasons: String,
-        /// What may have caused them.
+        /// The possible cause.
         hint: &'static str,
     },
-    /// Times in no order that could be that of the test.
+    /// The order of the times can't be that of the test.
     #[error(
         "{file}:{line}: the time goes back at {backward} of {rows} rows, and sorted by time the readings jump ({why}): sort the rows as they were measured, number the runs in a column `sweep`, or leave out the column `time` if the rows are a static map"
     )]
     TimeShuffled {
         /// The file.
         file: String,
-        /// The first line at which it does.
+        /// The first line at which the time goes back.
         line: usize,
-        /// At how many rows.
+        /// Number of such rows.
         backward: usize,
-        /// Rows in all.
+        /// Number of all rows.
         rows: usize,
-        /// What jumps.
+        /// The quantity that jumps.
         why: String,
     },
     /// Several complaints at once.
@@ -278,38 +278,38 @@ pub enum MeasurementError {
     Several {
         /// The first of them.
         complaints: Vec<MeasurementError>,
-        /// How many are not listed.
+        /// Number of complaints that are not listed.
         more: usize,
     },
-    /// A list of lines that names none.
+    /// The list of lines is invalid.
     #[error("lines `{range}`: {why}; write such as `12, 33-40`")]
     Lines {
         /// The part of the list.
         range: String,
-        /// What is wrong with it.
+        /// The problem with it.
         why: String,
     },
-    /// It isn't clear which column is which.
+    /// The columns can't be assigned.
     #[error("{complaint}")]
     NotAssigned {
-        /// What is in the way.
+        /// The complaint that prevents it.
         complaint: Box<MeasurementError>,
-        /// The columns of the file, and what they would be taken for.
+        /// The columns of the file, with the best guesses.
         columns: Vec<ColumnUse>,
     },
-    /// A row with more or fewer fields than the header.
+    /// A row has more or fewer fields than the header.
     #[error("{file}:{line}: the row has {found} field{}, the header has {expected}: {}", if *found == 1 { "" } else { "s" }, ragged_cure(*found, *expected))]
     Ragged {
         /// The file.
         file: String,
         /// The line.
         line: usize,
-        /// Its fields.
+        /// Number of its fields.
         found: usize,
-        /// Those of the header.
+        /// Number of fields of the header.
         expected: usize,
     },
-    /// A field that isn't what its column holds.
+    /// A field doesn't fit its column.
     #[error("{file}:{line}: column `{column}`: {problem}")]
     Cell {
         /// The file.
@@ -318,36 +318,36 @@ pub enum MeasurementError {
         line: usize,
         /// The heading.
         column: String,
-        /// What is wrong.
+        /// The problem.
         problem: CellError,
     },
-    /// A workbook that can't be read.
+    /// The workbook can't be read.
     #[error(
         "{file}: can't be read as an Excel workbook ({why}): unpack it if it is another archive, save it as .xlsx again, or export the sheet as CSV"
     )]
     Workbook {
         /// The file.
         file: String,
-        /// What the reader says.
+        /// The message of the reader.
         why: String,
     },
-    /// A sheet that a workbook doesn't have.
+    /// The workbook doesn't have this sheet.
     #[error("{file}: there is no sheet `{sheet}`: there are {sheets}")]
     NoSheet {
         /// The file.
         file: String,
-        /// What was asked for.
+        /// The requested sheet.
         sheet: String,
-        /// What there is.
+        /// The existing sheets.
         sheets: String,
     },
-    /// A file of MATLAB that is cut off or damaged.
+    /// The MATLAB file is truncated or damaged.
     #[error("{file}: is a damaged or cut-off file of MATLAB: write it again with `save('x.mat','-v7')`")]
     Matlab {
         /// The file.
         file: String,
     },
-    /// A file of MATLAB without columns.
+    /// The MATLAB file has no columns.
     #[error(
         "{file}: holds no numeric vectors: store each column as a variable or as a field of a structure (a `table` is none: `writetable` writes it as CSV)"
     )]
@@ -355,17 +355,17 @@ pub enum MeasurementError {
         /// The file.
         file: String,
     },
-    /// A file that claims to be Parquet and can't be read as such.
+    /// The file claims to be Parquet, but can't be read as such.
     #[error("{file}: can't be read as Parquet ({why}): {instead}")]
     Parquet {
         /// The file.
         file: String,
-        /// What the reader says.
+        /// The message of the reader.
         why: String,
         /// What to do.
         instead: &'static str,
     },
-    /// A Parquet column of a type that is no number and no text.
+    /// A Parquet column whose type is neither numeric nor text.
     #[error(
         "{file}: column `{column}` has the Parquet type {found}: store it as double, float, int64, int32 or string"
     )]
@@ -377,7 +377,7 @@ pub enum MeasurementError {
         /// Its type.
         found: String,
     },
-    /// A column in one file and not in another of the same analysis.
+    /// A column is missing in one of the files of an analysis.
     #[error(
         "{without} has no column `{name}`, {with} has: files of one analysis need the same columns; add it there, leave it out here, or analyse them separately"
     )]
@@ -389,15 +389,15 @@ pub enum MeasurementError {
         /// A file that doesn't.
         without: String,
     },
-    /// The same content twice.
+    /// Two files have the same content.
     #[error("{first} and {second} have the same content: name each file once")]
     SameContent {
-        /// A file.
+        /// The first file.
         first: String,
-        /// Another.
+        /// The second file.
         second: String,
     },
-    /// Columns of a program that differ in length.
+    /// Columns of a program differ in length.
     #[error("column `{name}` has {found} values, `pressure` has {expected}: give one value per row")]
     LengthsDiffer {
         /// The column.
@@ -410,7 +410,7 @@ pub enum MeasurementError {
 }
 
 impl MeasurementError {
-    /// The line (CSV) or row (Parquet) at fault, counted from 1, where there is one.
+    /// The line (CSV) or row (Parquet) at fault, counted from 1, if there is one.
     #[must_use]
     pub fn line(&self) -> Option<usize> {
         match self {
@@ -435,7 +435,7 @@ impl MeasurementError {
         }
     }
 
-    /// The columns of files whose columns could not be told: a person who sees them can say which is which.
+    /// The columns if they could not be assigned, so that a user can assign them.
     #[must_use]
     pub fn columns(&self) -> &[ColumnUse] {
         match self {
@@ -444,10 +444,10 @@ impl MeasurementError {
         }
     }
 
-    /// Complaints that are listed at most.
+    /// Most complaints that are listed.
     const MOST_LISTED: usize = 20;
 
-    /// One error of several complaints, of which there is one at least.
+    /// Combines complaints, at least one, into an error.
     pub(crate) fn of(mut complaints: Vec<Self>) -> Self {
         let (mut all, mut columns) = (Vec::new(), Vec::new());
         let mut more = 0;
@@ -474,14 +474,14 @@ impl MeasurementError {
         if columns.is_empty() { one } else { Self::NotAssigned { complaint: Box::new(one), columns } }
     }
 
-    /// Whether it says already what is wrong with the column of a quantity.
+    /// Whether it already reports a problem with the column of a quantity.
     pub(crate) fn is_about(&self, quantity: &str) -> bool {
         match self {
             Self::Ambiguous { name, .. } | Self::TwiceTheColumn { name, .. } => quantity.contains(*name),
             Self::Unit { example, .. } => {
                 example.split(' ').next().is_some_and(|name| quantity.contains(name))
             }
-            // Which quantity it was about isn't said: none is asked for twice.
+            // The quantity of these errors isn't recorded, so no other complaint is added.
             Self::ColumnMap { .. } => true,
             _ => false,
         }

@@ -1,4 +1,4 @@
-//! The columns that measurements have: names, dimensions, and how a heading such as `length [mm]` is read.
+//! The columns of measurements: names, dimensions, and the parsing of headings such as `length [mm]`.
 
 use crate::cell;
 use crate::dimension::{Scale, Temperature, Time};
@@ -11,7 +11,7 @@ pub(crate) enum Field {
     Pressure,
     Contraction,
     Length,
-    /// By how much shorter than at rest, as a length.
+    /// Shortening relative to the rest length, as a length.
     Displacement,
     Force,
     Time,
@@ -43,7 +43,7 @@ impl Field {
         Self::ForceSd,
     ];
 
-    /// The heading as it should be, with a common unit.
+    /// A correct heading with a common unit.
     pub(crate) const fn example(self) -> &'static str {
         match self {
             Self::Pressure => "pressure [bar]",
@@ -63,12 +63,12 @@ impl Field {
         }
     }
 
-    /// The name alone.
+    /// The name without the unit.
     pub(crate) fn name(self) -> &'static str {
         self.example().split(' ').next().unwrap_or_default()
     }
 
-    /// The scale of a unit; none for labels and counts.
+    /// The scale of a unit; none for labels and counts, which have no unit.
     pub(crate) fn scale(self, unit: &str) -> Option<Result<Scale, UnitError>> {
         Some(match self {
             Self::Pressure => Scale::of::<Pressure>(unit),
@@ -87,12 +87,12 @@ impl Field {
         matches!(self, Self::Sweep | Self::Specimen | Self::Cycle | Self::Direction)
     }
 
-    /// Whether it says how the muscle moved.
+    /// Whether it describes the motion of the muscle.
     pub(crate) const fn is_motion(self) -> bool {
         matches!(self, Self::Contraction | Self::Length | Self::Displacement)
     }
 
-    /// Whether an analysis can do without it. Rows of a path without time or run are none.
+    /// Whether an analysis works without it. Time and run aren't optional: without them the rows are no path.
     pub(crate) const fn is_optional(self) -> bool {
         !(self.is_motion()
             || matches!(self, Self::Pressure | Self::Force | Self::Time | Self::Sweep | Self::Specimen))
@@ -116,23 +116,23 @@ impl Field {
     }
 }
 
-/// One heading, understood.
+/// A parsed heading.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Heading {
     pub(crate) field: Field,
     pub(crate) scale: Scale,
-    /// As it is written.
+    /// The text as written.
     pub(crate) text: String,
-    /// What a displacement says of its sign: it grows when the muscle lengthens.
+    /// For a displacement: whether it grows when the muscle lengthens, as its name says.
     pub(crate) is_lengthening: bool,
-    /// Whether the sign is what it should be: stated by the user.
+    /// Whether the sign is correct because the user stated it.
     pub(crate) is_settled: bool,
-    /// Line of the header, where it says no unit and none is assumed: the readings have to show it.
+    /// Line of the header if no unit is written and none is assumed, so that the readings have to show it.
     pub(crate) open_unit: Option<usize>,
 }
 
 impl Heading {
-    /// A field with a unit of its own gets its number in SI.
+    /// A field with a unit of its own, as a number in SI.
     pub(crate) fn with_unit_inside(&self, text: &str) -> Option<f64> {
         let (number, symbol) = cell::with_unit(text)?;
         Some(crate::unit::unit(self.field, symbol)?.scale.si(number))

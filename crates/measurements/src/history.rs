@@ -1,4 +1,4 @@
-//! How the muscle moved: direction, rate, reversals and cycles of each row.
+//! The motion of the muscle: direction, rate, reversals and cycles of each row.
 
 use crate::columns::picked;
 use crate::data::Data;
@@ -7,41 +7,47 @@ use crate::stretch::{self, Stretch};
 use crate::sweep::{Sweep, SweepKind};
 use serde::Serialize;
 
-/// How the muscle moved, one value per row.
+/// The motion of the muscle, one value per row.
 ///
-/// Directions come from turning points: a row is one if the contraction goes back from it by more than a dead band before it goes on. The band is the
-/// largest of 1.5 quantisation steps, 2 (1 + sqrt(2 ln n)) standard deviations of the noise (n rows in the longest sweep), and 1/1000 of the travel.
-/// Rows that stay within the band for three times as long as a sine near its turning point are at rest. Directions that the file states are taken where they go
-/// with the motion. A turning point belongs to the
-/// stretch that it ends, so that a row's direction is that of the motion that led to it; the first row of a sweep takes that of the second.
+/// Directions come from turning points: a row is a turning point if the contraction goes back from it by more
+/// than a dead band before it goes on. The band is the largest of 1.5 quantisation steps, 2 (1 + sqrt(2 ln
+/// n)) standard deviations of the noise (n rows in the longest sweep), and 1/1000 of the travel. Rows that
+/// stay within the band for three times as long as a sine near its turning point are at rest. Directions
+/// stated in the file are used if they agree with the motion. A turning point belongs to the stretch that it
+/// ends, so that a row's direction is that of the motion that led to it; the first row of a sweep takes the
+/// direction of the second.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct History {
-    /// +1 shortening, -1 lengthening, 0 at rest and in isometric sweeps. In a static map: as stated, else 0.
+    /// +1 shortening, -1 lengthening, 0 at rest and in isometric sweeps. In a static map: the stated
+    /// direction, or 0.
     pub direction: Vec<f64>,
-    /// +1 while the pressure rises, -1 while it falls, 0 at rest, in sweeps that keep their pressure and in a static map.
+    /// +1 while the pressure rises, -1 while it falls, 0 at rest, in sweeps at constant pressure, and in a
+    /// static map.
     pub pressure_direction: Vec<f64>,
-    /// Direction of the last motion, also at rest: the branch of a hysteresis loop on which the row lies; 0 before any motion. In isometric
-    /// sweeps that of the pressure.
+    /// Direction of the last motion, also during a rest: the branch of the hysteresis loop on which the row
+    /// lies; 0 before any motion. In isometric sweeps the direction of the pressure.
     pub approach: Vec<f64>,
     /// Rate of contraction \[1/s\], positive when shortening; 0 at rest, without time and in a static map.
     pub rate: Vec<f64>,
-    /// Contraction since the last reversal, or since the start of the sweep, >= 0; in isometric sweeps since that of the pressure.
+    /// Contraction since the last reversal, or since the start of the sweep, >= 0; in isometric sweeps since
+    /// the last reversal of the pressure.
     pub since_reversal: Vec<f64>,
     /// Time since the last reversal, or since the start of the sweep \[s\]; 0 without time.
     pub time_since_reversal: Vec<f64>,
     /// Time \[s\]; 0 without time.
     pub time: Vec<f64>,
-    /// Number of the load cycle: as stated, else the full loops that the specimen has done so far, from 0, over all its sweeps. A sweep in the
-    /// direction of the one before it, and from farther back, counts as a loop whose return was not measured.
+    /// Number of the load cycle: the stated one, otherwise the full loops that the specimen has done so far,
+    /// from 0, over all its sweeps. If a sweep has the direction of the one before it and starts further
+    /// back, a loop is counted whose return wasn't measured.
     pub cycle: Vec<f64>,
-    /// Number of the monotone stretch in its sweep, from 0; a rest is one too.
+    /// Number of the monotone stretch in its sweep, from 0; a rest counts as a stretch.
     pub branch: Vec<u32>,
     /// Whether rows follow each other (they have a time or a sweep label).
     pub is_path: bool,
 }
 
 impl History {
-    /// The rows that are kept; a row beyond `keep` is not kept.
+    /// The rows with `keep`; rows beyond the end of `keep` are dropped.
     #[must_use]
     pub fn subset(&self, keep: &[bool]) -> Self {
         let rows: Vec<usize> =
@@ -62,7 +68,8 @@ impl History {
 }
 
 impl Data {
-    /// How the muscle moved. `l0` is the length of the unpressurised muscle \[m\], > 0; it matters only where the length was measured.
+    /// The motion of the muscle. `l0` is the unpressurised length \[m\], > 0; it only matters if the length
+    /// was measured.
     #[must_use]
     pub fn history(&self, l0: f64) -> History {
         let rows = self.len();
@@ -83,7 +90,7 @@ impl Data {
             let mut loops: Vec<Loops> = vec![Loops::default(); self.specimens().len()];
             for ((sweep, stretches), filling) in self.paths().zip(self.pressure_paths()) {
                 let is_isometric = sweep.kind == SweepKind::Isometric;
-                // What goes to and fro: the length, or the pressure where the length is held.
+                // The driven quantity: the length, or the pressure if the length is held.
                 let (driven, values, band) = if is_isometric {
                     (filling, self.pressure(), self.structure.pressure_band)
                 } else {
@@ -159,12 +166,12 @@ impl Data {
     }
 }
 
-/// Full loops of a specimen so far.
+/// Counts the full loops of a specimen.
 #[derive(Debug, Clone, Copy, Default)]
 struct Loops {
-    /// Direction in which it moved first; 0 before any motion.
+    /// Direction of the first motion; 0 before any motion.
     first: i8,
-    /// Direction and end of the last motion.
+    /// Direction of the last motion; the next field is its end.
     last: i8,
     end: f64,
     done: u32,

@@ -1,34 +1,41 @@
-//! Isobaric runs within one recording: stretches of constant pressure over which the muscle is drawn or let go, and the steps between them.
+//! Isobaric runs within one recording: stretches of constant pressure over which the muscle is driven, and
+//! the steps between them.
 
 use crate::resolution::{Resolution, bounds, median};
 use crate::window::Window;
 use std::ops::Range;
 
-/// A pressure that stays within this share of the largest is constant: a regulator droops by a few per cent within a loop.
+/// A pressure within this fraction of the largest is constant: a regulator droops by a few per cent within a
+/// loop.
 const BAND: f64 = 0.08;
-/// Two runs are at different pressures if their medians differ by more than this share of the largest.
+/// Two runs have different pressures if their medians differ by more than this fraction of the largest.
 const STEP: f64 = 0.05;
-/// Rows at the ends of a run that are farther from its median than this share of the largest belong to a step.
+/// Rows at the ends of a run that deviate from its median by more than this fraction of the largest pressure
+/// belong to a step.
 const EDGE: f64 = 0.02;
 /// Fewer rows show no motion.
 const FEWEST: usize = 4;
-/// A muscle that is driven at constant pressure covers this share of all the way in the recording; after a step of pressure at held length it covers none.
+/// At constant pressure, a driven muscle covers at least this fraction of the travel of the recording; after
+/// a pressure step at held length it covers none.
 const TRAVEL: f64 = 0.25;
-/// Its force changes by this share of its largest; under a weight, which the pressure moves, it hardly changes.
+/// Its force changes by at least this fraction of its largest value; under a weight, which the pressure
+/// moves, it hardly changes.
 const FORCE: f64 = 0.2;
-/// Where isobaric runs make less than this part of a recording,
+/// If isobaric runs cover less than this fraction of a recording,
 const COVERED: f64 = 0.8;
-/// each has to be constant to this share of the largest pressure in eight tenths of its rows: a pressure that swings stays for a while at its ends.
+/// each has to be constant within this fraction of the largest pressure in eight tenths of its rows: an
+/// oscillating pressure stays near its extremes for a while.
 const FLAT: f64 = 0.03;
-/// Rows inside a run whose median the pressure at its ends has to reach, and how nearly, as a share of the largest, while the muscle rests.
+/// Number of inner rows whose median the pressure at the ends of a run must reach while the muscle rests;
+/// then the tolerance as a fraction of the largest pressure.
 const SETTLED: usize = 15;
 const SETTLED_TO: f64 = 2e-3;
-/// Rows whose median is the pressure at an end of a run.
+/// Number of rows whose median is the pressure at an end of a run.
 const JUNCTION: usize = 3;
-/// So many rows between two runs are a disturbance if the pressure is the same after them.
+/// Up to this many rows between two pieces are a disturbance if the pressure is the same after them.
 const DISTURBED: usize = 3;
 
-/// Rows of one pressure over which the muscle is driven.
+/// Rows at one pressure over which the muscle is driven.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Isobar {
     pub(crate) rows: Range<usize>,
@@ -36,7 +43,7 @@ pub(crate) struct Isobar {
     pub(crate) pressure: f64,
 }
 
-/// What the rows of a recording read.
+/// The readings of a recording.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Readings<'a> {
     pub(crate) pressure: &'a [f64],
@@ -44,11 +51,13 @@ pub(crate) struct Readings<'a> {
     pub(crate) force: &'a [f64],
 }
 
-/// The isobaric runs of an uninterrupted recording, in order; none unless there are two at different pressures, one after the other.
+/// The isobaric runs of an uninterrupted recording, in order; none unless two successive ones have different
+/// pressures.
 ///
-/// A run is the longest piece whose pressure stays within 8 % of the largest pressure of the recording (and within its noise), if over it the muscle covers
-/// a quarter of all the way and its force changes by a fifth. So steps of pressure at held length (isometric) and under a weight (isotonic) are
-/// no runs, and ramps of pressure have none.
+/// A run is the longest piece whose pressure stays within 8 % of the largest pressure of the recording (and
+/// within its noise), provided that the muscle covers a quarter of the total travel over it and its force
+/// changes by a fifth. Hence pressure steps at held length (isometric) and under a weight (isotonic) are no
+/// runs, and pressure ramps contain none.
 pub(crate) fn find(readings: Readings<'_>, rows: &Range<usize>) -> Vec<Isobar> {
     let pressure = &readings.pressure[rows.clone()];
     let (low, high) = bounds(pressure);
@@ -90,7 +99,7 @@ pub(crate) fn find(readings: Readings<'_>, rows: &Range<usize>) -> Vec<Isobar> {
         judge.trim(isobar, (EDGE * largest).max(0.5 * (band - BAND * largest)));
     }
     for second in 1..found.len() {
-        // Where the pressure takes time from one run to the other.
+        // Between the runs the pressure takes some time to settle.
         let (before, after) = (found[second - 1].rows.clone(), found[second].rows.clone());
         if before.end < after.start {
             found[second].rows.start = judge.settled(after.start, after.clone());
@@ -102,7 +111,8 @@ pub(crate) fn find(readings: Readings<'_>, rows: &Range<usize>) -> Vec<Isobar> {
 }
 
 impl Isobar {
-    /// Whether the next piece is of the same run: at the same pressure but for a disturbance, or reached without a step within `droop`, as a regulator droops.
+    /// Whether the next piece belongs to the same run: at the same pressure after a disturbance, or reached
+    /// without a step within `droop`, as a drooping regulator does.
     fn goes_on(&self, next: &Self, pressure: &[f64], [step, droop]: [f64; 2]) -> bool {
         let change = (next.pressure - self.pressure).abs();
         let gap = next.rows.start - self.rows.end;
@@ -118,14 +128,15 @@ impl Isobar {
     }
 }
 
-/// Pieces whose values stay within the band, each as long as it can be: where a later start gives a longer piece, it starts there.
+/// Pieces whose values stay within the band, each as long as possible: if a later start gives a longer piece,
+/// the piece starts there.
 fn pieces(values: &[f64], band: f64) -> Vec<Range<usize>> {
     let mut window = Window::new(values);
     let ends: Vec<usize> = (0..values.len()).map(|first| window.last_within(first, band) + 1).collect();
     let mut found = Vec::new();
     let mut start = 0;
     while start < values.len() {
-        // Each step looks only at starts that were not looked at before.
+        // Each step only tries starts that were not tried before.
         let mut seen = start + 1;
         loop {
             let longer = (seen..ends[start].min(values.len()))
@@ -150,7 +161,7 @@ fn pressure_of(readings: Readings<'_>, isobar: &Isobar) -> Vec<f64> {
     readings.pressure[isobar.rows.clone()].to_vec()
 }
 
-/// What the middle eight tenths of the values span.
+/// Range of the middle eight tenths of the values.
 fn spread_of(values: &[f64]) -> f64 {
     let mut sorted = values.to_vec();
     sorted.sort_unstable_by(f64::total_cmp);
@@ -163,10 +174,10 @@ fn range(values: &[f64]) -> f64 {
     high - low
 }
 
-/// What tells a driven muscle from one that follows its pressure.
+/// Distinguishes a driven muscle from one that follows its pressure.
 struct Judge<'a> {
     readings: Readings<'a>,
-    /// All the way in the recording.
+    /// Total travel in the recording.
     way: f64,
     force_noise: f64,
     motion_noise: f64,
@@ -183,11 +194,11 @@ impl Judge<'_> {
             && high - low > (FORCE * largest).max(self.force_noise)
     }
 
-    /// Leaves the rows of the steps at both ends to these.
+    /// Assigns the rows of the steps at both ends to the steps.
     fn trim(&self, isobar: &mut Isobar, edge: f64) {
         let pressure = self.readings.pressure;
         let is_off = |row: usize| (pressure[row] - isobar.pressure).abs() > edge;
-        // A regulator that droops through the whole band has its median anywhere in it.
+        // The median of a regulator that droops through the whole band may lie anywhere in it.
         let off = isobar.rows.clone().filter(|row| is_off(*row)).count();
         if 5 * off > isobar.rows.len() {
             return;
@@ -197,7 +208,8 @@ impl Judge<'_> {
         isobar.rows = start..end;
     }
 
-    /// The first of the rows from an end of a run at which the muscle no longer rests where it did, or the pressure is that of the rows that follow.
+    /// The first row, from an end of a run inwards, at which the muscle no longer rests where it did or the
+    /// pressure has reached that of the following rows.
     fn settled(&self, from: usize, rows: impl Iterator<Item = usize> + Clone) -> usize {
         let mut rows = rows;
         loop {
@@ -211,7 +223,8 @@ impl Judge<'_> {
         }
     }
 
-    /// Whether the muscle rests where it did at the end of the run, and the pressure isn't yet that of the rows inside.
+    /// Whether the muscle still rests as at the end of the run while the pressure hasn't reached that of the
+    /// inner rows.
     fn settles(&self, row: usize, from: usize, mut inside: Vec<f64>) -> bool {
         let motion = self.readings.motion;
         let pressure = self.readings.pressure;

@@ -1,4 +1,4 @@
-//! Where the table of a text begins: metadata before it, its header, units beneath, the separator, the decimal sign.
+//! The layout of a text table: metadata before it, header, units beneath, separator, decimal sign.
 
 use crate::assignment::{Header, MOST_COLUMNS};
 use crate::cell::{Decimal, is_in_thousands};
@@ -11,28 +11,28 @@ use crate::names::{Strength, guesses};
 use crate::unit::unit;
 use std::borrow::Cow;
 
-/// Lines among which the header is looked for.
+/// Number of lines that are searched for the header.
 const LOOKED_AT: usize = 500;
-/// Longest line that is looked at for a header, in bytes, unless it is the first.
+/// Longest line that is considered as a header, in bytes, unless it is the first.
 const LONGEST: usize = 50_000;
-/// Lines between a header and its first row: units, rules, blank lines.
+/// Most lines between a header and its first row: units, rules, blank lines.
 const BETWEEN: usize = 4;
-/// Rows whose values are shown.
+/// Number of rows whose values are shown.
 const SHOWN: usize = 3;
-/// Rows that show the decimal sign.
+/// Number of rows for detecting the decimal sign.
 const TRIED: usize = 500;
-/// Line breaks within the names of a header.
+/// Most line breaks within the names of a header.
 const MOST_BREAKS: usize = 60;
-/// The units of the channels in the metadata of a recorder's file, a field for each column.
+/// Key of the units of the channels in the metadata of a recorder's file, one field per column.
 const CHANNEL_UNITS: &str = "Y_Unit_Label";
-/// The end of the metadata of a recorder's file, by which it is known for certain.
+/// The end of the metadata of a recorder's file, which identifies such a file.
 const END_OF_METADATA: &str = "***End_of_Header***";
 
-/// How a text is laid out.
+/// The layout of a text.
 pub(crate) struct Layout {
     pub(crate) separator: Separator,
     pub(crate) decimal: Decimal,
-    /// Line of the header, counted from 1; 0 if there is none and the columns go by their numbers.
+    /// Line of the header, counted from 1; 0 if there is none and columns are named by their numbers.
     pub(crate) line: usize,
     pub(crate) names: Vec<String>,
     pub(crate) units: Option<Vec<String>>,
@@ -43,7 +43,7 @@ pub(crate) struct Layout {
     pub(crate) notes: Vec<String>,
 }
 
-/// A header that may be one.
+/// A possible header.
 struct Candidate {
     /// Index of its line.
     at: usize,
@@ -51,11 +51,11 @@ struct Candidate {
     names: Vec<String>,
     units: Option<Vec<String>>,
     rows_from: usize,
-    /// How many of pressure, motion and force it names, or of the columns that the user names.
+    /// Number of columns that it names among pressure, motion and force, or among those that the user names.
     score: usize,
 }
 
-/// Finds the table of a text.
+/// Finds the table in a text.
 pub(crate) fn find(
     file: &str,
     text: &str,
@@ -64,7 +64,7 @@ pub(crate) fn find(
 ) -> Result<Layout, MeasurementError> {
     let lines: Vec<&str> = text.split(line_end).take(LOOKED_AT).map(without_line_end).collect();
     let Some(start) = lines.iter().position(|line| is_content(line.trim())) else {
-        // A header may stand in a comment, but its rows don't.
+        // A header may be in a comment, but rows may not.
         return Err(MeasurementError::Empty { file: file.to_owned() });
     };
     checked_length(file, start + 1, lines[start])?;
@@ -111,7 +111,7 @@ pub(crate) fn find(
     })
 }
 
-/// Whether a line is more than a comment, blanks, separators, or a spreadsheet's hint at its separator.
+/// Whether a line has content besides comments, blanks, separators, and a spreadsheet's separator hint.
 fn is_content(line: &str) -> bool {
     let is_hint = line.len() == 5 && line.get(..4).is_some_and(|start| start.eq_ignore_ascii_case("sep="));
     let is_empty = line.bytes().all(|byte| SEPARATORS.contains(&byte));
@@ -120,7 +120,7 @@ fn is_content(line: &str) -> bool {
 
 type Fields = (Separator, Vec<String>);
 
-/// The fields of a line with the separator that it has most of; one field if it has none.
+/// The fields of a line, split at its most frequent separator; a single field if it has none.
 fn plain(line: &str, separator: Option<Separator>) -> Option<Fields> {
     let separator = separator.or_else(|| Separator::of(line)).unwrap_or(Separator::Byte(b','));
     Some((separator, fields(line, separator)?))
@@ -133,7 +133,7 @@ fn fields(line: &str, separator: Separator) -> Option<Vec<String>> {
     Some(fields.into_iter().map(Cow::into_owned).collect())
 }
 
-/// Whether pressure, force and a motion are named as they should be.
+/// Whether pressure, force and a motion have their standard names.
 fn is_exact(names: &[String]) -> bool {
     let exact: Vec<Field> = names
         .iter()
@@ -146,14 +146,14 @@ fn is_exact(names: &[String]) -> bool {
         && exact.iter().any(|field| field.is_motion())
 }
 
-/// Whether a row is a header: it names two at least of pressure, motion and force.
+/// Whether a row is a header: it names at least two of pressure, motion and force.
 pub(crate) fn names_columns(fields: &[Cow<'_, str>]) -> bool {
     let names: Vec<String> = fields.iter().map(ToString::to_string).collect();
     !names.iter().any(|name| is_number(name)) && score(&names, None, &ColumnMap::default()) >= 2
 }
 
-/// The same text with its header on one line, where it has line breaks within quotes; the lines after it keep their numbers. None if it has no such
-/// header.
+/// The text with its header on one line, if the header has line breaks within quotes; the lines after it keep
+/// their numbers. None if there is no such header.
 pub(crate) fn with_one_line_header(text: &str, line_end: char) -> Option<String> {
     let quotes = |line: &str| line.bytes().filter(|byte| *byte == b'"').count();
     let mut start = 0;
@@ -183,7 +183,7 @@ pub(crate) fn with_one_line_header(text: &str, line_end: char) -> Option<String>
     names_columns(&names).then(|| [&text[..start], header.as_str(), blank.as_str(), &text[end..]].concat())
 }
 
-/// How many of pressure, motion and force, or of the columns that the user names, a header has.
+/// Number of columns that a header has among pressure, motion and force, or among those that the user names.
 fn score(names: &[String], units: Option<&[String]>, map: &ColumnMap) -> usize {
     let beneath = |place: usize| units.and_then(|units| units.get(place)).map(String::as_str);
     let all: Vec<Field> = names
@@ -205,18 +205,18 @@ fn score(names: &[String], units: Option<&[String]>, map: &ColumnMap) -> usize {
         .entries()
         .iter()
         .filter(|entry| entry.quantity != IGNORE && crate::assignment::has_named(&header, &entry.column));
-    // A column that the user names says more than a guess.
+    // A column that the user names counts more than a guess.
     guessed.count() + 2 * named.count()
 }
 
-/// The header with most of what is looked for, above a row of numbers; the first of equals.
+/// The best header above a row of numbers; the first one among equals.
 fn best(lines: &[&str], start: usize, separator: Option<Separator>, map: &ColumnMap) -> Option<Candidate> {
     let after =
         lines.iter().rposition(|line| line.trim_start().starts_with(END_OF_METADATA)).map_or(0, |at| at + 1);
     let mut best: Option<Candidate> = None;
     for at in after..lines.len() {
         let line = lines[at].trim();
-        // A comment may hold the header where the row beneath it is the first content.
+        // A comment may hold the header if the row beneath it is the first content.
         let is_header_in_comment = at < start && !is_content(line) && !line.is_empty();
         if line.is_empty() || line.len() > LONGEST || !(is_content(line) || is_header_in_comment) {
             continue;
@@ -235,7 +235,7 @@ fn best(lines: &[&str], start: usize, separator: Option<Separator>, map: &Column
     best
 }
 
-/// Units that the metadata state for columns whose names say none.
+/// Units in the metadata for columns whose names have none.
 fn units_of_channels(metadata: &[&str], header: &Candidate) -> Option<Vec<String>> {
     let line = metadata.iter().rfind(|line| line.trim_start().starts_with(CHANNEL_UNITS))?;
     let mut stated = fields(line, header.separator)?;
@@ -247,7 +247,7 @@ fn units_of_channels(metadata: &[&str], header: &Candidate) -> Option<Vec<String
     Some(stated.into_iter().zip(&header.names).map(of).collect())
 }
 
-/// The ways in which a line can be the header of the rows beneath it.
+/// The possible readings of a line as the header of the rows beneath it.
 fn candidates(
     lines: &[&str],
     at: usize,
@@ -259,7 +259,7 @@ fn candidates(
     let separators = separators.filter(|separator| known.is_none_or(|known| known == *separator));
     let of = |separator: Separator| {
         let mut names = match separator {
-            // Names may hold single blanks.
+            // Names may contain single blanks.
             Separator::Blanks if line.trim().contains("  ") => line
                 .trim()
                 .split("  ")
@@ -281,7 +281,7 @@ fn candidates(
             }
         }
         let score = score(&names, units.as_deref(), map);
-        // Recorders name a last column of comments that most rows don't have.
+        // Recorders name a last column of comments, which most rows lack.
         (2 * width >= names.len()).then_some(Candidate { at, separator, units, rows_from: row, score, names })
     };
     separators.filter_map(of).collect()
@@ -306,7 +306,7 @@ fn beneath(lines: &[&str], at: usize, separator: Separator) -> Option<(Option<Ve
     None
 }
 
-/// Whether fields are a row: two numbers at least, and as many as texts.
+/// Whether fields are a row: at least two numbers, and at least as many numbers as texts.
 fn is_row(fields: &[String]) -> bool {
     let filled = fields.iter().filter(|field| !field.is_empty());
     let (numbers, texts): (Vec<&String>, Vec<&String>) = filled.partition(|field| is_number(field));
@@ -320,7 +320,7 @@ fn is_number(field: &str) -> bool {
         || crate::cell::with_unit(field).is_some_and(|(_, rest)| rest.len() < 8)
 }
 
-/// Whether fields are units: most of those that aren't empty, and two at least.
+/// Whether fields are units: most of the nonempty ones, and at least two.
 fn are_units(fields: &[String]) -> bool {
     let bare = |field: &String| field.trim_matches(['[', ']', '(', ')', ' ']).to_owned();
     let filled: Vec<String> =
@@ -330,7 +330,7 @@ fn are_units(fields: &[String]) -> bool {
     known >= 2 && 2 * known >= filled.len()
 }
 
-/// Columns by their numbers, where the user names them so and the first line is a row already.
+/// Columns by their numbers, if the user names them in this way and the first line is a row already.
 fn without_header(lines: &[&str], start: usize, map: &ColumnMap, chosen: Candidate) -> Candidate {
     let by_number =
         |column: &str| column.split('[').next().is_some_and(|text| text.trim().parse::<usize>().is_ok());
@@ -360,7 +360,7 @@ fn first<'a>(rows: impl Iterator<Item = &'a str>, separator: Separator, width: u
     found
 }
 
-/// What stands before the decimals, from rows that have a comma within a field.
+/// The decimal sign, from rows that have a comma within a field.
 fn decimal<'a>(rows: impl Iterator<Item = &'a str>, separator: Separator) -> Decimal {
     let has_comma = |line: &&str| {
         let bytes = line.as_bytes();
@@ -386,7 +386,7 @@ fn decimal<'a>(rows: impl Iterator<Item = &'a str>, separator: Separator) -> Dec
     match (commas, points) {
         (0, _) => Decimal::Point,
         (_, 0) => Decimal::Comma,
-        // In quotes between commas, the odd one is more likely one of thousands.
+        // With commas as separators, a comma in quotes more likely separates thousands.
         _ if separator == Separator::Byte(b',') => Decimal::Point,
         _ => Decimal::Either,
     }

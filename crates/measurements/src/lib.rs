@@ -1,8 +1,10 @@
-//! Measured force maps and histories: files of laboratories in, sweeps, directions, repeats and a quality gate.
+//! Measured force maps and histories: reads laboratory files and finds sweeps, directions and repeats;
+//! includes a quality check.
 //!
-//! Data only, no model. Numbers are finite and in SI; what a file gets wrong is answered with its line and its cure.
-//! Deliberately absent: cleaning. Nothing is dropped, filtered or interpolated silently: [`Data::reading`] says what columns were taken for and which
-//! rows can't be used, [`Data::quality`] what looks wrong and where, [`Data::disturbed`] which rows had better not count.
+//! Data only, no model. Numbers are finite and in SI; errors in a file are reported with the line and the
+//! remedy. Deliberately absent: cleaning. Nothing is dropped, filtered or interpolated silently:
+//! [`Data::reading`] reports how columns were interpreted and which rows can't be used, [`Data::quality`]
+//! what looks wrong and where, and [`Data::disturbed`] which rows should not count.
 
 mod assignment;
 mod cell;

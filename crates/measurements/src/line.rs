@@ -5,10 +5,10 @@ use std::borrow::Cow;
 
 /// Most bytes of a line.
 pub(crate) const MOST_BYTES_PER_LINE: usize = 1_000_000;
-/// What a spreadsheet writes for a value that it doesn't have: no comment, though it begins like one.
+/// Texts that a spreadsheet writes for missing values. They aren't comments, although they begin like one.
 const NO_VALUES: [&str; 8] = ["#N/A", "#DIV/0!", "#VALUE!", "#REF!", "#NAME?", "#NUM!", "#NULL!", "#NV"];
 
-/// What stands between fields.
+/// The separator between fields.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Separator {
     Byte(u8),
@@ -16,18 +16,18 @@ pub(crate) enum Separator {
     Blanks,
 }
 
-/// What may stand between fields; where a line has several kinds, the one it has most of, and a comma before others.
+/// Possible separators. If a line has several kinds, the most frequent one is taken; a comma wins ties.
 pub(crate) const SEPARATORS: [u8; 3] = [b',', b';', b'\t'];
 
 impl Separator {
-    /// The one that a line has most of; none if it has none.
+    /// The most frequent separator of a line; none if it has none.
     pub(crate) fn of(line: &str) -> Option<Self> {
         let count = |separator: u8| line.bytes().filter(|byte| *byte == separator).count();
         let most = SEPARATORS.into_iter().rev().max_by_key(|separator| count(*separator))?;
         (count(most) > 0).then_some(Self::Byte(most))
     }
 
-    /// Splits a line into fields without the blanks around them; none if a quote stays open or is followed by more text.
+    /// Splits a line into trimmed fields; none if a quote stays open or is followed by more text.
     pub(crate) fn split<'a>(self, line: &'a str, fields: &mut Vec<Cow<'a, str>>) -> Option<()> {
         match self {
             Self::Byte(separator) => split(line, separator, fields),
@@ -39,7 +39,7 @@ impl Separator {
         }
     }
 
-    /// Whether a line has nothing but a comment, or separators: an empty row of a spreadsheet.
+    /// Whether a line consists of a comment or of separators only, like an empty row of a spreadsheet.
     pub(crate) fn is_blank(self, content: &str) -> bool {
         let start = content.trim_ascii_start();
         let is_empty = |byte: u8| {
@@ -49,12 +49,13 @@ impl Separator {
     }
 }
 
-/// Whether a line without leading blanks is a comment.
+/// Whether a line, without leading blanks, is a comment.
 pub(crate) fn is_comment(start: &str) -> bool {
     start.starts_with('#') && !NO_VALUES.iter().any(|text| start.starts_with(text))
 }
 
-/// Without the carriage return of CRLF. Tabs stay: at the end of a row they separate an empty field.
+/// The line without the carriage return of CRLF. Tabs stay, because one at the end of a row separates an
+/// empty field.
 pub(crate) fn without_line_end(line: &str) -> &str {
     line.strip_suffix('\r').unwrap_or(line)
 }
@@ -67,7 +68,7 @@ pub(crate) fn checked_length(file: &str, line: usize, content: &str) -> Result<(
     Ok(())
 }
 
-/// Without empty fields beyond `width`: spreadsheets pad all rows to the longest.
+/// Removes empty fields beyond `width`: spreadsheets pad all rows to the longest.
 pub(crate) fn unpad(fields: &mut Vec<Cow<'_, str>>, width: usize) {
     while fields.len() > width && fields.last().is_some_and(|field| field.is_empty()) {
         fields.pop();
@@ -98,7 +99,7 @@ fn split<'a>(line: &'a str, separator: u8, fields: &mut Vec<Cow<'a, str>>) -> Op
     }
 }
 
-/// The text up to the closing quote, and what follows; two quotes stand for one.
+/// The text up to the closing quote, and the rest; a doubled quote stands for one.
 fn unquoted(inside: &str) -> Option<(Cow<'_, str>, &str)> {
     let mut end = inside.find('"')?;
     if !inside[end + 1..].starts_with('"') {

@@ -1,13 +1,14 @@
-//! Rows by the lines of their files, as people write them: `12, 33-40`.
+//! Rows named by the lines of their files, as users write them: `12, 33-40`.
 
 use crate::data::Data;
 use crate::error::MeasurementError;
 
-/// What tells a file from its line.
+/// Separator between a file and its line.
 const FILE: char = ':';
 
 impl Data {
-    /// The lines of rows, neighbours as one range: `12`, `33-40`; after the name of the file and a colon where there are several.
+    /// The lines of rows, with neighbours combined into ranges: `12`, `33-40`; preceded by the name of the
+    /// file and a colon if there are several.
     #[must_use]
     pub fn line_ranges(&self, rows: &[usize]) -> Vec<String> {
         let mut ranges: Vec<(usize, usize, usize)> = Vec::new();
@@ -26,10 +27,10 @@ impl Data {
         ranges.iter().map(one).collect()
     }
 
-    /// The rows of such lines, in ascending order; lines without a row, such as comments, are passed over.
+    /// The rows of a list of lines, in ascending order. Lines without a row, such as comments, are ignored.
     ///
     /// # Errors
-    /// If it is no list of lines, names no file of these, or no row at all.
+    /// If it isn't a list of lines, names a file that isn't among these, or contains no row at all.
     pub fn rows_of_lines(&self, list: &str) -> Result<Vec<usize>, MeasurementError> {
         let mut rows = Vec::new();
         for range in list.split(',').map(str::trim).filter(|range| !range.is_empty()) {

@@ -1,4 +1,5 @@
-//! Units that no heading says, from the size of the readings: only where one is possible and no other is by far.
+//! Units that no heading states, inferred from the size of the readings if exactly one is possible and all
+//! others are far off.
 
 use crate::error::MeasurementError;
 use crate::heading::Field;
@@ -8,33 +9,37 @@ use crate::table::place_of;
 use crate::unit::unit;
 use bulge_muscles::units::significant;
 
-/// Units in which pressures and lengths are read. Others (hPa, atm, kgf/cm^2, um) are one of these, nearly, or are never left unsaid.
+/// Candidate units of pressure and length. Others (hPa, atm, kgf/cm^2, um) nearly equal one of these or are
+/// never left out.
 const PRESSURES: [&str; 6] = ["Pa", "mbar", "kPa", "psi", "bar", "MPa"];
 const LENGTHS: [&str; 4] = ["mm", "cm", "m", "in"];
-/// Lengths of a muscle under test over its unpressurised one. Their ratio is below that of any two units of length (an inch is 2.54 cm): one at most fits.
+/// Range of a muscle's length in a test over its unpressurised length. The ratio of the ends is below that of
+/// any two units of length (an inch is 2.54 cm), so at most one unit fits.
 const OF_LENGTH: [f64; 2] = [0.55, 1.25];
-/// Largest displacement over the unpressurised length: less is none that a muscle is tested with, more than any can do.
+/// Range of the largest displacement over the unpressurised length: smaller ones are not tested, larger ones
+/// are impossible.
 const OF_DISPLACEMENT: [f64; 2] = [0.005, 0.6];
-/// Largest gauge pressures of tests on air \[Pa\].
+/// Range of the largest gauge pressure in tests with air \[Pa\].
 const OF_PRESSURE: [f64; 2] = [0.05e5, 15e5];
-/// Units of force that are left unsaid, in newtons.
+/// Units of force that may be left out, in newtons.
 const FORCES: [(&str, f64); 4] = [("N", 1.0), ("lbf", 4.448_222), ("kgf", 9.806_65), ("kN", 1e3)];
-/// Measured over computed forces, either way: gains, rubber, friction and end effects stay below the first. Units are told apart where all others are
-/// beyond the second: the nearest two, kPa and psi, differ by a factor of 6.9.
+/// Ratio of measured and computed forces, either way. Gains, rubber, friction and end effects stay below the
+/// first value. A unit is accepted if all others are beyond the second: the nearest two, kPa and psi, differ
+/// by a factor of 6.9.
 const ALIKE: f64 = 2.5;
 const OTHER: f64 = 4.0;
-/// Rows count whose computed force is above this part of the largest.
+/// Rows count if their computed force is above this fraction of the largest.
 const LARGE: f64 = 0.1;
-/// One reading in so many, at either end, is an odd one.
+/// At either end, one reading in this many may be an outlier.
 const ODD: usize = 100;
-/// A contraction above it is no fraction of the length.
+/// A larger contraction can't be a fraction of the length.
 const WHOLE: f64 = 1.0;
 
-/// A unit that a column may have.
+/// A possible unit of a column.
 struct Possible {
     symbol: &'static str,
     why: String,
-    /// The unit that the forces have then, where it isn't the newton.
+    /// The unit of the forces in that case, if it isn't the newton.
     force: Option<&'static str>,
 }
 
@@ -44,7 +49,8 @@ impl Possible {
     }
 }
 
-/// Gives columns without a unit the one that their readings show, and says so; `is_good` are the rows that count.
+/// Sets the units of columns without one from their readings, and reports them; `is_good` marks the rows that
+/// count.
 pub(crate) fn settle(
     file: &str,
     slots: &mut [Slot],
@@ -54,7 +60,7 @@ pub(crate) fn settle(
 ) -> Result<(), MeasurementError> {
     let rows: Vec<usize> = (0..is_good.len()).filter(|row| is_good[*row]).collect();
     let mut open = Vec::new();
-    // The motion first: the pressure is known by it.
+    // The motion first, because the pressure is inferred with it.
     let motion_first = |place: &usize| slots[*place].heading.field == Field::Pressure;
     let mut places: Vec<usize> =
         (0..slots.len()).filter(|place| slots[*place].heading.open_unit.is_some()).collect();
@@ -80,7 +86,7 @@ pub(crate) fn settle(
                 slots[place].become_column(field, |value| found.scale.si(value));
                 say(reading, &slots[place], Some(symbol), &format!("no unit is written: {why}"));
             }
-            // A fraction, as it should be.
+            // The readings are fractions, as they should be.
             [] if field == Field::Contraction => {}
             _ => open.push((place, possible)),
         }
@@ -94,7 +100,7 @@ fn values(slots: &[Slot], field: Field, rows: &[usize]) -> Vec<f64> {
     rows.iter().filter_map(|row| all.get(*row).copied()).collect()
 }
 
-/// The smallest and the largest but for odd ones.
+/// The smallest and the largest value without outliers.
 fn range(values: &[f64]) -> [f64; 2] {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
@@ -103,14 +109,14 @@ fn range(values: &[f64]) -> [f64; 2] {
     [at(odd), at(sorted.len().saturating_sub(1 + odd))]
 }
 
-/// Per cent, if these are no fractions.
+/// Per cent, if the values aren't fractions.
 fn per_cent(values: &[f64]) -> Vec<Possible> {
     let [_, high] = range(values);
     let why = format!("{} is no fraction", significant(high, 3));
     if high > WHOLE { vec![Possible::new("%", why)] } else { Vec::new() }
 }
 
-/// Units in which these are lengths, or displacements, of a muscle.
+/// Units in which the values are possible lengths, or displacements, of a muscle.
 fn lengths(values: &[f64], field: Field, l0: Option<f64>) -> Vec<Possible> {
     let Some(l0) = l0.filter(|l0| l0.is_finite() && *l0 > 0.0) else { return Vec::new() };
     let [low, high] = range(values);
@@ -130,7 +136,7 @@ fn lengths(values: &[f64], field: Field, l0: Option<f64>) -> Vec<Possible> {
     among(OF_DISPLACEMENT, [largest, largest], "a displacement of")
 }
 
-/// Units in which the pressures are those of a test on air.
+/// Units in which the values are pressures of a test with air.
 fn by_size(values: &[f64]) -> Vec<Possible> {
     let [_, largest] = range(values);
     let found = PRESSURES.into_iter().filter_map(|symbol| {
@@ -141,8 +147,8 @@ fn by_size(values: &[f64]) -> Vec<Possible> {
     found.collect()
 }
 
-/// The unit in which the muscle as stated pulls about as much as was measured, and in which alone: no other does, whatever unit the force has that
-/// says none.
+/// The unit in which the muscle as stated pulls about as much as was measured, if no other unit does so for
+/// any unit of force that may have been left out.
 fn pressures(slots: &[Slot], rows: &[usize], options: &ReadOptions) -> Vec<Possible> {
     let (pressure, force) = (values(slots, Field::Pressure, rows), values(slots, Field::Force, rows));
     let by_size = by_size(&pressure);
@@ -180,7 +186,8 @@ fn pressures(slots: &[Slot], rows: &[usize], options: &ReadOptions) -> Vec<Possi
     }
 }
 
-/// Measured forces over those of the muscle, per unit of the readings of the pressure: the median of the rows that say most.
+/// Measured forces over those of the muscle, per unit of the pressure readings: the median over the most
+/// informative rows.
 fn ratio(pressure: &[f64], force: &[f64], contraction: &[f64], pull: &[[f64; 2]]) -> Option<f64> {
     let pulls: Vec<f64> = pressure.iter().zip(contraction).map(|(p, c)| p * at(pull, *c)).collect();
     let most = pulls.iter().copied().fold(0.0, f64::max);
@@ -194,7 +201,7 @@ fn ratio(pressure: &[f64], force: &[f64], contraction: &[f64], pull: &[[f64; 2]]
     (!ratios.is_empty()).then(|| *ratios.select_nth_unstable_by(middle, f64::total_cmp).1)
 }
 
-/// Contractions, as far as the motion tells them without its sign.
+/// Contractions, as far as the motion shows them without its sign.
 fn contraction(slots: &[Slot], rows: &[usize], l0: Option<f64>) -> Vec<f64> {
     let of = |field| values(slots, field, rows);
     let share = |value: &f64, l0: f64| (value / l0).abs();
@@ -212,7 +219,7 @@ fn contraction(slots: &[Slot], rows: &[usize], l0: Option<f64>) -> Vec<f64> {
     }
 }
 
-/// The value at a place, linear between those of a table; 0 beyond its ends.
+/// Linear interpolation in a table; 0 beyond its ends.
 fn at(table: &[[f64; 2]], place: f64) -> f64 {
     let next = table.partition_point(|[x, _]| *x <= place);
     match (next.checked_sub(1).and_then(|before| table.get(before)), table.get(next)) {
@@ -222,7 +229,7 @@ fn at(table: &[[f64; 2]], place: f64) -> f64 {
     }
 }
 
-/// What is shown of a column.
+/// Reports what the readings of a column show.
 fn say(reading: &mut Reading, slot: &Slot, symbol: Option<&str>, says: &str) {
     let is_it = |used: &&mut crate::reading::ColumnUse| {
         used.column == slot.heading.text && used.quantity.as_deref() == Some(slot.heading.field.name())
@@ -263,7 +270,7 @@ fn refused(file: &str, slots: &[Slot], rows: &[usize], open: &[(usize, Vec<Possi
     }
 }
 
-/// What is said of a column behind `--columns`.
+/// The entry of a column for `--columns`.
 fn entry(slot: &Slot, symbol: &str) -> String {
     let heading = &slot.heading;
     let quotes = if heading.text.contains([',', '=']) { "\\\"" } else { "" };

@@ -1,6 +1,7 @@
 //! MATLAB files of version 5 to 7.2: numeric vectors of one length, as variables or as fields of a structure.
 //!
-//! The format is that of the "MAT-File Format" reference of `MathWorks`: elements of a type, a number of bytes and these, padded to eight.
+//! The format is described in the "MAT-File Format" reference of `MathWorks`: elements with a type, a number
+//! of bytes and these bytes, padded to a multiple of eight.
 
 use crate::assignment::{Header, assign};
 use crate::csv_file::MOST_ROWS;
@@ -15,14 +16,14 @@ use std::io::Read;
 const MAGIC: &[u8] = b"MATLAB ";
 /// Bytes of text and flags before the first element.
 const START: usize = 128;
-/// Most bytes of an element that is unpacked.
+/// Most bytes of a decompressed element.
 const MOST_BYTES: u64 = 1 << 30;
-/// Structures within structures.
+/// Deepest nesting of structures.
 const DEEPEST: usize = 4;
-/// Types of elements.
+/// Element types.
 const MATRIX: u32 = 14;
 const COMPRESSED: u32 = 15;
-/// Classes of arrays: a structure, and the numeric ones from double to 64-bit integers.
+/// Array classes: a structure, and the numeric ones from double to 64-bit integers.
 const STRUCTURE: u8 = 2;
 const NUMERIC: std::ops::RangeInclusive<u8> = 6..=15;
 
@@ -54,7 +55,7 @@ pub(crate) fn read(file: &str, bytes: &[u8], options: &ReadOptions) -> Result<Ta
         _ => return Err(damaged()),
     };
     variables(&Elements { bytes: &bytes[START..], is_big }, &mut all).ok_or_else(damaged)?;
-    // The table is what has the most rows of one number, among vectors.
+    // The table consists of the vectors of the most common length; among equally common ones, the longest.
     let rows = all.iter().map(|variable| variable.values.len()).filter(|length| *length > 1);
     let count = |rows: usize| all.iter().filter(|variable| variable.values.len() == rows).count();
     let Some(rows) = rows.max_by_key(|rows| (count(*rows), *rows)) else {
@@ -99,7 +100,7 @@ pub(crate) fn read(file: &str, bytes: &[u8], options: &ReadOptions) -> Result<Ta
     draft.finish(file, options)
 }
 
-/// Bytes with elements one after the other.
+/// A sequence of elements.
 struct Elements<'a> {
     bytes: &'a [u8],
     is_big: bool,
@@ -114,14 +115,14 @@ impl<'a> Elements<'a> {
         Some(if self.is_big { u32::from_be_bytes(word) } else { u32::from_le_bytes(word) })
     }
 
-    /// The next element; small ones have type, length and bytes in eight bytes.
+    /// The next element; small ones pack type, length and data into eight bytes.
     fn next(&mut self) -> Option<Element<'a>> {
         let word = self.word(0)?;
         let (kind, start, length, end): (u32, usize, usize, usize) = if word >> 16 != 0 {
             (word & 0xffff, 4, (word >> 16) as usize, 8)
         } else {
             let length = self.word(4)? as usize;
-            // What is compressed isn't padded.
+            // Compressed elements aren't padded.
             let padded = if word == COMPRESSED { length } else { length.checked_next_multiple_of(8)? };
             (word, 8, length, padded.checked_add(8)?)
         };
@@ -190,10 +191,11 @@ fn variables(elements: &Elements<'_>, found: &mut Vec<Variable>) -> Option<()> {
     Some(())
 }
 
-/// The columns of an array: one of a vector, several of a matrix, those of its fields of a structure. Others have none.
+/// The columns of an array: one for a vector, several for a matrix, those of its fields for a structure; none
+/// for other arrays.
 fn array(elements: &Elements<'_>, name: Option<&str>, depth: usize, found: &mut Vec<Variable>) -> Option<()> {
     let mut elements = elements.within(elements.bytes);
-    // An empty array stands for nothing.
+    // An empty array has no columns.
     let Some((_, flags)) = elements.next() else { return Some(()) };
     let class = *flags.get(if elements.is_big { 3 } else { 0 })?;
     let dimensions = elements.next()?;
@@ -211,7 +213,7 @@ fn array(elements: &Elements<'_>, name: Option<&str>, depth: usize, found: &mut 
     let values = elements.numbers(real)?;
     let count = |index: usize| dimensions.get(index).copied().unwrap_or(1);
     if dimensions.len() != 2 || count(0).checked_mul(count(1))? != values.len() {
-        // More than two dimensions are no table.
+        // An array with more than two dimensions isn't a table.
         return Some(());
     }
     let (rows, columns) = if count(0) == 1 { (count(1), 1) } else { (count(0), count(1)) };
@@ -300,7 +302,7 @@ mod tests {
     fn variables_fields_and_matrices() {
         let plain = ReadOptions::default();
         let packed: Vec<Vec<u8>> = variables(false).iter().map(|element| compressed(element)).collect();
-        // One structure: the length of its fields' names, the names, and an array without a name for each.
+        // One structure: the length of its field names, the names, and an unnamed array for each field.
         let fields = ["p_bar", "L_mm", "force_N"].map(|name| format!("{name:\0<32}")).concat();
         let fields_of =
             [doubles("", 4, &P, false), doubles("", 4, &L, false), doubles("", 4, &F, false)].concat();

@@ -1,4 +1,5 @@
-//! One motion of the muscle: a displacement becomes a length, and of length and contraction the measured one is kept.
+//! Reduces the motion to one column: a displacement becomes a length, and of length and contraction the
+//! measured one is kept.
 
 use crate::error::MeasurementError;
 use crate::heading::Field;
@@ -7,12 +8,12 @@ use crate::slot::Slot;
 use crate::sweep;
 use crate::table::place_of;
 
-/// A displacement whose readings all lie between these shares of the muscle's length is the length itself.
+/// A displacement with all readings between these fractions of the muscle's length is the length itself.
 const LENGTHS: [f64; 2] = [0.4, 1.6];
-/// How far a contraction may be from the one that follows from the length.
+/// Largest difference between a contraction and the one that follows from the length.
 const SAME: f64 = 5e-3;
 
-/// Leaves one motion among the columns; `is_good` are the rows that count.
+/// Leaves one motion among the columns; `is_good` marks the rows that count.
 pub(crate) fn settle(
     file: &str,
     slots: &mut Vec<Slot>,
@@ -43,7 +44,7 @@ fn rows(is_good: &[bool]) -> impl Iterator<Item = usize> + Clone + '_ {
     (0..is_good.len()).filter(|row| is_good[*row])
 }
 
-/// Whether contraction = 1 - length/l0, with the l0 that fits best: least squares of length = l0 (1 - contraction).
+/// Whether contraction = 1 - length/l0, with the best l0 from least squares of length = l0 (1 - contraction).
 fn are_one(pairs: &[[f64; 2]]) -> bool {
     let (mut both, mut square) = (0.0, 0.0);
     for [length, contraction] in pairs {
@@ -54,7 +55,7 @@ fn are_one(pairs: &[[f64; 2]]) -> bool {
     l0.is_finite() && l0 > 0.0 && pairs.iter().all(|[length, c]| (1.0 - length / l0 - c).abs() <= SAME)
 }
 
-/// A displacement is measured from the unpressurised length; which way it counts is seen from the force.
+/// A displacement is measured from the unpressurised length; its sign is found from the force.
 fn displacement(
     file: &str,
     slots: &mut [Slot],
@@ -96,14 +97,14 @@ fn displacement(
     Ok(())
 }
 
-/// Which way a displacement counts, and why.
+/// The sign of a displacement, and the reason for it.
 struct Sign {
     shortens: bool,
     why: &'static str,
 }
 
-/// The force falls as a muscle shortens at constant pressure: force = a + b pressure + c displacement, and the sign of c. Under a weight a muscle
-/// shortens as the pressure rises.
+/// The sign of c in force = a + b pressure + c displacement, since the force falls as a muscle shortens at
+/// constant pressure. Under a weight a muscle shortens as the pressure rises.
 fn sign(slots: &[Slot], place: usize, is_good: &[bool]) -> Sign {
     let numbers = |field| place_of(slots, field).map_or(&[][..], |place| slots[place].numbers());
     let (pressure, force, way) = (numbers(Field::Pressure), numbers(Field::Force), slots[place].numbers());
@@ -119,7 +120,7 @@ fn sign(slots: &[Slot], place: usize, is_good: &[bool]) -> Sign {
         return Sign { shortens: pd > 0.0, why: "at a held force it goes with the pressure" };
     }
     let (pf, df) = (covariance(p, f), covariance(d, f));
-    // c = (df pp - pf pd) / (pp dd - pd^2); at one pressure pp and pd vanish.
+    // c = (df pp - pf pd) / (pp dd - pd^2); at a single pressure pp and pd vanish.
     let slope = if pp > 0.0 && pp * dd > 1.0001 * pd * pd { df * pp - pf * pd } else { df };
     match slope {
         slope if slope < 0.0 => Sign { shortens: true, why: "the force falls as it grows" },
@@ -128,7 +129,7 @@ fn sign(slots: &[Slot], place: usize, is_good: &[bool]) -> Sign {
     }
 }
 
-/// Says of a column what became of it.
+/// Reports how a column was used.
 fn note(reading: &mut Reading, column: &str, quantity: Option<&str>, says: &str) {
     if let Some(used) =
         reading.columns.iter_mut().find(|used| used.column == column && used.quantity.is_some())

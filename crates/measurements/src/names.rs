@@ -1,36 +1,36 @@
-//! Names of columns as people write them: `Kraft / N`, `P1 (kPa gauge)`, `t_s`.
+//! Column names as people write them: `Kraft / N`, `P1 (kPa gauge)`, `t_s`.
 
 use crate::dimension::Scale;
 use crate::heading::Field;
 use crate::unit::{Unit, unit};
 
-/// How sure a guess is, from the weakest.
+/// Strength of a guess, from the weakest.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Strength {
-    /// Only the unit says what it is.
+    /// Only the unit indicates it.
     UnitAlone,
-    /// Name and unit say it, but it isn't what was measured: a set point, an error.
+    /// Name and unit indicate it, but it isn't a measured value: a set point, an error.
     Aside,
-    /// The name says it, without a unit.
+    /// The name indicates it, without a unit.
     NameAlone,
-    /// Name and unit say it.
+    /// Name and unit indicate it.
     NameAndUnit,
-    /// Just as it should be written.
+    /// The standard heading.
     Exact,
 }
 
-/// What a column may be.
+/// A possible meaning of a column.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Guess {
     pub(crate) field: Field,
     pub(crate) strength: Strength,
-    /// None where nothing is said of it.
+    /// None if no unit is written.
     pub(crate) unit: Option<Unit>,
     /// Whether its name says that it grows when the muscle lengthens.
     pub(crate) is_lengthening: bool,
 }
 
-/// Words of a name, each with what it stands for. Whole: only if nothing else is in the name.
+/// Words of a name with their meanings; the flag requires that the name contains nothing else.
 const WORDS: &[(&str, Field, bool)] = &[
     ("force_sd", Field::ForceSd, true),
     ("force_std", Field::ForceSd, true),
@@ -121,7 +121,7 @@ const WORDS: &[(&str, Field, bool)] = &[
     ("richtung", Field::Direction, true),
 ];
 
-/// Words of what isn't a reading of this quantity itself.
+/// Words for values that aren't readings of the quantity itself.
 const ASIDE: &[&str] = &[
     "set",
     "setpoint",
@@ -153,16 +153,17 @@ const ASIDE: &[&str] = &[
     "filtered",
 ];
 
-/// Words of a pressure above vacuum.
+/// Words for a pressure above vacuum.
 const ABSOLUTE: &[&str] = &["absolute", "abs", "absolut", "absolutdruck"];
 
-/// What grows when the muscle gets longer.
+/// Words for quantities that grow when the muscle lengthens.
 const LENGTHENING: &[&str] = &["extension", "elongation"];
 
-/// Longest name that is looked into, in characters.
+/// Longest name that is analysed, in characters.
 const LONGEST: usize = 100;
 
-/// What a column may be, by its heading and, where there is a row of them, its unit. The best come first.
+/// Possible meanings of a column from its heading and its unit in a row of units, if there is one; best
+/// first.
 pub(crate) fn guesses(heading: &str, unit_beneath: Option<&str>) -> Vec<Guess> {
     let heading: String = heading.trim().chars().take(LONGEST).collect();
     let beneath =
@@ -177,7 +178,7 @@ pub(crate) fn guesses(heading: &str, unit_beneath: Option<&str>) -> Vec<Guess> {
                 unit.is_absolute |= words.iter().any(|word| ABSOLUTE.contains(&word.as_str()));
             }
             let is_known = match text.as_deref() {
-                // A name whose unit is none of its quantity means something else.
+                // A name whose unit doesn't suit its quantity means something else.
                 Some(text) => unit.is_some() || (field.is_label() && matches!(text, "-" | "1")),
                 None => !says_unit || field.is_label(),
             };
@@ -201,9 +202,9 @@ pub(crate) fn guesses(heading: &str, unit_beneath: Option<&str>) -> Vec<Guess> {
             let unit = unit(field, text)?;
             Some(Guess { field, strength: Strength::UnitAlone, unit: Some(unit), is_lengthening: false })
         };
-        // One unit of millimetres is more often that of a displacement, which its values then tell.
+        // A column in millimetres is more often a displacement; its values then decide.
         let fields = [Field::Pressure, Field::Force, Field::Displacement, Field::Time, Field::Temperature];
-        // A letter at the end of a name is hardly a unit by which to know it.
+        // A single letter at the end of a name is hardly a unit.
         let texts = texts.filter(|text| says_unit || text.len() > 1);
         found.extend(texts.flat_map(|text| fields.map(|field| (field, text))).filter_map(alone).take(1));
     }
@@ -211,7 +212,7 @@ pub(crate) fn guesses(heading: &str, unit_beneath: Option<&str>) -> Vec<Guess> {
     found
 }
 
-/// Whether a heading is as it should be: the name, and its unit in square brackets.
+/// Whether a heading has the standard form: the name, and its unit in square brackets.
 fn is_exact(heading: &str, field: Field, unit: Option<&Unit>) -> bool {
     let (name, inside) = match heading.split_once('[') {
         Some((name, rest)) => (name.trim(), rest.strip_suffix(']').map(str::trim)),
@@ -227,7 +228,7 @@ fn is_exact(heading: &str, field: Field, unit: Option<&Unit>) -> bool {
 
 type Split = (String, Option<String>);
 
-/// A heading as name and unit, in all the ways it can be read; and whether it certainly says a unit.
+/// A heading as name and unit in all possible ways, and whether it certainly has a unit.
 fn splits(heading: &str, beneath: Option<&str>) -> (Vec<Split>, bool) {
     if let Some(unit) = beneath {
         let plain = without_brackets(heading).map_or(heading.to_owned(), |(name, _)| name);
@@ -256,12 +257,12 @@ fn splits(heading: &str, beneath: Option<&str>) -> (Vec<Split>, bool) {
     (found, says_unit)
 }
 
-/// The text outside and inside of the brackets of a unit: the last ones, or the only ones with something in them.
+/// The text outside and inside the brackets of a unit: the last brackets, or the only nonempty ones.
 fn without_brackets(heading: &str) -> Option<(String, String)> {
     let pairs = [('[', ']'), ('(', ')'), ('{', '}'), ('<', '>')];
     let (start, end) = pairs.iter().find_map(|(open, close)| {
         let start = heading.find(*open)?;
-        // Brackets within brackets belong to the unit: "bar(g)" in "[bar(g)]".
+        // Nested brackets belong to the unit: "bar(g)" in "[bar(g)]".
         let end = heading.rfind(*close).filter(|end| *end > start)?;
         Some((start, end))
     })?;
@@ -269,7 +270,7 @@ fn without_brackets(heading: &str) -> Option<(String, String)> {
     Some((name.trim().to_owned(), heading[start + 1..end].trim().to_owned()))
 }
 
-/// The words of a name: lower case, without accents, without numbers at their ends.
+/// The words of a name in lower case, without accents and trailing digits.
 pub(crate) fn words(name: &str) -> Vec<String> {
     let mut plain = String::with_capacity(name.len());
     for c in name.to_lowercase().chars() {
@@ -289,7 +290,7 @@ pub(crate) fn words(name: &str) -> Vec<String> {
     plain.split(' ').map(without_number).filter(|word| !word.is_empty()).collect()
 }
 
-/// What the words of a name stand for.
+/// The meanings of the words of a name.
 fn fields(words: &[String]) -> Vec<Field> {
     let whole = words.join("_");
     let of = |is_it: &dyn Fn(&str, bool) -> bool| -> Vec<Field> {
@@ -315,21 +316,21 @@ fn fields(words: &[String]) -> Vec<Field> {
     if !found.is_empty() {
         return found;
     }
-    // "p rel", "F Zug": symbols with a word beside them.
+    // "p rel", "F Zug": symbols with a qualifying word.
     let first = words.first().map_or("", String::as_str);
     let symbols = [("p", Field::Pressure), ("f", Field::Force), ("t", Field::Time)];
     let symbol = symbols.iter().find(|(symbol, _)| *symbol == first).map(|(_, field)| *field);
     symbol.or_else(|| slip(&whole)).into_iter().collect()
 }
 
-/// The name that is a slip of the finger or two away.
+/// The name that is one or two typing errors away.
 pub(crate) fn slip(word: &str) -> Option<Field> {
     let slips = |field: &Field| strsim::damerau_levenshtein(field.name(), word);
     let closest = Field::ALL.into_iter().min_by_key(slips)?;
     (slips(&closest) * 4 <= word.chars().count()).then_some(closest)
 }
 
-/// The unit of a guess, or what stands for it where none is said: seconds and newtons, and pure numbers.
+/// The unit that is assumed if none is written: seconds, newtons, and dimensionless numbers.
 pub(crate) fn assumed(field: Field) -> Option<(Scale, &'static str)> {
     match field {
         Field::Time => Some((Scale::SI, "s")),

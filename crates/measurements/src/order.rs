@@ -1,4 +1,4 @@
-//! The order of the rows in time, and rows that are there twice.
+//! The order of the rows in time, and duplicated rows.
 
 use crate::columns::Columns;
 use crate::error::MeasurementError;
@@ -8,14 +8,14 @@ use std::collections::HashMap;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::ops::Range;
 
-/// A time that goes back to so small a share of its range begins again: another run.
+/// A time that goes back to within this fraction of its range begins another run.
 const BEGINS_AGAIN: f64 = 0.2;
-/// Sorted rows whose readings change less than this share of what they change in the file are clearly in the order of the test.
+/// Sorting is accepted if it reduces the changes from row to row to this fraction.
 const SMOOTHER: f64 = 0.9;
-/// Runs that begin again have so many rows at least, on average.
+/// Runs that begin again have at least so many rows, on average.
 const ROWS_PER_RUN: usize = 8;
 
-/// Sorts rows by their times where this is clearly the order in which they were measured, and sets copies apart.
+/// Sorts rows by their times if this is clearly the order of the measurement, and sets copies apart.
 pub(crate) fn put_in_order(
     file: &str,
     columns: &mut Columns,
@@ -53,7 +53,7 @@ pub(crate) fn put_in_order(
     Ok(())
 }
 
-/// Rows that belong together, as labelled.
+/// Ranges of rows that belong together according to their labels.
 fn segments(columns: &Columns) -> Vec<Range<usize>> {
     let label = |row: usize| {
         let of = |labels: &Option<crate::columns::Labels>| labels.as_ref().map(|labels| labels.rows()[row]);
@@ -67,7 +67,7 @@ fn times(columns: &Columns) -> &[f64] {
     columns.time_s.as_deref().unwrap_or_default()
 }
 
-/// Whether the times of some rows go back other than to begin again.
+/// Whether the times of some rows go back other than at the beginning of a run.
 fn is_out_of_order(columns: &Columns, rows: &Range<usize>) -> bool {
     let time = &times(columns)[rows.clone()];
     let (low, high) = crate::resolution::bounds(time);
@@ -77,13 +77,13 @@ fn is_out_of_order(columns: &Columns, rows: &Range<usize>) -> bool {
         && !(backward.all(|pair| pair[1] <= again) && (are_runs(time) || begin_alike(time)))
 }
 
-/// Whether times go on for some rows before they go back.
+/// Whether times increase over several rows before they go back.
 fn are_runs(time: &[f64]) -> bool {
     let backward = time.windows(2).filter(|pair| pair[1] < pair[0]).count();
     (backward + 1) * ROWS_PER_RUN <= time.len()
 }
 
-/// Whether short runs are of about one length, and each begins where the first did.
+/// Whether short runs have about the same length, and each begins where the first did.
 fn begin_alike(time: &[f64]) -> bool {
     let runs: Vec<&[f64]> = time.chunk_by(|a, b| a <= b).collect();
     let longest = runs.iter().map(|run| run.len()).max().unwrap_or(0);
@@ -93,8 +93,8 @@ fn begin_alike(time: &[f64]) -> bool {
     longest > 1 && runs.iter().all(is_alike)
 }
 
-/// Sorts rows by their times where this makes the readings smoother; how many rows were sorted. Long runs that it doesn't make smoother stay as they
-/// are, one after the other; anything else is refused.
+/// Sorts rows by their times if this makes the readings smoother, and returns how many rows were sorted. Long
+/// runs that it doesn't make smoother stay in sequence; anything else is refused.
 fn sort(
     file: &str,
     columns: &Columns,
@@ -104,7 +104,7 @@ fn sort(
     let time = times(columns);
     let as_read = order.to_vec();
     if order.windows(2).all(|pair| time[pair[1]] <= time[pair[0]]) {
-        // The whole table is reversed; rows of one time are too.
+        // If the whole table is reversed, rows with equal times are reversed too.
         order.reverse();
         return Ok(order.len());
     }
@@ -130,7 +130,8 @@ fn sort(
     })
 }
 
-/// How far the readings go from row to row in one order, as a share of another. Rows that follow each other in both don't count.
+/// Change of the readings from row to row in one order relative to another. Rows that are neighbours in both
+/// orders don't count.
 fn shares(columns: &Columns, before: &[usize], after: &[usize]) -> Vec<(&'static str, f64)> {
     let start = before[0];
     let mut place = vec![0; after.len()];
@@ -152,8 +153,8 @@ fn shares(columns: &Columns, before: &[usize], after: &[usize]) -> Vec<(&'static
     readings.iter().filter_map(share).collect()
 }
 
-/// Rows that equal an earlier one in every column, and that one. Where different readings have one time as well, the clock is coarse, and equal
-/// readings are none of copies.
+/// Rows that equal an earlier one in every column, with that one. If different readings share a time as well,
+/// the clock is coarse, and equal readings are no copies.
 fn copies(columns: &Columns) -> Vec<(usize, usize)> {
     let numbers: Vec<&[f64]> = columns.numbers().map(|(_, values)| values).collect();
     let marks = |row: usize| {
@@ -165,7 +166,7 @@ fn copies(columns: &Columns) -> Vec<(usize, usize)> {
         marks(a) == marks(b) && numbers.iter().all(|values| values[a].to_bits() == values[b].to_bits())
     };
     let time = times(columns);
-    // Rows of one time, by the runs in which it goes on: a time that begins again is another one.
+    // Rows with the same time are grouped by runs: a time that begins again is another one.
     let mut at: HashMap<u64, Vec<usize>> = HashMap::with_capacity(time.len());
     let (mut found, mut is_coarse) = (Vec::new(), false);
     for (row, now) in time.iter().enumerate() {

@@ -1,4 +1,5 @@
-//! Parquet: the same columns and checks as in CSV; a column's name is its heading, such as `length [mm]`.
+//! Parquet files: the same columns and checks as in CSV; a column's name is its heading, such as `length
+//! [mm]`.
 
 use crate::assignment::{Header, assign};
 use crate::cell::Decimal;
@@ -61,7 +62,7 @@ pub(crate) fn read<R: ChunkReader + 'static>(
     draft.finish(file, options)
 }
 
-/// A column that is read, with the rows that it has so far.
+/// A column with the rows that have been read so far.
 struct Column<'a> {
     draft: &'a mut Draft,
     slot: usize,
@@ -86,15 +87,15 @@ impl Column<'_> {
     }
 }
 
-/// What to do with a damaged file.
+/// The remedy for a damaged file.
 const AGAIN: &str = "write it again, or export CSV";
 
-/// What the reader of the file says, with its cure.
+/// The reader's message with a remedy.
 fn refused(file: &str, error: &ParquetError) -> MeasurementError {
     let says = error.to_string();
     let says = says.strip_prefix("Parquet error: ").unwrap_or(&says);
     let (why, instead) = if let Some(codec) = says.strip_prefix("Disabled feature at compile time: ") {
-        // The name of the reader's own feature.
+        // The reader's message names its own feature instead of the codec.
         let codec = if codec == "flate2" { "gzip" } else { codec };
         (format!("it is compressed with {codec}"), "write it with Snappy compression or none, or export CSV")
     } else if says.contains("Corrupt footer") || says.starts_with("EOF") {
@@ -107,7 +108,7 @@ fn refused(file: &str, error: &ParquetError) -> MeasurementError {
     MeasurementError::Parquet { file: file.to_owned(), why: quoted(&why), instead }
 }
 
-/// Whether integers are without sign.
+/// Whether integers are unsigned.
 fn is_unsigned(column: &ColumnDescriptor) -> bool {
     match column.logical_type_ref() {
         Some(LogicalType::Integer(integer)) => !integer.is_signed,
@@ -116,7 +117,7 @@ fn is_unsigned(column: &ColumnDescriptor) -> bool {
     }
 }
 
-/// The rows of one column in one group.
+/// Reads the rows of one column in one group.
 fn read_chunk(group: &dyn RowGroupReader, place: usize, column: &mut Column<'_>) -> Result<(), Problem> {
     fn chunk<T: DataType>(column: ColumnDescPtr, pages: CheckedPages) -> ColumnReaderImpl<T> {
         ColumnReaderImpl::new(column, Box::new(pages))
@@ -137,12 +138,13 @@ fn read_chunk(group: &dyn RowGroupReader, place: usize, column: &mut Column<'_>)
         Type::FLOAT => numbers(chunk::<FloatType>(description, pages), column, |value| f64::from(*value)),
         Type::DOUBLE => numbers(chunk::<DoubleType>(description, pages), column, |value| *value),
         Type::BYTE_ARRAY => texts(chunk(description, pages), column),
-        // Refused by `checked_type` already.
+        // `checked_type` has refused these already.
         _ => Ok(()),
     }
 }
 
-/// A plain column of numbers or text. A date or a decimal is stored as an integer too, in a unit of its own.
+/// Requires a plain column of numbers or text. Dates and decimals are stored as integers too, in units of
+/// their own.
 fn checked_type(file: &str, column: &ColumnDescriptor, heading: &str) -> Result<(), MeasurementError> {
     let logical = column.logical_type_ref();
     let is_plain = match logical {
@@ -171,7 +173,7 @@ fn checked_type(file: &str, column: &ColumnDescriptor, heading: &str) -> Result<
     }
     let found = match logical {
         _ if column.max_rep_level() > 0 => format!("list of {physical}"),
-        // The name of the type without what it is made of.
+        // The name of the type without its parameters.
         Some(logical) => {
             let shown = format!("{logical:?}");
             format!("{physical} as {}", shown.split(['(', ' ']).next().unwrap_or_default())
@@ -186,7 +188,7 @@ fn checked_type(file: &str, column: &ColumnDescriptor, heading: &str) -> Result<
     })
 }
 
-/// Why a column can't be read; the row is the one after those that could.
+/// Why a column can't be read; the row is the one after the last readable one.
 enum Problem {
     Reader(ParquetError),
     TooMany,
@@ -221,7 +223,7 @@ fn texts(reader: ColumnReaderImpl<ByteArrayType>, column: &mut Column<'_>) -> Re
     })
 }
 
-/// Hands over every value of a column.
+/// Passes on every value of a column.
 fn each<T: DataType>(
     mut reader: ColumnReaderImpl<T>,
     column: &mut Column<'_>,
@@ -241,7 +243,7 @@ fn each<T: DataType>(
         }
         let mut present = values.iter().take(count);
         for record in 0..records {
-            // A value that is missing has the level 0 of an optional column.
+            // A missing value of an optional column has definition level 0.
             let is_there = count == records || levels.get(record).is_some_and(|level| *level > 0);
             match is_there.then(|| present.next()).flatten() {
                 Some(value) => column.take(|slot| take(slot, value)),

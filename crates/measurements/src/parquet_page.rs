@@ -1,7 +1,8 @@
 //! Pages of a Parquet column, checked before they are decoded.
 //!
-//! The decoder of the `parquet` crate relies on what a page says about itself, and panics on a damaged one: where a dictionary is missing,
-//! where levels are longer than the page, and where texts are cut off. Such pages are errors here.
+//! The decoder of the `parquet` crate relies on the page's own description and panics on damaged pages: if a
+//! dictionary is missing, if levels are longer than the page, or if texts are truncated. Such pages are
+//! errors here.
 
 use parquet::basic::{Encoding, Type};
 use parquet::column::page::{Page, PageMetadata, PageReader};
@@ -9,7 +10,7 @@ use parquet::errors::{ParquetError, Result};
 use parquet::file::metadata::ColumnChunkMetaData;
 use parquet::schema::types::ColumnDescPtr;
 
-/// Refuses a column whose place in the file can't be one.
+/// Refuses a column with an impossible position in the file.
 pub(crate) fn checked_place(column: &ColumnChunkMetaData) -> Result<()> {
     let start = column.dictionary_page_offset().unwrap_or_else(|| column.data_page_offset());
     if start < 0 || column.compressed_size() < 0 || column.num_values() < 0 {
@@ -41,7 +42,8 @@ impl CheckedPages {
                 if is_optional && *def_level_encoding != Encoding::RLE {
                     return damaged("levels are in an outdated encoding");
                 }
-                // Four bytes with the length of the levels, then these; the decoder checks them, but not what follows.
+                // Four bytes with the length of the levels, then the levels. The decoder checks these, but
+                // not what follows.
                 let levels = match buf.first_chunk::<4>() {
                     Some(length) if is_optional => 4 + u32::from_le_bytes(*length) as usize,
                     _ => 0,
@@ -70,12 +72,12 @@ impl CheckedPages {
             Encoding::PLAIN => self.checked_texts(values, count),
             Encoding::PLAIN_DICTIONARY | Encoding::RLE_DICTIONARY if self.has_dictionary => Ok(()),
             Encoding::PLAIN_DICTIONARY | Encoding::RLE_DICTIONARY => damaged("a dictionary is missing"),
-            // Hardly written, and not checked: byte arrays of differences and the like.
+            // Rarely written and not checked: delta-encoded byte arrays and similar encodings.
             other => Err(ParquetError::General(format!("the encoding {other} is not read"))),
         }
     }
 
-    /// Whether so many texts follow each other, each after its length in four bytes.
+    /// Whether `count` texts follow each other, each after its length in four bytes.
     fn checked_texts(&self, mut bytes: &[u8], count: u32) -> Result<()> {
         if self.column.physical_type() != Type::BYTE_ARRAY {
             return Ok(());

@@ -1,4 +1,5 @@
-//! The quality gate: what looks wrong in a data set, where, and what to do about it. Nothing is changed.
+//! The quality check: reports what looks wrong in a data set, where, and what to do about it. Nothing is
+//! changed.
 
 mod clipping;
 mod design;
@@ -16,16 +17,16 @@ use crate::resolution::Resolution;
 use serde::Serialize;
 use std::ops::Range;
 
-/// What is known about the muscle; the gate works without.
+/// Known properties of the muscle; the check works without them.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct QualityOptions {
-    /// Length of the unpressurised muscle \[m\]: contractions can then be judged where the length was measured.
+    /// Length of the unpressurised muscle \[m\], for judging contractions if the length was measured.
     pub l0_m: Option<f64>,
-    /// Radius of the unpressurised muscle \[m\]: forces can then be judged by it.
+    /// Radius of the unpressurised muscle \[m\], for judging forces.
     pub radius_m: Option<f64>,
 }
 
-/// What the gate finds, in the order of [`FindingKind`].
+/// The findings, in the order of [`FindingKind`].
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Quality {
     /// The findings.
@@ -48,22 +49,23 @@ impl Quality {
 /// One thing that looks wrong.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Finding {
-    /// What it is.
+    /// Kind of the finding.
     pub kind: FindingKind,
-    /// How bad it is.
+    /// Its severity.
     pub severity: Severity,
-    /// Where: lines of the files, at most [`Finding::MOST_RANGES`] ranges; none if it is about the data as a whole.
+    /// The lines of the files, in at most [`Finding::MOST_RANGES`] ranges; none if it concerns the data as a
+    /// whole.
     pub rows: Vec<LineRange>,
-    /// Number of rows in all.
+    /// Total number of rows.
     pub count: usize,
-    /// What is seen, in a sentence with numbers.
+    /// The observation, in a sentence with numbers.
     pub says: String,
-    /// What to do instead.
+    /// The remedy.
     pub instead: String,
 }
 
 impl Finding {
-    /// Ranges of rows that are listed at most.
+    /// Most ranges of rows that are listed.
     pub const MOST_RANGES: usize = 1000;
 }
 
@@ -78,53 +80,53 @@ pub struct LineRange {
     pub last: usize,
 }
 
-/// What looks wrong.
+/// Kinds of findings.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum FindingKind {
-    /// Fewer rows than anything can be learnt from.
+    /// There are too few rows to learn anything from.
     TooFewRows,
     /// Every row is the same.
     AllRowsIdentical,
-    /// A value that no muscle has.
+    /// A value that is impossible for a muscle.
     ImpossibleValue,
     /// The time stands still or goes back.
     TimeNotMonotone,
     /// A pause within a run.
     TimeGap,
-    /// The label of a run returns after others.
+    /// The label of a run returns after other labels.
     SweepInterrupted,
-    /// A sweep label goes on over what ends a run.
+    /// A sweep label continues although its run has ended.
     SweepContradicted,
     /// A coarse sensor.
     Quantised,
-    /// A reading stays at its extreme while others move.
+    /// A reading stays at its extreme value while others move.
     Clipped,
     /// All readings stay the same although they are noisy.
     Frozen,
     /// A reading far from its neighbours in time.
     Spike,
-    /// Near zero force at positive pressure.
+    /// Force near zero at positive pressure.
     Slack,
-    /// A force that pushes.
+    /// A pushing force.
     NegativeForce,
     /// Repeats differ by an offset.
     RepeatDrift,
-    /// Stated directions against the motion.
+    /// Stated directions contradict the motion.
     DirectionContradicted,
-    /// A length that is held, but not quite.
+    /// A held length that isn't quite constant.
     HeldLengthDrifts,
-    /// A row that is there twice.
+    /// A duplicated row.
     DuplicateRow,
     /// All rows have one pressure.
     OnePressureLevel,
     /// The muscle never moves.
     ContractionConstant,
-    /// The temperature changes, perhaps together with something else.
+    /// The temperature changes, possibly correlated with something else.
     TemperatureChanges,
 }
 
-/// How bad a finding is.
+/// Severity of a finding.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Severity {
@@ -137,7 +139,7 @@ pub enum Severity {
 }
 
 impl Data {
-    /// Looks for what is wrong with the data. A clean data set gives no warning.
+    /// Checks the data for defects. A clean data set gives no warning.
     #[must_use]
     pub fn quality(&self, options: &QualityOptions) -> Quality {
         if self.is_empty() {
@@ -162,17 +164,17 @@ impl Data {
     }
 }
 
-/// Rows with a reading that is none of the muscle's.
+/// Rows with a disturbed reading, which isn't the muscle's.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Disturbance {
     /// The rows, in ascending order.
     pub rows: Vec<usize>,
-    /// What is wrong with them.
+    /// The kind of disturbance.
     pub why: String,
 }
 
 impl Data {
-    /// Rows whose readings are spikes, stood still or were clipped, by column. A static map has none that could be told.
+    /// Rows with spikes, frozen or clipped readings, by column. In a static map they can't be detected.
     #[must_use]
     pub fn disturbed(&self) -> Vec<Disturbance> {
         if self.is_empty() || !self.is_path() {
@@ -202,7 +204,7 @@ impl Data {
     }
 }
 
-/// What is wrong with a column.
+/// The description for a column.
 fn of(what: &str) -> &'static str {
     if what == "spike" {
         "lies far from what the rows around lead to"
@@ -211,7 +213,7 @@ fn of(what: &str) -> &'static str {
     }
 }
 
-/// The data with what several checks need.
+/// The data, with values that several checks need.
 struct Gate<'a> {
     data: &'a Data,
     options: &'a QualityOptions,
@@ -235,7 +237,7 @@ impl<'a> Gate<'a> {
             largest_force: largest(data.force()),
             largest_pressure: largest(data.pressure()),
         };
-        // A disturbed reading is no size of anything.
+        // A disturbed reading must not set the largest force.
         let spikes = spikes::of_force(&gate);
         if !spikes.is_empty() {
             let kept = (0..data.len()).filter(|row| spikes.binary_search(row).is_err());
@@ -248,8 +250,7 @@ impl<'a> Gate<'a> {
         &self.data.structure.resolution
     }
 
-    /// The name of the column of the motion.
-    /// A size of one of the columns with a usual unit.
+    /// A value of one of the columns with a common unit.
     fn with_unit(&self, column: &str, value: f64) -> String {
         let (factor, unit) = match (column, self.data.motion()) {
             ("force", _) => (1.0, "N"),
@@ -277,7 +278,7 @@ impl<'a> Gate<'a> {
         }
     }
 
-    /// A finding about some rows, in rising order.
+    /// A finding about some rows, in ascending order.
     fn finding(
         &self,
         kind: FindingKind,

@@ -1,6 +1,6 @@
-//! Quotations of other people's text in messages: short, on one line, printable.
+//! Quotes user text in messages: short, on one line, printable.
 
-/// The longest quotation in characters.
+/// Longest quotation in characters.
 const LONGEST: usize = 60;
 
 /// At most [`LONGEST`] characters of a text, without control characters.

@@ -2,18 +2,20 @@
 
 use crate::resolution::Resolution;
 
-/// Rows at most in a fit: wider windows are thinned out.
+/// Most rows in a fit; wider windows are thinned.
 const MOST_POINTS: usize = 33;
-/// Over a window the motion covers this many times what the sensor resolves: the rate's standard error is then below 3 %.
+/// The window is so wide that the motion covers this many times the sensor's resolution: the rate's standard
+/// error is then below 3 %.
 const RESOLVED: f64 = 10.0;
 
-/// A faster motion per second is no motion but two times that are nearly equal.
+/// A faster rate (per second) comes from two nearly equal times.
 const FASTEST: f64 = 1e30;
 
-/// ds/dt at each row of a stretch: `s` and `time` of its rows, the turning point before it included; exact for uniform acceleration.
+/// ds/dt at each row of a stretch. `s` and `time` are those of its rows, including the turning point before
+/// it. Exact for uniform acceleration.
 ///
-/// A parabola is fitted to the rows around each one, as few as let the motion stand out from step and noise. A rate against the
-/// `direction` of the stretch is noise near a turning point: it is 0.
+/// A parabola is fitted to the rows around each one, with as few rows as let the motion exceed step and
+/// noise. A rate against the `direction` of the stretch is noise near a turning point and set to 0.
 pub(crate) fn along(s: &[f64], time: &[f64], direction: i8, resolution: &Resolution) -> Vec<f64> {
     let needed = RESOLVED * resolution.step.max(3.0 * resolution.noise);
     let last = s.len().saturating_sub(1);
@@ -33,13 +35,14 @@ pub(crate) fn along(s: &[f64], time: &[f64], direction: i8, resolution: &Resolut
             }
             half /= 2;
             let rate = slope(s, time, row, first, end);
-            // Times that differ by hardly anything have no rate either.
+            // Nearly equal times don't give a rate either.
             if rate * sign > 0.0 && rate.abs() < FASTEST { rate } else { 0.0 }
         })
         .collect()
 }
 
-/// Slope at `row` of the parabola fitted to rows `first..=last`; of the straight line where a parabola isn't determined.
+/// Slope at `row` of the parabola through rows `first..=last`, or of the straight line if a parabola isn't
+/// determined.
 fn slope(s: &[f64], time: &[f64], row: usize, first: usize, last: usize) -> f64 {
     let stride = (last - first).div_ceil(MOST_POINTS - 1).max(1);
     let width = (time[last] - time[row]).abs().max((time[row] - time[first]).abs());
@@ -58,7 +61,7 @@ fn slope(s: &[f64], time: &[f64], row: usize, first: usize, last: usize) -> f64 
             *sum += power * y;
         }
     }
-    // Normal equations after the constant is eliminated.
+    // Normal equations after eliminating the constant.
     let (xx, xq, qq) = (m[2] - m[1] * m[1] / m[0], m[3] - m[1] * m[2] / m[0], m[4] - m[2] * m[2] / m[0]);
     let (xy, qy) = (n[1] - m[1] * n[0] / m[0], n[2] - m[2] * n[0] / m[0]);
     let determinant = xx * qq - xq * xq;
@@ -81,7 +84,7 @@ mod tests {
     #[test]
     fn exact_for_uniform_motion_and_acceleration() {
         for rows in [2, 3, 4, 5, 6, 50, 5000] {
-            // Uneven in time.
+            // Uneven time steps.
             let time: Vec<f64> =
                 (0..rows).map(|i| 1000.0 + 0.01 * f64::from(i) + 0.003 * f64::from(i % 2)).collect();
             let s: Vec<f64> = time.iter().map(|t| 0.1 + 0.02 * (t - 1000.0)).collect();

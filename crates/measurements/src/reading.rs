@@ -3,18 +3,18 @@
 use crate::column_map::ColumnMap;
 use serde::Serialize;
 
-/// What a reader of files may be told.
+/// Options for reading files.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ReadOptions {
-    /// Which column is which quantity, where the user says so.
+    /// Assignment of columns by the user.
     pub columns: ColumnMap,
-    /// Length of the unpressurised muscle \[m\], > 0: a displacement is measured from it.
+    /// Length of the unpressurised muscle \[m\], > 0, from which displacements are measured.
     pub l0_m: Option<f64>,
-    /// Force over gauge pressure \[m^2\] of the muscle as stated, at contractions in ascending order: which unit a pressure has whose heading says
-    /// none. Empty where it isn't known.
+    /// Force over gauge pressure of the muscle as stated \[m^2\], at contractions in ascending order. It
+    /// decides the unit of a pressure whose heading has none. Empty if unknown.
     pub pull: Vec<[f64; 2]>,
-    /// Whether a file may have no column of force: its forces are then 0, and [`crate::Data::has_force`] says so. Without forces sweeps are told by time,
-    /// labels and held pressures alone.
+    /// Whether a file may lack a force column: its forces are then 0, and [`crate::Data::has_force`] is
+    /// false. Without forces, sweeps are found from time, labels and held pressures alone.
     pub force_may_lack: bool,
 }
 
@@ -23,59 +23,59 @@ pub struct ReadOptions {
 pub struct ColumnUse {
     /// The file.
     pub file: String,
-    /// The heading as it is written.
+    /// The heading as written.
     pub column: String,
-    /// The quantity; none: the column isn't read.
+    /// The quantity; none if the column isn't read.
     pub quantity: Option<String>,
-    /// The unit that it was read in.
+    /// The unit in which it was read.
     pub unit: Option<String>,
-    /// The first values as they are written, at most three.
+    /// The first values as written, at most three.
     pub first: Vec<String>,
-    /// Whether this was guessed: neither written as `name [unit]` nor stated by the user.
+    /// Whether it was guessed, that is, neither written as `name [unit]` nor stated by the user.
     pub guessed: bool,
-    /// What else is to be said of it.
+    /// Further remarks.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub says: Option<String>,
 }
 
 impl ColumnUse {
-    /// Says more of it.
+    /// Appends a remark.
     pub(crate) fn add(&mut self, says: &str) {
         let before = self.says.take().map_or_else(String::new, |before| format!("{before}; "));
         self.says = Some(before + says);
     }
 }
 
-/// A row that can't be used.
+/// An unusable row.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct SetApart {
     /// The file.
     pub file: String,
-    /// Its line there, or the row of a file that has no lines; counted from 1.
+    /// Its line, or its row in a file without lines, counted from 1.
     pub row: usize,
-    /// Why.
+    /// The reason.
     pub reason: String,
 }
 
-/// How files were read, for people and programs.
+/// How files were read.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct Reading {
     /// What each column was taken for.
     pub columns: Vec<ColumnUse>,
-    /// Rows that can't be used, with their reasons: the first [`Reading::MOST_LISTED`].
+    /// Unusable rows with their reasons: the first [`Reading::MOST_LISTED`].
     pub set_apart: Vec<SetApart>,
-    /// How many there are in all.
+    /// Number of all unusable rows.
     pub set_apart_rows: usize,
-    /// What else was understood of the files: their encoding, metadata before the table, the order of their rows.
+    /// Further observations: the encoding, metadata before the table, the order of the rows.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub notes: Vec<String>,
 }
 
 impl Reading {
-    /// Rows that are listed at most.
+    /// Most rows that are listed.
     pub const MOST_LISTED: usize = 1000;
 
-    /// Adds a row that can't be used.
+    /// Adds an unusable row.
     pub fn add(&mut self, file: &str, row: usize, reason: String) {
         self.set_apart_rows += 1;
         if self.set_apart.len() < Self::MOST_LISTED {
@@ -83,7 +83,7 @@ impl Reading {
         }
     }
 
-    /// Adds what was read from another file.
+    /// Appends the report of another file.
     pub(crate) fn append(&mut self, other: Self) {
         self.columns.extend(other.columns);
         let room = Self::MOST_LISTED.saturating_sub(self.set_apart.len());

@@ -1,4 +1,4 @@
-//! Runs that repeat each other, and the pure error: what readings differ by although nothing was changed.
+//! Repeated runs, and the pure error: the scatter of readings although nothing was changed.
 
 use crate::columns::Trace;
 use crate::data::Data;
@@ -22,17 +22,19 @@ impl Repeats {
         &self.groups
     }
 
-    /// Noise and drift of the force between repeats; none if nothing was repeated, or the repeats agree to the last digit.
+    /// Noise and drift of the force between repeats; none if nothing was repeated or if the repeats agree to
+    /// the last digit.
     #[must_use]
     pub fn pure_error(&self) -> Option<PureError> {
         self.pure_error
     }
 }
 
-/// Runs on one specimen at one pressure, over the same range in the same directions (and in the same time, where it was measured).
+/// Runs on one specimen at one pressure, over the same range in the same directions (and in the same time, if
+/// it was measured).
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct RepeatGroup {
-    /// Place of the specimen in the list of specimens.
+    /// Index of the specimen in the list of specimens.
     pub specimen: u32,
     /// Mean pressure of the first run \[Pa\].
     pub pressure_pa: f64,
@@ -42,14 +44,14 @@ pub struct RepeatGroup {
     pub directions: Vec<i8>,
     /// The runs, in the order of the rows.
     pub runs: Vec<Run>,
-    /// From each run to the next.
+    /// Offset from each run to the next.
     pub offsets: Vec<Offset>,
 }
 
 /// A sweep, or one full loop of a sweep with several.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Run {
-    /// Place of the sweep.
+    /// Index of the sweep.
     pub sweep: usize,
     /// Its rows.
     pub rows: Range<usize>,
@@ -58,9 +60,9 @@ pub struct Run {
 /// Mean difference of the force between a run and the next.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Offset {
-    /// The next minus this one \[N\].
+    /// Mean of the next run minus this one \[N\].
     pub mean_n: f64,
-    /// Standard deviation of that mean from the noise alone \[N\]; 0 where no noise is seen.
+    /// Standard deviation of that mean from the noise alone \[N\]; 0 if no noise is detected.
     pub sd_n: f64,
     /// Number of readings compared; 0 if the runs have no readings at common contractions.
     pub points: usize,
@@ -71,26 +73,27 @@ pub struct Offset {
 pub struct PureError {
     /// Standard deviation of one reading \[N\], without the offsets between repeats.
     pub sd_n: f64,
-    /// Degrees of freedom of that estimate, for white noise; fractional, because runs between two others count in two comparisons.
+    /// Degrees of freedom of that estimate, for white noise; fractional, because inner runs enter two
+    /// comparisons.
     pub degrees_of_freedom: f64,
-    /// Mean offset from one repeat to the next \[N\]: what heating, creep or softening does.
+    /// Mean offset from one repeat to the next \[N\], as heating, creep or softening cause it.
     pub drift_n: f64,
-    /// Root mean square of these offsets \[N\], whatever their sign.
+    /// Root mean square of these offsets \[N\].
     pub offset_rms_n: f64,
 }
 
-/// Mean pressures that differ by less than this share of the largest pressure are one level.
+/// Mean pressures that differ by less than this fraction of the largest pressure form one level.
 const LEVEL: f64 = 0.01;
-/// Ends of stretches that differ by less than this share of the stretch are the same.
+/// Ends of stretches are equal within this fraction of the stretch.
 const ENDS: f64 = 0.01;
-/// Durations of stretches that differ by less than this share are the same.
+/// Durations of stretches are equal within this fraction.
 const DURATION: f64 = 0.1;
 
-/// A run with what it is compared by.
+/// A run with the properties that are compared.
 struct Candidate {
     run: Run,
     specimen: u32,
-    /// Whether it starts its sweep: it lacks the history of later loops.
+    /// Whether it is the first loop of its sweep, which lacks the history of later loops.
     is_first: bool,
     pressure: f64,
     legs: Vec<Leg>,
@@ -98,7 +101,7 @@ struct Candidate {
 
 struct Leg {
     direction: i8,
-    /// The row at which the motion starts, and those that belong to it.
+    /// The row at which the motion starts; the next field has the rows of the motion.
     from: usize,
     rows: Range<usize>,
 }
@@ -115,17 +118,20 @@ struct Comparison {
 }
 
 impl Data {
-    /// Finds runs that repeat each other, and compares them at equal contractions on the same stretch. `l0` is the length of the unpressurised muscle \[m\], > 0.
+    /// Finds runs that repeat each other, and compares them at equal contractions on the same stretch. `l0`
+    /// is the length of the unpressurised muscle \[m\], > 0.
     ///
-    /// A run is a sweep, or a full loop of a sweep with several; the first loop of a sweep is only compared with first loops, because the others have
-    /// a different history. A reading F of one run is compared with the next run's, interpolated linearly between neighbours F1 and F2:
+    /// A run is a sweep, or a full loop of a sweep with several. The first loop of a sweep is only compared
+    /// with first loops, because the others have a different history. A reading F of one run is compared with
+    /// the next run's, interpolated linearly between neighbours F1 and F2:
     ///
     /// ```text
     /// d = F - (1 - w) F1 - w F2,   var d = sigma^2 (1 + (1 - w)^2 + w^2)
     /// ```
     ///
-    /// No reading is used twice in a comparison. The mean of d is the offset between the runs; what remains is noise. In a static map, rows of equal pressure,
-    /// contraction, stated direction and specimen are repeats. Isometric runs aren't compared.
+    /// No reading is used twice in a comparison. The mean of d is the offset between the runs; the remainder
+    /// is noise. In a static map, rows of equal pressure, contraction, stated direction and specimen are
+    /// repeats. Isometric runs aren't compared.
     #[must_use]
     pub fn repeats(&self, l0: f64) -> Repeats {
         let s = self.shortening();
@@ -136,7 +142,8 @@ impl Data {
         for members in self.grouped(&s) {
             let comparisons: Vec<Comparison> =
                 members.windows(2).map(|pair| self.compared(&s, &pair[0], &pair[1])).collect();
-            // Neighbouring comparisons share a run: correlation -1/2 at equal readings, so that n-1 of them have the freedom of fewer.
+            // Neighbouring comparisons share a run: they have the correlation -1/2 at equal readings, so that
+            // n - 1 of them have fewer degrees of freedom.
             let (pairs, shared) = (comparisons.len() as f64, comparisons.len() as f64 - 1.0);
             let share = pairs / (pairs + 0.5 * shared);
             for found in comparisons.iter().filter(|found| found.points > 2) {
@@ -183,7 +190,7 @@ impl Data {
         let largest = self.pressure().iter().fold(0.0_f64, |m, p| m.max(p.abs()));
         let tolerance = LEVEL * largest;
         let mut groups: Vec<Vec<Candidate>> = Vec::new();
-        // Groups by what can be compared at once; a pressure near the edge of a level is looked up on both sides.
+        // Groups by a key for fast lookup; a pressure near the edge of a level is looked up on both sides.
         let mut places: HashMap<(u32, bool, usize, i8, i64), Vec<usize>> = HashMap::new();
         for candidate in self.candidates() {
             #[expect(clippy::cast_possible_truncation, reason = "at most 1/LEVEL levels")]
@@ -237,7 +244,7 @@ impl Data {
         found
     }
 
-    /// Whether two runs take the same way: directions, ends and durations of their stretches.
+    /// Whether two runs follow the same path: directions, ends and durations of their stretches.
     fn is_same_way(&self, s: &[f64], a: &Candidate, b: &Candidate) -> bool {
         a.legs.iter().zip(&b.legs).all(|(a, b)| {
             let ends = |leg: &Leg| [s[leg.from], s[leg.rows.end - 1]];
@@ -302,7 +309,8 @@ impl Data {
 }
 
 impl Comparison {
-    /// Adds a difference whose variance is `factor` times that of a reading (West's updating of weighted mean and squares).
+    /// Adds a difference whose variance is `factor` times that of a reading (West's update of weighted mean
+    /// and squares).
     fn add(&mut self, difference: f64, factor: f64) {
         let weight = 1.0 / factor;
         let deviation = difference - self.mean;
@@ -350,7 +358,8 @@ mod tests {
         assert!(found.sd_n > low && found.sd_n < high, "{found:?} is not within {low}..{high}");
     }
 
-    /// Loops at other readings each time, with an offset that grows by `drift` from one sweep to the next.
+    /// Loops with different readings each time, and an offset that grows by `drift` from one sweep to the
+    /// next.
     fn loops(sweeps: u32, rows: u32, sd: f64, drift: f64, seed: u64) -> Data {
         let mut noise = Noise::new(seed);
         let (mut c, mut f, mut t, mut sweep) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
@@ -382,7 +391,8 @@ mod tests {
             assert_eq!(repeats.groups()[0].directions, [1, -1]);
             let found = repeats.pure_error().unwrap();
             within(found, 2.0);
-            // A one-sigma interval holds about two thirds: the degrees of freedom are neither too many nor too few.
+            // A one-sigma interval contains about two thirds of the estimates: the degrees of freedom are
+            // neither too many nor too few.
             outside +=
                 u32::from((found.sd_n / 2.0 - 1.0).abs() > 1.0 / (2.0 * found.degrees_of_freedom).sqrt());
             assert!(found.drift_n.abs() < 4.0 * 2.0 * (2.0 / 140.0_f64).sqrt(), "{found:?}");
@@ -462,7 +472,7 @@ mod tests {
         let found = Data::from_columns(columns.clone()).unwrap().repeats(0.3).pure_error().unwrap();
         assert_eq!([found.degrees_of_freedom, found.drift_n], [240.0, 0.0]);
         within(found, 1.5);
-        // Nothing repeated, or repeated to the last digit: no estimate.
+        // Nothing is repeated, or repeated to the last digit: there is no estimate.
         columns.force_n.fill(1.0);
         assert_eq!(Data::from_columns(columns).unwrap().repeats(0.3).pure_error(), None);
     }

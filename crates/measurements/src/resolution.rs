@@ -1,11 +1,11 @@
-//! How finely a quantity was read: its quantisation step, its white noise and the range of its values.
+//! Resolution of a quantity: its quantisation step, its white noise and the range of its values.
 
 use std::ops::Range;
 
 /// Quantisation step, noise and range of a column.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Resolution {
-    /// Distance between neighbouring levels; 0 where the values lie on no grid.
+    /// Distance between neighbouring levels; 0 if the values are on no grid.
     pub(crate) step: f64,
     /// Standard deviation of the white noise, from the differences of neighbouring rows within a sweep.
     pub(crate) noise: f64,
@@ -13,13 +13,13 @@ pub(crate) struct Resolution {
     pub(crate) range: f64,
 }
 
-/// Median of |x| over the standard deviation of x, for a normal x, inverted.
+/// Ratio of the standard deviation of a normal x to the median of |x|.
 const MAD_TO_SD: f64 = 1.482_602_218_505_602;
-/// Values that are looked at for a grid: a grid of all is a grid of some.
+/// Number of values for detecting a grid: a grid of all values is a grid of some.
 const GRID_SAMPLE: usize = 1 << 15;
 
 impl Resolution {
-    /// Of a column, whose `sweeps` cover it.
+    /// Resolution of a column whose rows are covered by `sweeps`.
     pub(crate) fn of(values: &[f64], sweeps: &[Range<usize>]) -> Self {
         let (low, high) = bounds(values);
         let range = if values.is_empty() { 0.0 } else { high - low };
@@ -37,23 +37,24 @@ pub(crate) fn bounds(values: &[f64]) -> (f64, f64) {
     values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(*v), high.max(*v)))
 }
 
-/// The median; reorders the values. 0 of none.
+/// The median, 0 without values; reorders the values.
 pub(crate) fn median(values: &mut [f64]) -> f64 {
     let middle = values.len() / 2;
     if values.is_empty() { 0.0 } else { *values.select_nth_unstable_by(middle, f64::total_cmp).1 }
 }
 
-/// The step of the grid on which all values lie (but one in 200, for two devices in one file); 0 if there is none.
+/// The step of the grid on which all values lie (except one in 200, for two devices in one file); 0 if there
+/// is none.
 fn grid(values: &[f64]) -> f64 {
     let stride = values.len().div_ceil(GRID_SAMPLE).max(1);
     let mut levels: Vec<f64> = values.iter().step_by(stride).copied().collect();
     levels.sort_unstable_by(f64::total_cmp);
     let largest = levels.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
-    // What a decimal number loses in a double and in the change of units.
+    // Rounding of a decimal number in a double and in the unit conversion.
     let rounding = 8.0 * f64::EPSILON * largest;
     let gaps: Vec<f64> = levels.windows(2).map(|w| w[1] - w[0]).filter(|gap| *gap > rounding).collect();
     let step = gaps.iter().copied().fold(f64::INFINITY, f64::min);
-    // One gap shows no grid; a step near the rounding can't be told from it.
+    // One gap doesn't show a grid; a step near the rounding error can't be distinguished from it.
     if gaps.len() < 2 || step < 20.0 * rounding {
         return 0.0;
     }
@@ -63,17 +64,18 @@ fn grid(values: &[f64]) -> f64 {
     if 200 * gaps.iter().filter(is_off).count() > gaps.len() {
         return 0.0;
     }
-    // The smallest gap carries the rounding; the sum of all, divided by how often it holds the step, hardly.
+    // The smallest gap has a rounding error. The sum of all gaps, divided by the number of steps in it,
+    // hardly has one.
     let count: f64 = gaps.iter().map(|gap| multiples(*gap).round()).sum();
     gaps.iter().sum::<f64>() / count
 }
 
 /// Standard deviation of white noise from the differences of order 2, 3 and 4 between neighbouring rows.
 ///
-/// Each order gives sd = 1.4826 median|difference| / |coefficients|, too large by what the motion itself leaves in the differences.
-/// The smallest of the three is nearest.
+/// Each order gives sd = 1.4826 median|difference| / |coefficients|, which is too large by what the motion
+/// contributes to the differences. The smallest of the three is the most accurate.
 fn white_noise(values: &[f64], sweeps: &[Range<usize>]) -> f64 {
-    /// Coefficients and the norm of each: sqrt(6), sqrt(20), sqrt(70).
+    /// Coefficients of each order with their norm: sqrt(6), sqrt(20), sqrt(70).
     const ORDERS: [(&[f64], f64); 3] = [
         (&[1.0, -2.0, 1.0], 2.449_489_742_783_178),
         (&[1.0, -3.0, 3.0, -1.0], 4.472_135_954_999_58),
@@ -88,7 +90,7 @@ fn white_noise(values: &[f64], sweeps: &[Range<usize>]) -> f64 {
             differences
                 .extend(windows.map(|w| w.iter().zip(coefficients).map(|(v, c)| v * c).sum::<f64>().abs()));
         }
-        // Fewer differences say nothing about a median.
+        // Fewer differences don't give a reliable median.
         if differences.len() >= 5 {
             smallest = smallest.min(MAD_TO_SD * median(&mut differences) / norm);
         }
@@ -129,7 +131,7 @@ mod tests {
         assert!((found.step / 2e-5 - 1.0).abs() < 1e-9, "{found:?}");
         assert_eq!(found.levels(), Some(101.0));
         assert_eq!(whole(&values).levels(), None);
-        // Set points of no common step.
+        // Set points without a common step.
         assert_eq!(whole(&[0.296, 0.282, 0.267, 0.250, 0.237, 0.222]).levels(), None);
     }
 

@@ -1,4 +1,4 @@
-//! Simulated readings for tests: a random sequence with a seed, and a clean loop with every column that matters.
+//! Simulated readings for tests: a random sequence with a seed, and clean loops with every relevant column.
 
 use crate::columns::{Columns, Labels, Trace};
 
@@ -44,7 +44,7 @@ pub(crate) fn clean_loops(loops: usize, seed: u64) -> Columns {
             let phase = std::f64::consts::TAU * i as f64 / LOOP as f64;
             let p = 1e5 * f64::from(level);
             let c = 0.12 - 0.10 * phase.cos();
-            // Friction turns over within a few rows, as in a braid.
+            // Friction changes sign within a few rows, as in a braid.
             let direction = (20.0 * phase.sin()).tanh();
             pressure.push(p + 30.0 * noise.normal());
             contraction.push(c + 1e-5 * noise.normal());

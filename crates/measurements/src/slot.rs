@@ -1,4 +1,5 @@
-//! A column while it is read: takes fields as text or as numbers, and becomes one of the columns of the data set.
+//! A column during reading: takes fields as text or as numbers, and becomes one of the columns of the data
+//! set.
 
 use crate::cell::{self, Decimal};
 use crate::cell_error::CellError;
@@ -7,7 +8,7 @@ use crate::columns::{Columns, Labels, Trace};
 use crate::heading::{Field, Heading};
 use crate::quote::quoted;
 
-/// What a column holds.
+/// Values of a column.
 #[derive(Debug)]
 enum Values {
     Numbers(Vec<f64>),
@@ -16,13 +17,13 @@ enum Values {
     Labels(Labels),
 }
 
-/// A column while it is read.
+/// A column during reading.
 #[derive(Debug)]
 pub(crate) struct Slot {
     pub(crate) heading: Heading,
     values: Values,
     clock: Option<Clock>,
-    /// Fields with a unit of their own.
+    /// Number of fields with a unit of their own.
     pub(crate) units_inside: usize,
 }
 
@@ -38,7 +39,8 @@ impl Slot {
         Self { heading, values, clock: None, units_inside: 0 }
     }
 
-    /// The next field, as text without blanks around it. What can't be used leaves a gap: a value that no row may keep.
+    /// Adds the next field as trimmed text. An unusable field leaves a gap: a value whose row must be
+    /// dropped.
     pub(crate) fn push_text(&mut self, text: &str, decimal: Decimal) -> Result<(), CellError> {
         match &mut self.values {
             Values::Numbers(values) if decimal == Decimal::Point && self.clock.is_none() => {
@@ -62,7 +64,7 @@ impl Slot {
         found
     }
 
-    /// The next field, where it isn't a plain number.
+    /// Adds the next field if it isn't a plain number.
     #[cold]
     fn push_unusual(&mut self, text: &str, decimal: Decimal) -> Result<(), CellError> {
         match &mut self.values {
@@ -88,7 +90,7 @@ impl Slot {
         Ok(())
     }
 
-    /// The next field, as a number.
+    /// Adds the next field as a number.
     pub(crate) fn push_number(&mut self, number: f64) -> Result<(), CellError> {
         let found = self.try_number(number);
         if found.is_err() {
@@ -112,7 +114,7 @@ impl Slot {
         Ok(())
     }
 
-    /// A value in the place of one that is missing: its row must go.
+    /// Adds a value in place of a missing one; its row must be dropped.
     pub(crate) fn push_gap(&mut self) {
         match &mut self.values {
             Values::Numbers(values) => values.push(0.0),
@@ -122,12 +124,12 @@ impl Slot {
         }
     }
 
-    /// Its numbers, if it holds any.
+    /// Its numbers; empty if it holds none.
     pub(crate) fn numbers(&self) -> &[f64] {
         if let Values::Numbers(values) = &self.values { values } else { &[] }
     }
 
-    /// Its numbers become others, and it itself another column.
+    /// Changes its numbers, and turns it into another column.
     pub(crate) fn become_column(&mut self, field: Field, change: impl Fn(f64) -> f64) {
         self.heading.field = field;
         if let Values::Numbers(values) = &mut self.values {
@@ -157,13 +159,13 @@ fn in_time(
     Ok(heading.scale.si(number))
 }
 
-/// Values without the room that was left for more.
+/// Values without spare capacity.
 fn fitted<T>(mut values: Vec<T>) -> Vec<T> {
     values.shrink_to_fit();
     values
 }
 
-/// The columns of a file. The headings have been checked: pressure, force and one motion are among them.
+/// The columns of a file. The headings have been checked to include pressure, force and one motion.
 pub(crate) fn columns(slots: Vec<Slot>) -> Columns {
     let mut found = Columns::new(Vec::new(), Trace::Contraction(Vec::new()), Vec::new());
     for slot in slots {
@@ -185,11 +187,11 @@ pub(crate) fn columns(slots: Vec<Slot>) -> Columns {
             (_, Values::Directions(values)) => found.direction = Some(fitted(values)),
             (Field::Sweep, Values::Labels(labels)) => found.sweep = Some(labels),
             (_, Values::Labels(labels)) => found.specimen = Some(labels),
-            // Only labels and counts are no numbers: `Slot::new`.
+            // Only labels and counts are no numbers, see `Slot::new`.
             (_, Values::Numbers(_)) => {}
         }
     }
-    // A file without forces, where that was allowed.
+    // A file without forces, which the options allow.
     found.force_n.resize(found.pressure_pa.len(), 0.0);
     found
 }

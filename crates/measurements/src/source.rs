@@ -1,4 +1,4 @@
-//! Files: their format, their fingerprint, and what is read from them.
+//! Files: their format, their digest, and their contents.
 
 use crate::cell;
 use crate::cell_error::CellError;
@@ -21,7 +21,7 @@ const MOST_BYTES: u64 = 2 << 30;
 /// The first bytes of every Parquet file.
 const PARQUET_MAGIC: &[u8] = b"PAR1";
 
-/// The first bytes of other files in which people keep measurements, what they are, and what to do.
+/// The first bytes of other files in which people keep measurements, with their kind and the remedy.
 const FOREIGN: [(&[u8], &str, &str); 12] = [
     (b"\xd0\xcf\x11\xe0", "a spreadsheet of an old kind", "save it as .xlsx, or export the sheet as CSV"),
     (b"\x1f\x8b", "compressed by gzip", "unpack it first"),
@@ -40,10 +40,10 @@ const FOREIGN: [(&[u8], &str, &str); 12] = [
     (b"{", "JSON", AS_TABLE),
     (b"TDSm", "a TDMS file of LabVIEW", "export CSV"),
 ];
-/// Pages that call themselves tables.
+/// Kind of pages that claim to be tables.
 const MARKUP: &str = "a page of HTML or XML, whatever its name says";
 const AS_TABLE: &str = "open it in a spreadsheet or a script, and save it as .xlsx or CSV";
-/// What stands between a workbook's name and that of one of its sheets.
+/// Separator between a workbook's name and that of one of its sheets.
 const SHEET: char = '#';
 /// The name of standard input.
 const STDIN: &str = "-";
@@ -51,7 +51,7 @@ const STDIN: &str = "-";
 /// A file of measurements.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct SourceFile {
-    /// Its name, as it was given.
+    /// Its name, as given.
     pub name: String,
     /// SHA-256 of its bytes, in hexadecimal.
     pub sha256: String,
@@ -66,7 +66,8 @@ pub(crate) struct Source {
 }
 
 impl Source {
-    /// Reads a file of the kind that its first bytes say; text if none does. `book.xlsx#name` is one sheet of a workbook.
+    /// Reads a file of the kind that its first bytes show, otherwise as text. `book.xlsx#name` is one sheet
+    /// of a workbook.
     pub(crate) fn read(name: String, path: &Path, options: &ReadOptions) -> Result<Self, MeasurementError> {
         let is_stdin = path == Path::new(STDIN);
         let (path, sheet) = sheet_of(path);
@@ -85,17 +86,17 @@ impl Source {
         Ok(Self::new(&name, sha256, parquet_file::read(&name, bytes::Bytes::from(bytes), options)?))
     }
 
-    /// What messages call the file at a path.
+    /// The name of a path in messages.
     pub(crate) fn name_of(path: &Path) -> String {
         if path == Path::new(STDIN) { "standard input".to_owned() } else { path.display().to_string() }
     }
 
-    /// Reads what is in memory: a workbook, MATLAB, else text.
+    /// Reads bytes in memory: a workbook, MATLAB, otherwise text.
     pub(crate) fn bytes(name: &str, bytes: &[u8], options: &ReadOptions) -> Result<Self, MeasurementError> {
         Self::sheet(name, bytes, None, options)
     }
 
-    /// The same, of a workbook the sheet that is named.
+    /// Reads bytes in memory; of a workbook, the named sheet.
     fn sheet(
         name: &str,
         bytes: &[u8],
@@ -189,7 +190,7 @@ fn read_all(name: &str, source: impl Read) -> Result<Vec<u8>, MeasurementError> 
     if bytes.len() as u64 > MOST_BYTES { Err(too_large(name, bytes.len() as u64)) } else { Ok(bytes) }
 }
 
-/// Equal lengths, finite numbers, known directions.
+/// Checks equal lengths, finite numbers, valid directions.
 fn checked(file: &str, columns: &Columns) -> Result<(), MeasurementError> {
     let expected = columns.len();
     let lengths = columns.numbers().map(|(name, values)| (name, values.len())).chain(columns.marks());

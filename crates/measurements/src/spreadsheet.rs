@@ -1,4 +1,4 @@
-//! Workbooks of Excel: the first sheet with a table, read like text with a tab between fields.
+//! Excel workbooks: the first sheet with a table, read like text with tabs between fields.
 
 use crate::csv_file;
 use crate::error::MeasurementError;
@@ -10,11 +10,11 @@ use calamine::{DataRef, ExcelDateTime, Reader, Xlsx, XlsxError};
 use std::fmt::Write;
 use std::io::Cursor;
 
-/// The first bytes of a ZIP archive, which such a workbook is.
+/// The first bytes of a ZIP archive; such a workbook is one.
 const ZIP_MAGIC: &[u8] = b"PK\x03\x04";
 /// Most bytes of a sheet as text.
 const MOST_BYTES: usize = 1 << 30;
-/// Seconds of a day: dates are days in such a file.
+/// Seconds of a day: dates are stored in days.
 const DAY: f64 = 86_400.0;
 
 /// Whether bytes are such a workbook, or another archive.
@@ -22,7 +22,7 @@ pub(crate) fn is_one(bytes: &[u8]) -> bool {
     bytes.starts_with(ZIP_MAGIC)
 }
 
-/// Reads the named sheet of a workbook, else the first with a table. `file` is its name, for messages.
+/// Reads the named sheet of a workbook, otherwise the first one with a table. `file` is its name in messages.
 pub(crate) fn read(
     file: &str,
     bytes: &[u8],
@@ -47,7 +47,7 @@ pub(crate) fn read(
                 return Ok(table);
             }
             Some(Err(error @ MeasurementError::TooLarge { .. })) => return Err(error),
-            // The first sheet with anything in it is the one that was meant.
+            // The first sheet with content is the intended one, so its error is reported.
             Some(Err(error)) => {
                 complaint.get_or_insert(error);
             }
@@ -57,7 +57,7 @@ pub(crate) fn read(
     Err(complaint.unwrap_or_else(|| MeasurementError::Empty { file: file.to_owned() }))
 }
 
-/// Which sheet was read, and what other tables there are.
+/// Reports which sheet was read, and which other tables there are.
 fn other_sheets(
     book: &mut Xlsx<Cursor<&[u8]>>,
     file: &str,
@@ -81,7 +81,7 @@ fn other_sheets(
     }
 }
 
-/// One sheet; none if nothing is in it.
+/// Reads one sheet; none if it is empty.
 fn one(
     book: &mut Xlsx<Cursor<&[u8]>>,
     file: &str,
@@ -103,13 +103,13 @@ fn refused(file: &str, why: &XlsxError) -> MeasurementError {
     MeasurementError::Workbook { file: file.to_owned(), why: quoted(&why.to_string()) }
 }
 
-/// A sheet as lines of fields with tabs between them; the lines are those of the sheet.
+/// A sheet as tab-separated lines with the same line numbers.
 fn text(book: &mut Xlsx<Cursor<&[u8]>>, name: &str) -> Result<String, XlsxError> {
     let mut cells = book.worksheet_cells_reader(name)?;
     let (mut text, mut line, mut field) = (String::new(), 0, 0);
     while let Some(cell) = cells.next_cell()? {
         let (row, column) = cell.get_position();
-        // A cell out of order would be one that was read already.
+        // A cell out of order would belong to a line that is complete already.
         if row < line || (row == line && column < field) || text.len() > MOST_BYTES {
             continue;
         }
@@ -124,11 +124,11 @@ fn text(book: &mut Xlsx<Cursor<&[u8]>>, name: &str) -> Result<String, XlsxError>
     Ok(text)
 }
 
-/// Writes a cell so that it is read as what it is.
+/// Writes a cell so that its type is recognised when it is read.
 fn push(text: &mut String, value: &DataRef<'_>) {
     let plain = |text: &mut String, value: &str| {
         let is_odd = |c: char| c.is_control() || c == '"';
-        // A break within a heading is a blank.
+        // A line break within a heading becomes a blank.
         let value = value.trim().replace(is_odd, " ");
         text.push_str(&value);
     };
@@ -154,7 +154,7 @@ fn push(text: &mut String, value: &DataRef<'_>) {
 /// A date with its time, or a time alone.
 fn clock(when: &ExcelDateTime) -> String {
     let days = when.as_f64();
-    // Whole microseconds: a date's last digits are its rounding.
+    // Whole microseconds: the last digits of a date are rounding errors.
     let seconds = |days: f64| (days * DAY * 1e6).round() / 1e6;
     let shown = |seconds: f64| {
         let minutes = (seconds / 60.0).floor();
@@ -173,7 +173,7 @@ mod tests {
     use super::*;
     use flate2::Crc;
 
-    /// An archive of stored files.
+    /// An archive of uncompressed files.
     fn archive(files: &[(&str, String)]) -> Vec<u8> {
         let (mut bytes, mut list) = (Vec::new(), Vec::new());
         for (name, text) in files {
@@ -181,7 +181,7 @@ mod tests {
             crc.update(text.as_bytes());
             let size = u32::try_from(text.len()).unwrap().to_le_bytes();
             let start = u32::try_from(bytes.len()).unwrap();
-            // Version, flags, method, time, date; sum, sizes; lengths of name and extra field.
+            // Version, flags, method, time, date; checksum, sizes; lengths of name and extra field.
             let mut head = vec![20, 0, 0, 0, 0, 0, 0, 0, 33, 0];
             head.extend(crc.sum().to_le_bytes());
             head.extend([size, size].concat());
@@ -210,7 +210,7 @@ mod tests {
     const HEAD: &str = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>";
     const MAIN: &str = "http://schemas.openxmlformats.org/spreadsheetml/2006/main";
 
-    /// A workbook with sheets of cells: text, or numbers as they are.
+    /// A workbook with sheets of cells, which are text or numbers.
     pub(crate) fn workbook(sheets: &[&[&[&str]]]) -> Vec<u8> {
         let package = "http://schemas.openxmlformats.org/package/2006";
         let office = "http://schemas.openxmlformats.org/officeDocument/2006/relationships";

@@ -8,7 +8,7 @@ use std::ops::Range;
 /// Rows over which the motion keeps its direction.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Stretch {
-    /// The rows that belong to it: a turning point belongs to the stretch that it ends.
+    /// Its rows; a turning point belongs to the stretch that it ends.
     pub(crate) rows: Range<usize>,
     /// +1 shortening, -1 lengthening, 0 at rest.
     pub(crate) direction: i8,
@@ -21,27 +21,30 @@ impl Stretch {
     }
 }
 
-/// How large a motion is no noise.
+/// The smallest motion that isn't noise.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct DeadBand {
-    /// A reversal counts if the motion goes back by more.
+    /// A reversal counts if the motion goes back by more than this.
     pub(crate) width: f64,
-    /// Half the band that noise and quantisation need, without the share of the travel.
+    /// Half the band required by noise and quantisation, without the fraction of the travel.
     half_noise: f64,
 }
 
 impl DeadBand {
-    /// Smallest reversal, as a share of all the travel in the data.
+    /// Smallest reversal as a fraction of the total travel in the data.
     const OF_TRAVEL: f64 = 1e-3;
-    /// Noise of a contraction is not worse; a larger zigzag is motion, such as a list of set points. Same for lengths, as a share of the longest.
+    /// Largest noise of a contraction, or of a length relative to the longest; a larger zigzag is motion,
+    /// such as a list of set points.
     const MOST_NOISE: f64 = 0.003;
-    /// Steps of a length sensor are not wider; a wider grid is a list of set points.
+    /// Largest step of a length sensor; a wider grid is a list of set points.
     const WIDEST_STEP: f64 = 0.005;
 
-    /// For a motion read with this resolution, in sweeps of at most `rows` rows; `scale` is 1 for contractions and the longest length for lengths.
+    /// The band for a motion with this resolution, in sweeps of at most `rows` rows; `scale` is 1 for
+    /// contractions and the longest length for lengths.
     ///
-    /// The band is the largest of 1.5 quantisation steps (a reading flips by one step), 2 (1 + sqrt(2 ln n)) standard deviations
-    /// of the noise (n normal numbers stay within +-sqrt(2 ln n), nearly always within one more), and 1/1000 of the travel.
+    /// The band is the largest of 1.5 quantisation steps (a reading flips by one step), 2 (1 + sqrt(2 ln n))
+    /// standard deviations of the noise (n normal numbers stay within +-sqrt(2 ln n), nearly always within
+    /// one more), and 1/1000 of the travel.
     pub(crate) fn new(resolution: &Resolution, rows: usize, scale: f64) -> Self {
         let noise = resolution.noise.min(Self::MOST_NOISE * scale);
         let step = if resolution.step <= Self::WIDEST_STEP * scale { resolution.step } else { 0.0 };
@@ -50,13 +53,14 @@ impl DeadBand {
         Self { width: (2.0 * half_noise).max(Self::OF_TRAVEL * resolution.range), half_noise }
     }
 
-    /// The way that noise and steps of the sensor feign.
+    /// The apparent travel that noise and steps of the sensor cause.
     pub(crate) fn resolved(&self) -> f64 {
         self.half_noise
     }
 }
 
-/// The stretches of one sweep, in order, covering `rows`. `shortening` is the contraction or the negative length, `time` is that of all rows.
+/// The stretches of one sweep, in order, covering `rows`. `shortening` is the contraction or the negative
+/// length; it and `time` cover all rows.
 pub(crate) fn find(
     shortening: &[f64],
     time: Option<&[f64]>,
@@ -77,7 +81,7 @@ pub(crate) fn find(
     for rest in rests(s, time, &legs, band) {
         directions[rest.start + 1..rest.end].fill(0);
     }
-    // No step leads to the first row: it begins what follows.
+    // No step leads to the first row, so it belongs to the following stretch.
     if let Some(second) = directions.get(1).copied() {
         directions[0] = second;
     }
@@ -91,21 +95,23 @@ pub(crate) fn find(
     found
 }
 
-/// Rows on either side of a turning point that belong to either stretch.
+/// Rows on either side of a turning point that may belong to either stretch.
 pub(crate) const NEAR_TURN: usize = 2;
-/// Labels that are wrong in a larger share of the rows that move are none.
+/// Largest fraction of wrong labels among the moving rows for labels that are used.
 const WRONG: f64 = 0.05;
 
-/// The rows of a stretch that surely belong to it; the ends of a sweep are no turning points.
+/// The rows that certainly belong to a stretch; the ends of a sweep aren't turning points.
 pub(crate) fn inner(stretch: &Stretch, sweep: &Range<usize>) -> Range<usize> {
     let start = stretch.rows.start + if stretch.rows.start > sweep.start { NEAR_TURN } else { 0 };
     let end = stretch.rows.end.saturating_sub(if stretch.rows.end < sweep.end { NEAR_TURN } else { 0 });
     start..end.max(start)
 }
 
-/// The stretches as stated directions of all rows give them, where these go with the motion: they know better where it turns and rests.
+/// The stretches given by stated directions of all rows, if these agree with the motion: they are more
+/// accurate about turns and rests.
 ///
-/// Directions that are against the motion in more than 5 % of the rows that surely move, or change more than twice as often, are not used.
+/// Directions that contradict the motion in more than 5 % of the rows that certainly move, or that change
+/// more than twice as often, are not used.
 pub(crate) fn told<'a>(
     found: &'a [Stretch],
     sweep: &Range<usize>,
@@ -129,14 +135,15 @@ pub(crate) fn told<'a>(
     if is_used { told.into() } else { found.into() }
 }
 
-/// From one turning point to the next; the rows count from the start of the sweep.
+/// A leg from one turning point to the next; rows count from the start of the sweep.
 struct Leg {
     start: usize,
     end: usize,
     direction: i8,
 }
 
-/// The zigzag: a row is a turning point if the motion goes back from it by more than the band before it goes on.
+/// The zigzag: a row is a turning point if the motion goes back from it by more than the band before it goes
+/// on.
 fn legs(s: &[f64], band: f64) -> Vec<Leg> {
     let mut found: Vec<Leg> = Vec::new();
     let (mut lowest, mut highest, mut direction) = (0, 0, 0_i8);
@@ -167,11 +174,11 @@ fn legs(s: &[f64], band: f64) -> Vec<Leg> {
     found
 }
 
-/// Rests, as ranges of rows from the first to the last row that stand still.
+/// Rests, as ranges of rows from the first to the last one that stand still.
 ///
-/// Rows stand still while they stay within the band for much longer than a sine would near its turning point. A sine of height H that takes the
-/// time D from one turning point to the next is within b of one of them for (2/pi) D sqrt(b/H); three times as long is a rest.
-/// The time is counted in rows where none was measured.
+/// Rows stand still if they stay within the band for much longer than a sine would near its turning point. A
+/// sine of height H with the time D from one turning point to the next is within b of one of them for (2/pi)
+/// D sqrt(b/H); three times as long is a rest. The time is counted in rows if none was measured.
 fn rests(s: &[f64], time: Option<&[f64]>, legs: &[Leg], band: DeadBand) -> Vec<Range<usize>> {
     /// 3 * 2/pi, rounded.
     const TIMES: f64 = 2.0;
@@ -211,11 +218,11 @@ fn rests(s: &[f64], time: Option<&[f64]>, legs: &[Leg], band: DeadBand) -> Vec<R
         let middle = median(&mut s[first..=last].to_vec());
         let is_still = |row: &usize| (s[*row] - middle).abs() <= tolerance;
         let start = (first..=last).find(is_still).unwrap_or(first);
-        // The window held some rows of the motion before; without them it reaches farther.
+        // The window contained some rows of the motion before; without them it reaches further.
         let last = window.last_within(start, band.width);
         let end = (start..=last).rev().find(is_still).unwrap_or(last);
         if !is_rest(start, end) {
-            // Slow, but not still: half of the rows are looked at again.
+            // Slow, but not at rest: continue from the middle.
             first = start + (last - start) / 2 + 1;
             continue;
         }
@@ -228,10 +235,12 @@ fn rests(s: &[f64], time: Option<&[f64]>, legs: &[Leg], band: DeadBand) -> Vec<R
     merged(found, dwells(s, &clock))
 }
 
-/// Rests by equal readings: rows that stay on one reading for much longer than on the readings before and after it.
+/// Rests by equal readings: rows that stay on one reading for much longer than on the readings before and
+/// after it.
 ///
-/// A steady motion stays equally long on every level of a sensor, a sine 5 times as long on that of its turning point as beside it. Of a motion along
-/// set points, which may look like a coarse sensor, nothing else tells the rests.
+/// A steady motion stays equally long on every level of a sensor; a sine stays 5 times as long on that of its
+/// turning point as beside it. For a motion along set points, which may look like a coarse sensor, this is
+/// the only way to find rests.
 fn dwells(s: &[f64], clock: &dyn Fn(usize) -> f64) -> Vec<Range<usize>> {
     const TIMES: f64 = 10.0;
     let mut runs: Vec<Range<usize>> = Vec::new();
@@ -239,19 +248,19 @@ fn dwells(s: &[f64], clock: &dyn Fn(usize) -> f64) -> Vec<Range<usize>> {
         let start = runs.last().map_or(0, |run| run.end);
         runs.push(start..start + part.len());
     }
-    // To the reading that follows, if there is one.
+    // The time until the next reading, if there is one.
     let dwell = |run: &Range<usize>| clock(run.end.min(s.len() - 1)) - clock(run.start);
     let beside = |i: usize| {
         let before = i.checked_sub(1).map(|i| &runs[i]);
         let longest = [before, runs.get(i + 1)].into_iter().flatten().map(&dwell).fold(f64::NAN, f64::max);
-        // The last reading is followed by none.
+        // No reading follows the last one.
         if longest > 0.0 { longest } else { f64::INFINITY }
     };
     let is_rest = |(i, run): &(usize, &Range<usize>)| run.len() > 2 && dwell(run) > TIMES * beside(*i);
     runs.iter().enumerate().filter(is_rest).map(|(_, run)| run.clone()).collect()
 }
 
-/// Two lists of ranges as one, in order; what overlaps is one range.
+/// Merges two lists of ranges, in order; overlapping ranges become one.
 fn merged(mut one: Vec<Range<usize>>, other: Vec<Range<usize>>) -> Vec<Range<usize>> {
     one.extend(other);
     one.sort_by_key(|range| range.start);
@@ -308,7 +317,7 @@ mod tests {
 
     #[test]
     fn rests_between_ramps() {
-        // A rest before, at the top, on the way down, and after.
+        // Rests before the motion, at the top, on the way down, and after it.
         let s = polyline(&[
             (0.0, 0),
             (0.0, 30),
@@ -364,7 +373,8 @@ mod tests {
         assert!(found[0].0.abs_diff(2001) <= 25, "{found:?}");
     }
 
-    /// Steps of one ramp row each look like the levels of a coarse sensor, and hide the holds between them from the band.
+    /// Steps of one ramp row each look like the levels of a coarse sensor, and hide the holds between them
+    /// from the band.
     #[test]
     fn holds_between_set_points_on_a_grid_are_rests() {
         let mut corners = vec![(0.0, 0)];
@@ -375,7 +385,7 @@ mod tests {
         let s: Vec<f64> = polyline(&corners).iter().map(|v| (v / 0.005).round() * 0.005).collect();
         let holds: Vec<i8> = directions(&s).iter().map(|(_, d)| *d).collect();
         assert_eq!(holds, [0, 1, 0, 1, 0, 1, 0, -1, 0, -1, 0, -1]);
-        // A slow sine on the same grid stays longest at its turning points, and never rests.
+        // A slow sine on the same grid stays longest at its turning points, but never rests.
         let sine = (0..=4000).map(|i| 0.05 * (1.0 - (f64::from(i) * std::f64::consts::TAU / 2000.0).cos()));
         let coarse: Vec<f64> = sine.map(|v: f64| (v / 0.005).round() * 0.005).collect();
         assert!(directions(&coarse).iter().all(|(_, d)| *d != 0), "{:?}", directions(&coarse));

@@ -1,4 +1,4 @@
-//! Sweeps: uninterrupted runs, as labelled or as found in time, pressure and motion.
+//! Sweeps: uninterrupted runs, from labels or found in time, pressure and motion.
 
 use crate::columns::Columns;
 use crate::isobars;
@@ -7,7 +7,7 @@ use crate::stretch::Stretch;
 use serde::Serialize;
 use std::ops::Range;
 
-/// What a sweep does.
+/// Kind of a sweep.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum SweepKind {
@@ -30,44 +30,46 @@ pub enum SweepKind {
 /// An uninterrupted run, or a static map.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Sweep {
-    /// Its label, or its number in the file; after the name of the file where there are several.
+    /// Its label, or its number in the file; preceded by the name of the file if there are several.
     pub name: String,
     /// Its rows.
     pub rows: Range<usize>,
-    /// The place of its specimen in the list of specimens.
+    /// Index of its specimen in the list of specimens.
     pub specimen: u32,
-    /// What it does.
+    /// Its kind.
     pub kind: SweepKind,
 }
 
 /// A pause this many times as long as the median time between rows begins a new sweep.
 pub(crate) const GAP: f64 = 20.0;
-/// Rows of a step of pressure from one isobaric run to another are a run of their own if they are more than this share of the shorter of the two.
+/// Rows of a pressure step between isobaric runs form a run of their own if they are more than this fraction
+/// of the shorter run.
 const LONG_STEP: f64 = 0.2;
-/// A sweep whose contraction changes less, while the pressure changes, is isometric: the rig gives way a little.
+/// A sweep with a smaller change of contraction is isometric while the pressure changes: the rig has some
+/// compliance.
 const ISOMETRIC_TRAVEL: f64 = 2e-3;
-/// So is one whose contraction changes less than this without turning more often than the pressure: a frame that gives way, or a clamp that creeps. A length that is
-/// driven to and fro at each pressure turns more often.
+/// So is one with a change below this that doesn't turn more often than the pressure: a compliant frame, or a
+/// clamp that creeps. A length that is driven to and fro at each pressure turns more often.
 const DRIFTING_TRAVEL: f64 = 1e-2;
-/// A force whose standard deviation is a smaller share of its mean was held: a weight.
+/// A force was held, by a weight, if its standard deviation is a smaller fraction of its mean.
 const HELD_FORCE: f64 = 0.1;
-/// A pressure that changes by more than this share of the largest is no constant pressure.
+/// A pressure that changes by more than this fraction of the largest isn't constant.
 const PRESSURE_CHANGE: f64 = 0.05;
 
-/// The sweeps of a data set without their kind, and what else follows from where they begin.
+/// The sweeps of a data set without their kind, and further results from finding their starts.
 #[derive(Debug, Default)]
 pub(crate) struct Found {
     pub(crate) sweeps: Vec<Sweep>,
-    /// Rows of steps of pressure between isobaric runs, in ascending order.
+    /// Rows of pressure steps between isobaric runs, in ascending order.
     pub(crate) between: Vec<usize>,
-    /// First rows of parts into which a stated sweep falls, with what it contradicts itself by.
+    /// First rows of the parts into which a stated sweep is split, with the contradiction.
     pub(crate) contradictions: Vec<(usize, Contradiction)>,
 }
 
 /// How a sweep label contradicts its rows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Contradiction {
-    /// The time runs back.
+    /// The time goes back.
     Time,
     /// The specimen changes.
     Specimen,
@@ -75,7 +77,7 @@ pub(crate) enum Contradiction {
     Pressure,
 }
 
-/// Finds the sweeps. `files` are the rows of each file, with the name's beginning.
+/// Finds the sweeps. `files` has the rows of each file and the prefix of its sweeps' names.
 pub(crate) fn find(columns: &Columns, files: &[(Range<usize>, String)]) -> Found {
     let mut found = Found::default();
     for (file, prefix) in files {
@@ -121,7 +123,8 @@ fn runs(columns: &Columns, rows: &Range<usize>, found: &mut Found) -> Vec<Range<
     let mut starts = vec![rows.start];
     if let Some(labels) = labels {
         let is_new = |i: usize| labels[i] != labels[i - 1];
-        // A clock that is set back to where the run began, or before; else rows are out of order, and begin no run.
+        // A clock that goes back to where the run began, or further, was restarted; otherwise the rows are
+        // out of order and begin no run.
         let mut began = rows.start;
         let mut restarts = Vec::new();
         for i in rows.start + 1..rows.end {
@@ -159,7 +162,8 @@ fn runs(columns: &Columns, rows: &Range<usize>, found: &mut Found) -> Vec<Range<
     split
 }
 
-/// A recording cut between its isobaric runs. Rows of a short step belong to the run that they lead to; those of a long one are a run of their own.
+/// Cuts a recording between its isobaric runs. Rows of a short step belong to the next run; those of a long
+/// one are a run of their own.
 fn isobaric(columns: &Columns, recording: &Range<usize>, between: &mut Vec<usize>) -> Vec<Range<usize>> {
     let readings = isobars::Readings {
         pressure: &columns.pressure_pa,
@@ -186,7 +190,7 @@ fn isobaric(columns: &Columns, recording: &Range<usize>, between: &mut Vec<usize
     parts
 }
 
-/// Whether a sweep keeps its pressure; `largest` is the largest pressure in the data.
+/// Whether a sweep is at constant pressure; `largest` is the largest pressure in the data.
 pub(crate) fn is_held(pressure: &[f64], largest: f64) -> bool {
     let (low, high) = bounds(pressure);
     high - low <= PRESSURE_CHANGE * largest
@@ -200,13 +204,14 @@ pub(crate) fn is_weight(force: impl Iterator<Item = f64> + Clone) -> bool {
     variance.sqrt() < HELD_FORCE * mean.abs()
 }
 
-/// The way of the length as a share of `scale`, if it is more than a clamped length gives way.
+/// Travel of the length as a fraction of `scale`, if it exceeds the compliance of a clamped rig.
 pub(crate) fn drift(motion: &[f64], scale: f64) -> Option<f64> {
     let (low, high) = bounds(motion);
     (high - low > ISOMETRIC_TRAVEL * scale).then_some((high - low) / scale)
 }
 
-/// What a sweep reads, and the stretches of its length and of its pressure; the latter are empty where the pressure is held.
+/// The readings of a sweep, and the stretches of its length and of its pressure; the latter are empty if the
+/// pressure is held.
 pub(crate) struct Path<'a> {
     pub(crate) motion: &'a [f64],
     pub(crate) force: &'a [f64],
@@ -214,7 +219,7 @@ pub(crate) struct Path<'a> {
     pub(crate) pressure_stretches: &'a [Stretch],
 }
 
-/// What a path does. `scale` is 1 for contractions and the longest length for lengths.
+/// The kind of a path. `scale` is 1 for contractions and the longest length for lengths.
 pub(crate) fn kind(path: &Path<'_>, scale: f64) -> SweepKind {
     let does = |direction| path.stretches.iter().any(|stretch| stretch.direction == direction);
     let moves = |stretches: &[Stretch]| stretches.iter().filter(|stretch| stretch.direction != 0).count();

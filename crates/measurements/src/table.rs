@@ -1,4 +1,5 @@
-//! A table as read from any kind of file: rows that can't be used are set apart, one motion is left, and the rows are in order.
+//! A table read from any kind of file: unusable rows are set apart, one motion is left, and the rows are in
+//! order.
 
 use crate::cell_error::CellError;
 use crate::columns::{Columns, Labels};
@@ -12,7 +13,7 @@ use crate::slot::{Slot, columns};
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-/// A table and, for each row, its line in the file.
+/// A table with the line in the file of each row.
 #[derive(Debug)]
 pub(crate) struct Table {
     pub(crate) columns: Columns,
@@ -20,14 +21,14 @@ pub(crate) struct Table {
     pub(crate) reading: Reading,
 }
 
-/// A larger share of rows that can't be used is no accident: one in so many.
+/// The file is refused if more than one row in this many is unusable.
 const MOST_UNUSABLE: usize = 5;
-/// Kinds of reasons that a message lists.
+/// Most kinds of reasons in a message.
 const MOST_KINDS: usize = 8;
-/// First lines of each kind.
+/// Number of first lines listed for each kind.
 const FIRST_LINES: usize = 3;
 
-/// Columns under way, and what is wrong with their rows.
+/// Columns during reading, and the problems of their rows.
 pub(crate) struct Draft {
     pub(crate) slots: Vec<Slot>,
     pub(crate) uses: Vec<ColumnUse>,
@@ -38,7 +39,7 @@ pub(crate) struct Draft {
     unit: &'static str,
 }
 
-/// What is wrong in one column, or with rows as a whole.
+/// Problems of one column, or of rows as a whole.
 #[derive(Debug, Default)]
 struct Problems {
     /// In ascending order.
@@ -65,14 +66,14 @@ impl Problems {
 }
 
 impl Draft {
-    /// `unit` is what the file calls its rows: "line" or "row".
+    /// An empty draft. `unit` is what the file calls its rows: "line" or "row".
     pub(crate) fn new(slots: Vec<Slot>, uses: Vec<ColumnUse>, unit: &'static str) -> Self {
-        // One more, for rows as a whole.
+        // One more entry, for rows as a whole.
         let problems = (0..=slots.len()).map(|_| Problems::default()).collect();
         Self { slots, uses, lines: Vec::new(), notes: Vec::new(), problems, unit }
     }
 
-    /// A field of a row can't be used.
+    /// Marks a field of a row as unusable.
     #[cold]
     pub(crate) fn spoilt(&mut self, slot: usize, row: usize, problem: &CellError) {
         let column = self.slots[slot].heading.text.clone();
@@ -83,7 +84,7 @@ impl Draft {
         self.problems[slot].push(index(row), &format!("`{column}` is {}", problem.kind()), reason);
     }
 
-    /// A whole row can't be used; its fields are gaps.
+    /// Marks a whole row as unusable; its fields are gaps.
     #[cold]
     pub(crate) fn broken(&mut self, row: usize, kind: &str, reason: String) {
         self.slots.iter_mut().for_each(Slot::push_gap);
@@ -91,7 +92,7 @@ impl Draft {
         self.problems[last].push(index(row), kind, || reason);
     }
 
-    /// The table, or why there is none.
+    /// The table, or the reason why there is none.
     pub(crate) fn finish(mut self, file: &str, options: &ReadOptions) -> Result<Table, MeasurementError> {
         let rows = self.lines.len();
         if rows == 0 {
@@ -128,7 +129,7 @@ impl Draft {
         Ok(Table { columns, lines, reading })
     }
 
-    /// Columns that an analysis can do without, and in which most of what can't be used stands, aren't read: their rows are kept.
+    /// Drops optional columns that contain most of the unusable fields, so that their rows are kept.
     fn drop_columns(&mut self, rows: usize) {
         for place in (0..self.slots.len()).rev() {
             let spoilt = self.problems[place].rows.len();
@@ -146,7 +147,7 @@ impl Draft {
     }
 }
 
-/// Which rows aren't among those that can't be used.
+/// Marks the rows that are not among the unusable ones.
 fn good(rows: usize, bad: &[u32]) -> Vec<bool> {
     let mut good = vec![true; rows];
     for row in bad {
@@ -155,7 +156,7 @@ fn good(rows: usize, bad: &[u32]) -> Vec<bool> {
     good
 }
 
-/// Keeps these rows, in this order; labels that no row has any more are gone.
+/// Keeps these rows, in this order, and removes labels that no row has any more.
 pub(crate) fn keep_rows(columns: &mut Columns, lines: &mut Vec<u32>, keep: &[usize]) {
     columns.filter(keep);
     for labels in [&mut columns.sweep, &mut columns.specimen].into_iter().flatten() {
@@ -198,7 +199,7 @@ fn index(row: usize) -> u32 {
     u32::try_from(row).unwrap_or(u32::MAX)
 }
 
-/// Whether a slot with a field is among some.
+/// The index of the slot with a field.
 pub(crate) fn place_of(slots: &[Slot], field: Field) -> Option<usize> {
     slots.iter().position(|slot| slot.heading.field == field)
 }

@@ -1,17 +1,19 @@
-//! Rows whose direction isn't known: at turning points, and at the start of a sweep.
+//! Rows of uncertain direction: at turning points, and at the start of a sweep.
 
 use crate::data::Data;
 use crate::driven::Driven;
 use crate::stretch::Stretch;
 use std::ops::Range;
 
-/// A rest of up to so many rows at a turning point is a set point that was read again.
+/// A rest of up to this many rows at a turning point is a repeated reading of a set point.
 const REPEATED: usize = 3;
 
 impl Data {
-    /// Rows whose direction is in doubt, in ascending order: the first row of a sweep and of an isobar in it, which nothing leads to; each turning point, at which friction may have either
-    /// sign; and the rows next to them as long as the way between is not more than noise and steps of the sensor (rows that read the same set point
-    /// again, or that a file counts to the other branch). At held length the direction is that of the pressure. None in a static map.
+    /// Rows of uncertain direction, in ascending order. These are the first row of a sweep and of an isobar
+    /// in it, to which no motion leads; each turning point, at which friction may have either sign; and the
+    /// rows next to them, as long as the distance is within noise and steps of the sensor (rows that read the
+    /// same set point again, or that a file assigns to the other branch). At held length the direction is
+    /// that of the pressure. None in a static map.
     #[must_use]
     pub fn direction_in_doubt(&self) -> Vec<usize> {
         let mut found = Vec::new();
@@ -24,7 +26,7 @@ impl Data {
                 let rows = rows.take_while(|row| (s[*row] - s[from]).abs() <= resolved);
                 rows.filter(|row| moves(stretches, *row)).collect::<Vec<_>>()
             };
-            // Nothing leads to the first row of an isobar either.
+            // No motion leads to the first row of an isobar either.
             let between = self.between_isobars();
             let is_between = |row: usize| between.binary_search(&row).is_ok();
             let begins = |row: &usize| *row > sweep.rows.start && is_between(row - 1) && !is_between(*row);
@@ -41,7 +43,7 @@ impl Data {
     }
 }
 
-/// The first row, and the last row of each motion that is followed by one the other way.
+/// The first row, and the last row of each motion that is followed by one in the other direction.
 fn turns(rows: &Range<usize>, stretches: &[Stretch]) -> Vec<usize> {
     let mut found = Vec::new();
     let mut last: Option<&Stretch> = None;
@@ -56,7 +58,7 @@ fn turns(rows: &Range<usize>, stretches: &[Stretch]) -> Vec<usize> {
     found
 }
 
-/// Whether a row belongs to a motion, or to a rest so short that it is a set point read again.
+/// Whether a row belongs to a motion, or to a rest so short that it is a repeated reading of a set point.
 fn moves(stretches: &[Stretch], row: usize) -> bool {
     let place = stretches.partition_point(|stretch| stretch.rows.end <= row);
     stretches.get(place).is_some_and(|stretch| stretch.direction != 0 || stretch.rows.len() <= REPEATED)

@@ -4,17 +4,17 @@ use crate::dimension::Scale;
 use crate::heading::Field;
 use bulge_muscles::units::UnitError;
 
-/// A unit that was understood.
+/// A recognised unit.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Unit {
     pub(crate) scale: Scale,
-    /// What it is called in messages.
+    /// Its name in messages.
     pub(crate) name: String,
-    /// Whether it is a pressure above vacuum.
+    /// Whether it is an absolute pressure.
     pub(crate) is_absolute: bool,
 }
 
-/// Other words for a unit, in lower case without blanks.
+/// Other spellings of units, in lower case without blanks.
 const WORDS: &[(&str, &str)] = &[
     ("pascal", "Pa"),
     ("kilopascal", "kPa"),
@@ -69,9 +69,9 @@ const WORDS: &[(&str, &str)] = &[
     ("m3", "m^3"),
 ];
 
-/// Pressures and forces that have no symbol of their own, in lower case: what one of them is in SI.
+/// Pressures and forces without a symbol of their own, in lower case, with their size in SI.
 const FACTORS: &[(&str, Field, f64)] = &[
-    // The technical atmosphere is a kilogram-force per square centimetre.
+    // The technical atmosphere is one kilogram-force per square centimetre.
     ("kgf/cm2", Field::Pressure, 98_066.5),
     ("kgf/cm^2", Field::Pressure, 98_066.5),
     ("kg/cm2", Field::Pressure, 98_066.5),
@@ -83,11 +83,11 @@ const FACTORS: &[(&str, Field, f64)] = &[
     ("dan", Field::Force, 10.0),
 ];
 
-/// What may stand beside a unit of pressure that is above the ambient, and above vacuum.
+/// Additions to a unit of pressure: above ambient here, above vacuum in the next constant.
 const GAUGE: [&str; 9] = ["gauge", "gage", "relative", "rel.", "rel", "(g)", "\u{fc}", "ueber", "diff"];
 const ABSOLUTE: [&str; 4] = ["absolute", "abs.", "abs", "(a)"];
 
-/// Reads a unit of a column; none if it has no unit of its own or this isn't one.
+/// Parses the unit of a column; none if the column has no unit or this isn't one.
 pub(crate) fn unit(field: Field, text: &str) -> Option<Unit> {
     let text = text.trim();
     if text.len() > 40 {
@@ -103,7 +103,7 @@ pub(crate) fn unit(field: Field, text: &str) -> Option<Unit> {
     for (words, is_absolute) in [(&GAUGE[..], false), (&ABSOLUTE[..], true)] {
         let plain = words.iter().find_map(|word| lower.find(word).map(|at| (at, word.len())));
         if let Some(found) = plain.and_then(|(at, length)| {
-            // Lower case changes the length of few characters, and of none that units have.
+            // Changing the case alters the length of few characters, none of which occur in units.
             let rest = format!("{}{}", text.get(..at)?, text.get(at + length..)?);
             named(field, rest.trim_matches([' ', ',', '-', '_']))
         }) {
@@ -119,7 +119,7 @@ pub(crate) fn unit(field: Field, text: &str) -> Option<Unit> {
     None
 }
 
-/// A unit by its symbol, whatever the case, or by another word.
+/// A unit by its symbol in any case, or by another spelling.
 fn named(field: Field, text: &str) -> Option<Unit> {
     let scale = |symbol: &str| field.scale(symbol).and_then(Result::ok);
     let of = |symbol: &str| Some(Unit { scale: scale(symbol)?, name: symbol.to_owned(), is_absolute: false });
@@ -144,7 +144,7 @@ fn named(field: Field, text: &str) -> Option<Unit> {
     })
 }
 
-/// What is wrong with a unit that isn't one.
+/// The problem with an invalid unit.
 pub(crate) fn problem(field: Field, text: &str) -> Option<UnitError> {
     field.scale(text)?.err()
 }

@@ -2,10 +2,11 @@
 
 use std::collections::VecDeque;
 
-/// The longest run of rows from a given one whose values stay within a band, for rows asked in rising order, in O(n) altogether.
+/// The longest run of rows from a given one whose values stay within a band, for rows requested in ascending
+/// order, in O(n) overall.
 pub(crate) struct Window<'a> {
     s: &'a [f64],
-    /// Rows that could be the lowest and the highest of the window, in order.
+    /// Rows that may become the lowest and the highest of the window, in order.
     low: VecDeque<usize>,
     high: VecDeque<usize>,
     /// The first row that is not in the window.

@@ -1,4 +1,4 @@
-//! Parts of the sentences that say why a file is no set of measurements.
+//! Parts of the sentences in error messages.
 
 use crate::error::MeasurementError;
 use bulge_muscles::units::UnitError;
@@ -12,7 +12,7 @@ pub(crate) fn bulleted(complaints: &[MeasurementError], more: usize) -> String {
     lines.concat()
 }
 
-/// What is wrong with the unit of a heading, after "column `..`".
+/// The problem with the unit of a heading, as a continuation of "column `..`".
 pub(crate) fn of_unit(problem: &UnitError) -> String {
     let symbols = |units: &[(&'static str, f64)]| {
         let named: Vec<_> =
@@ -33,7 +33,7 @@ pub(crate) fn of_unit(problem: &UnitError) -> String {
     }
 }
 
-/// What to do about a row of another number of fields than the header.
+/// The remedy for a row whose number of fields differs from the header's.
 pub(crate) fn ragged_cure(found: usize, expected: usize) -> &'static str {
     if found >= 2 * expected - 1 && expected > 1 {
         "if its numbers have decimal commas, write decimal points; else remove the surplus separators"

@@ -1,6 +1,7 @@
-//! Columns as a file that [`crate::Data`] reads again: CSV, or Parquet with the same headings.
+//! Writes columns as a file that [`crate::Data`] can read again: CSV, or Parquet with the same headings.
 //!
-//! Numbers are written in full, so that reading gives the same bits. A number that isn't finite is none: an empty cell, or a null.
+//! Numbers are written in full, so that reading restores the same bits. Values that aren't finite are written
+//! as an empty cell or a null.
 
 use parquet::basic::{Compression, LogicalType, Repetition, Type as Physical};
 use parquet::data_type::{BoolType, ByteArray, ByteArrayType, DoubleType, Int64Type};
@@ -13,7 +14,7 @@ use std::fmt::Write;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Rows of a group of a Parquet file.
+/// Rows per row group of a Parquet file.
 const GROUP: usize = 1 << 20;
 
 /// A column to write: its heading, such as `force [N]`, and one value for each row.
@@ -28,24 +29,24 @@ pub struct WrittenColumn<'a> {
 /// Values of a column, one for each row.
 #[derive(Debug, Clone, PartialEq)]
 pub enum WrittenValues<'a> {
-    /// Numbers; none where they aren't finite.
+    /// Numbers; not finite means missing.
     Numbers(Cow<'a, [f64]>),
     /// Whole numbers.
     Counts(&'a [u32]),
     /// True or false.
     Flags(&'a [bool]),
-    /// Names of a list, by their places in it; none where there is none.
+    /// Names from a list, by their indices; none means missing.
     Names(&'a [String], Vec<Option<u32>>),
 }
 
 impl<'a> WrittenValues<'a> {
-    /// Numbers of a slice.
+    /// Numbers from a slice.
     #[must_use]
     pub const fn numbers(values: &'a [f64]) -> Self {
         Self::Numbers(Cow::Borrowed(values))
     }
 
-    /// Names that every row has, by their places in the list.
+    /// Names of all rows, by their indices in the list.
     #[must_use]
     pub fn names(list: &'a [String], places: &[u32]) -> Self {
         Self::Names(list, places.iter().map(|place| Some(*place)).collect())
@@ -61,7 +62,8 @@ impl<'a> WrittenValues<'a> {
     }
 }
 
-/// Why columns can't be written: what the Parquet library says, as when they differ in length.
+/// Why columns can't be written, as the Parquet library reports it, for example because they differ in
+/// length.
 #[derive(Debug, thiserror::Error)]
 #[error("the columns can't be written as Parquet: {0}")]
 pub struct WrittenError(Box<ParquetError>);
@@ -72,21 +74,22 @@ impl From<ParquetError> for WrittenError {
     }
 }
 
-/// The name at a place.
+/// The name at an index.
 fn name<'a>(list: &'a [String], place: Option<&Option<u32>>) -> Option<&'a str> {
     list.get((*place?)? as usize).map(String::as_str)
 }
 
-/// As bytes of the kind that the ending of the file's name says: Parquet for `.parquet`, else CSV.
+/// The bytes of a file of the kind that its name's extension says: Parquet for `.parquet`, otherwise CSV.
 ///
 /// # Errors
-/// [`WrittenError`], as when columns differ in length.
+/// [`WrittenError`], for example if columns differ in length.
 pub fn written(path: &Path, columns: &[WrittenColumn<'_>]) -> Result<Vec<u8>, WrittenError> {
     let is_parquet = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("parquet"));
     if is_parquet { to_parquet(columns) } else { Ok(to_csv(columns).into_bytes()) }
 }
 
-/// As CSV with a line of headings. Rows are those of the longest column; what a shorter one lacks is empty.
+/// CSV with a line of headings. The number of rows is that of the longest column; shorter ones are filled
+/// with empty cells.
 #[must_use]
 pub fn to_csv(columns: &[WrittenColumn<'_>]) -> String {
     let headings: Vec<String> = columns.iter().map(|column| field(column.heading)).collect();
@@ -118,17 +121,17 @@ pub fn to_csv(columns: &[WrittenColumn<'_>]) -> String {
     text
 }
 
-/// A field, in quotation marks where it needs them. A line break in a name would end the row for other readers.
+/// A field, quoted if necessary. A line break in a name would end the row for other readers.
 fn field(text: &str) -> String {
     let text = text.replace(|c: char| c.is_control(), " ");
     let needs = text.contains([',', '"', ';', '#']) || text.trim().len() != text.len();
     if needs { format!("\"{}\"", text.replace('"', "\"\"")) } else { text }
 }
 
-/// As a Parquet file: numbers as optional doubles, whole ones as 64-bit integers, names as optional text.
+/// A Parquet file: numbers as optional doubles, whole ones as 64-bit integers, names as optional text.
 ///
 /// # Errors
-/// [`WrittenError`], as when columns differ in length.
+/// [`WrittenError`], for example if columns differ in length.
 pub fn to_parquet(columns: &[WrittenColumn<'_>]) -> Result<Vec<u8>, WrittenError> {
     let fields = columns.iter().map(|column| {
         let (physical, repetition, logical) = match column.values {

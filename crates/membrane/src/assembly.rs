@@ -1,7 +1,7 @@
-//! From elements to the structure: energy, forces and stiffness over its degrees of freedom.
+//! Assembly: energy, forces and stiffness of the structure over its degrees of freedom, from its elements.
 //!
-//! Where each number of each element goes is found once. A sum then runs over the sources of one entry, in the order of the elements: the
-//! result doesn't depend on who computed what when.
+//! The destination of each element number is determined once. A sum then runs over the sources of one entry
+//! in the order of the elements, so that the result doesn't depend on the order of computation.
 
 use crate::dofs::{Dofs, NONE};
 use crate::error::MembraneError;
@@ -9,7 +9,7 @@ use crate::set::{Elements, Parts, Place, packed};
 use rayon::prelude::*;
 use std::collections::TryReserveError;
 
-/// For each entry of a vector the places in a buffer whose sum it is.
+/// For each entry of a vector, the positions in a buffer whose sum it is.
 #[derive(Debug, Default)]
 struct Gather {
     starts: Vec<u32>,
@@ -17,7 +17,7 @@ struct Gather {
 }
 
 impl Gather {
-    /// From (entry, source), in the order of the sources.
+    /// From pairs (entry, source), in the order of the sources.
     fn new(entries: usize, mut pairs: Vec<(u32, u32)>) -> Result<Self, TryReserveError> {
         pairs.sort_unstable();
         let mut starts = filled(entries + 1, 0_u32)?;
@@ -49,13 +49,13 @@ impl Gather {
     }
 }
 
-/// The buffers of all elements, and where their numbers go.
+/// The buffers of all elements, and the destinations of their numbers.
 #[derive(Debug)]
 pub(crate) struct Assembly {
-    /// The upper triangle of the stiffness over the free degrees of freedom, by columns.
+    /// The upper triangle of the stiffness over the free degrees of freedom, column by column.
     pub(crate) columns: Vec<usize>,
     pub(crate) rows: Vec<usize>,
-    /// Where the diagonal stands.
+    /// Positions of the diagonal entries.
     pub(crate) diagonal: Vec<usize>,
     stiffness: Gather,
     force: Gather,
@@ -73,7 +73,7 @@ pub(crate) struct Totals {
     pub(crate) volume: f64,
     pub(crate) force: Vec<f64>,
     pub(crate) sweep: Vec<f64>,
-    /// The sum of the sizes of what is added up in `force`, and the pressure's share: what a residual is measured by.
+    /// Mean size of the terms summed in `force` and of the pressure's forces: the reference for residuals.
     pub(crate) scale: f64,
 }
 
@@ -101,7 +101,7 @@ impl Assembly {
                     }
                 }
                 gradient_at += 2 * own;
-                // The order in which a set writes its blocks.
+                // A set writes its blocks in this order.
                 let nodes = set.each();
                 let mut at = packed_at;
                 for a in 0..nodes {
@@ -113,7 +113,8 @@ impl Assembly {
                                     let entry = (i.max(j), i.min(j));
                                     grow(&mut stiffness)?;
                                     stiffness.push((entry, short(at)));
-                                    // Two of its numbers are the same one: both halves of the matrix come to the diagonal.
+                                    // Two of its degrees of freedom are the same one, so both halves of the
+                                    // matrix contribute to the diagonal.
                                     if i == j && (a, k) != (b, l) {
                                         grow(&mut stiffness)?;
                                         stiffness.push((entry, short(at)));
@@ -185,7 +186,8 @@ impl Assembly {
         sum
     }
 
-    /// Everything: `totals`, and the stiffness of energy - pressure volume in the places of the pattern.
+    /// Computes everything: `totals`, and the stiffness of energy - pressure volume at the positions of the
+    /// pattern.
     pub(crate) fn work(
         &mut self,
         sets: &[&dyn Elements],
@@ -212,7 +214,7 @@ impl Assembly {
         totals.scale = self.scale(free, place.pressure);
     }
 
-    /// The mean over the free degrees of freedom of the sum of the sizes of their forces.
+    /// The mean over the free degrees of freedom of the summed sizes of their forces.
     fn scale(&self, free: usize, pressure: f64) -> f64 {
         let mut sum = 0.0;
         for dof in 0..free {
@@ -227,21 +229,21 @@ impl Assembly {
     }
 }
 
-/// An empty vector with room for so many.
+/// An empty vector with capacity for `count` values.
 fn with_room<T>(count: usize) -> Result<Vec<T>, TryReserveError> {
     let mut all = Vec::new();
     all.try_reserve_exact(count)?;
     Ok(all)
 }
 
-/// A vector of one value, or an error where memory is short.
+/// A vector of one value, or an error if there is too little memory.
 pub(crate) fn filled<T: Clone>(count: usize, value: T) -> Result<Vec<T>, TryReserveError> {
     let mut all = with_room(count)?;
     all.resize(count, value);
     Ok(all)
 }
 
-/// Room for one more, twice as much as before where there is none.
+/// Capacity for one more value; doubles it if necessary.
 fn grow<T>(all: &mut Vec<T>) -> Result<(), TryReserveError> {
     if all.len() == all.capacity() { all.try_reserve(1) } else { Ok(()) }
 }
@@ -258,7 +260,7 @@ fn short(count: usize) -> u32 {
 mod tests {
     use super::*;
 
-    /// More elements than any memory holds.
+    /// More elements than any memory can hold.
     #[derive(Debug)]
     struct Endless;
 

@@ -1,4 +1,4 @@
-//! Cases: a mesh, what it is made of, what holds it, and the loads in turn, from a TOML file.
+//! Cases: a mesh, its materials, its supports, and a sequence of loads, from a TOML file.
 
 mod ends;
 mod example;
@@ -21,28 +21,28 @@ use crate::structure::{Fitting, Part, Support};
 use bulge_muscles::Muscle;
 use serde::Serialize;
 
-/// Everything that a case file says.
+/// The contents of a case file.
 #[derive(Debug, Clone)]
 pub struct Case {
     /// Its name.
     pub name: String,
     /// The mesh, in m.
     pub mesh: Mesh,
-    /// What the groups of the mesh are.
+    /// What the groups of the mesh are made of.
     pub parts: Vec<(String, Part)>,
-    /// What holds the groups.
+    /// Supports of the groups.
     pub supports: Vec<(String, Support)>,
     /// The end fittings with their names.
     pub fittings: Vec<(String, Fitting)>,
     /// The fittings between which a contraction is measured; `None` without fittings.
     pub ends: Option<Ends>,
-    /// How often the mesh stands in the whole.
+    /// How often the mesh occurs in the whole structure.
     pub copies: Copies,
     /// Unpressurised length between the end fittings, m, if the case has a contraction.
     pub length: Option<f64>,
-    /// The loads in turn.
+    /// The loads in sequence.
     pub steps: Vec<Step>,
-    /// When an equilibrium is good enough.
+    /// Convergence criteria of an equilibrium.
     pub tolerance: Tolerance,
     /// The muscle that the mesh was made for, with the fibres of the case.
     pub muscle: Option<Muscle>,
@@ -52,18 +52,19 @@ pub struct Case {
     pub materials: Vec<(String, Sheet)>,
 }
 
-/// A load to be reached from the one before.
+/// A load, reached from the one before.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Step {
-    /// Whether it begins with the mesh at rest, not with the state before.
+    /// Whether it starts from the mesh at rest instead of the previous state.
     pub is_restart: bool,
     /// What fills the membrane.
     pub filling: Filling,
-    /// What the fittings do at its end: places from those in the mesh, m, or forces, N. `None`: as before.
+    /// Motions of the fittings at its end: positions relative to those in the mesh, m, or forces, N. `None`:
+    /// unchanged.
     pub fittings: Vec<Option<f64>>,
     /// The contraction at its end, if the step prescribes one.
     pub contraction: Option<f64>,
-    /// States that are kept on the way, the last one included.
+    /// Number of states that are kept on the way, including the last one.
     pub states: usize,
 }
 
@@ -74,11 +75,11 @@ pub enum Filling {
     Pressure(f64),
     /// A volume, m^3.
     Volume(f64),
-    /// The gas that is in it when the step begins stays: its exponent, and the pressure around, Pa.
+    /// The gas enclosed at the beginning of the step stays: its exponent, and the ambient pressure, Pa.
     Closed {
-        /// 1 at constant temperature, 1.4 without exchange of heat.
+        /// 1 at constant temperature, 1.4 without heat exchange.
         gamma: f64,
-        /// Pa.
+        /// Ambient pressure, Pa.
         ambient: f64,
     },
 }

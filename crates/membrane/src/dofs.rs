@@ -1,16 +1,17 @@
-//! Supports as degrees of freedom: every node's place is a sum of numbers times directions.
+//! Supports as degrees of freedom: every node's position is a linear combination of unknowns.
 //!
 //! ```text
 //! x_a = base_a + sum over k of y_(dof a k) axis_(a k)
 //! ```
 //!
-//! A free node has three numbers of its own; one on a plane of symmetry two, in the plane; one on an end fitting only the fitting's axial
-//! place, which it shares; one on the far edge of a cyclic sector those of its partner, with the directions turned. The numbers to solve for
-//! come first, the prescribed ones last: d(energy)/dy of those is the reaction.
+//! A free node has three degrees of freedom of its own; a node on a plane of symmetry has two, in the plane;
+//! a node on an end fitting only shares the fitting's axial position; a node on the far edge of a cyclic
+//! sector has those of its partner, with the directions rotated. The degrees of freedom to solve for come
+//! first, the prescribed ones last: d(energy)/dy of the latter is the reaction.
 
 use crate::element::{Vector, add, dot, norm, scaled, sub};
 
-/// No degree of freedom.
+/// Marks a missing degree of freedom.
 pub(crate) const NONE: u32 = u32::MAX;
 
 /// A node's degrees of freedom.
@@ -18,28 +19,28 @@ pub(crate) const NONE: u32 = u32::MAX;
 pub(crate) struct NodeDofs {
     pub(crate) dof: [u32; 3],
     pub(crate) axis: [Vector; 3],
-    /// Whether the axes are x, y and z, so that nothing has to be turned.
+    /// Whether the axes are x, y and z, so that no rotation is needed.
     pub(crate) is_plain: bool,
     pub(crate) base: Vector,
 }
 
-/// What holds each node.
+/// The supports of each node.
 #[derive(Debug, Clone)]
 pub(crate) struct Supports {
     nodes: Vec<Held>,
-    /// Whether each fitting's axial place is solved for.
+    /// Whether each fitting's axial position is solved for.
     fittings: Vec<bool>,
 }
 
 #[derive(Debug, Clone, Default)]
 struct Held {
-    /// Directions in which it can't move, orthonormal, and what holds them.
+    /// Orthonormal directions in which it can't move, and the supports behind them.
     normals: Vec<(Vector, By)>,
     fitting: Option<(usize, By)>,
     partner: Option<Partner>,
 }
 
-/// What holds a node: the number of a support.
+/// The number of a support that holds a node.
 pub(crate) type By = usize;
 
 /// A node across a cyclic sector, and the angle from it, rad.
@@ -55,30 +56,30 @@ struct Partner {
 pub(crate) struct Clash {
     pub(crate) node: usize,
     pub(crate) kind: ClashKind,
-    /// The supports: the second one where there is an order.
+    /// The supports; the second one is at fault if their order matters.
     pub(crate) by: [By; 2],
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum ClashKind {
-    /// It rides on two fittings.
+    /// The node is on two fittings.
     TwoFittings,
-    /// It follows two others.
+    /// The node follows two others.
     TwoPartners,
-    /// It follows one node and is the partner of another.
+    /// The node follows one node and is the partner of another.
     Chain,
-    /// It is held along z, and rides on a fitting, which moves there.
+    /// The node is held along z, and is on a fitting, which moves in that direction.
     HeldFitting,
 }
 
-/// The numbers of all nodes.
+/// The degrees of freedom of all nodes.
 #[derive(Debug, Clone)]
 pub(crate) struct Dofs {
     pub(crate) nodes: Vec<NodeDofs>,
-    /// Numbers to solve for, and all of them.
+    /// Number of degrees of freedom to solve for; the next field counts all.
     pub(crate) free: usize,
     pub(crate) all: usize,
-    /// The number of each fitting's axial place.
+    /// The degree of freedom of each fitting's axial position.
     pub(crate) fittings: Vec<u32>,
 }
 
@@ -87,33 +88,33 @@ impl Supports {
         Self { nodes: vec![Held::default(); nodes], fittings: Vec::new() }
     }
 
-    /// A rigid fitting that moves along z; `is_free`: its place is solved for.
+    /// Adds a rigid fitting that moves along z; `is_free` means that its position is solved for.
     pub(crate) fn fitting(&mut self, is_free: bool) -> usize {
         self.fittings.push(is_free);
         self.fittings.len() - 1
     }
 
-    /// The node can't move along `normal`.
+    /// Holds the node along `normal`.
     pub(crate) fn hold(&mut self, node: usize, normal: Vector, by: By) {
         let held = &mut self.nodes[node].normals;
         let mut left = scaled(normal, 1.0 / norm(normal));
         for (known, _) in held.iter() {
             left = sub(left, scaled(*known, dot(left, *known)));
         }
-        // Nearly what is held already.
+        // A direction that is nearly held already is skipped.
         if norm(left) > 1e-6 {
             held.push((scaled(left, 1.0 / norm(left)), by));
         }
     }
 
-    /// The node can't move.
+    /// Fixes the node.
     pub(crate) fn fix(&mut self, node: usize, by: By) {
         for normal in [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]] {
             self.hold(node, normal, by);
         }
     }
 
-    /// The node moves with the fitting.
+    /// Attaches the node to the fitting.
     pub(crate) fn ride(&mut self, node: usize, fitting: usize, by: By) -> Result<(), Clash> {
         match self.nodes[node].fitting {
             Some((other, before)) if other != fitting => {
@@ -127,10 +128,10 @@ impl Supports {
         }
     }
 
-    /// The node does what `partner` does, turned by `angle` about z.
+    /// Lets the node follow `partner`, rotated by `angle` about z.
     pub(crate) fn follow(&mut self, node: usize, partner: usize, angle: f64, by: By) -> Result<(), Clash> {
         if node == partner {
-            // On the axis.
+            // A node on the axis is its own partner.
             self.hold(node, [1.0, 0.0, 0.0], by);
             self.hold(node, [0.0, 1.0, 0.0], by);
             return Ok(());
@@ -146,7 +147,7 @@ impl Supports {
         }
     }
 
-    /// Degrees of freedom with their values at `places`, the fittings at the place z = 0 of their own motion.
+    /// Degrees of freedom with their values at `places`; the fittings' positions start at 0.
     pub(crate) fn dofs(mut self, places: &[Vector]) -> Result<(Dofs, Vec<f64>), Clash> {
         self.hand_over()?;
         self.check_fittings()?;
@@ -187,7 +188,7 @@ impl Supports {
         let free = values.len() - self.fittings.iter().filter(|free| !**free).count();
         for (node, held) in nodes.iter_mut().zip(&self.nodes) {
             if let Some((fitting, _)) = held.fitting {
-                // Held in every direction but that of the fitting.
+                // Held in every direction except that of the fitting.
                 node.dof[0] = fittings[fitting];
                 node.axis[0] = [0.0, 0.0, 1.0];
             }
@@ -207,7 +208,7 @@ impl Supports {
         Ok((Dofs { nodes, free, all, fittings }, values))
     }
 
-    /// What holds a node that follows its partner holds the partner.
+    /// Transfers the supports of a node that follows its partner to the partner.
     fn hand_over(&mut self) -> Result<(), Clash> {
         for i in 0..self.nodes.len() {
             let Some(Partner { node: partner, angle, by }) = self.nodes[i].partner else { continue };
@@ -224,7 +225,8 @@ impl Supports {
         Ok(())
     }
 
-    /// A fitting moves along z, and holds its nodes across: another support can only do the latter.
+    /// Checks that no support holds a node on a fitting along z. A fitting moves along z and holds its nodes
+    /// across it already.
     fn check_fittings(&self) -> Result<(), Clash> {
         for (node, held) in self.nodes.iter().enumerate() {
             let Some((_, fitting)) = held.fitting else { continue };
@@ -237,7 +239,7 @@ impl Supports {
 }
 
 impl Dofs {
-    /// Places of the nodes at the values `y`.
+    /// Positions of the nodes for the values `y`.
     pub(crate) fn places(&self, y: &[f64], out: &mut Vec<Vector>) {
         out.clear();
         out.extend(self.nodes.iter().map(|node| {
@@ -260,12 +262,12 @@ fn index(count: usize) -> u32 {
     count as u32
 }
 
-/// Orthonormal directions across the given ones: x, y and z where nothing is given.
+/// Orthonormal directions orthogonal to the given ones: x, y and z if nothing is given.
 pub(crate) fn complement(normals: &[Vector]) -> Vec<Vector> {
     let mut known = normals.to_vec();
     let mut found = Vec::new();
     while known.len() < 3 {
-        // The coordinate axis of which most is left.
+        // Take the coordinate axis with the largest remainder.
         let best = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
             .map(|axis| known.iter().fold(axis, |left, n| sub(left, scaled(*n, dot(left, *n)))))
             .into_iter()
@@ -278,7 +280,7 @@ pub(crate) fn complement(normals: &[Vector]) -> Vec<Vector> {
     found
 }
 
-/// Turned about z.
+/// Rotates a vector about z.
 pub(crate) fn turned(v: Vector, angle: f64) -> Vector {
     let (sin, cos) = angle.sin_cos();
     [cos * v[0] - sin * v[1], sin * v[0] + cos * v[1], v[2]]
@@ -299,7 +301,7 @@ mod tests {
         supports.ride(4, end, 1).unwrap();
         supports.hold(0, [1.0, 1.0, 0.0], 2);
         let (dofs, mut y) = supports.dofs(&places).unwrap();
-        // 2 + 3 + 1 and the fitting.
+        // 2 + 3 + 1, and the fitting.
         assert_eq!((dofs.free, dofs.all), (6, 7));
         let mut x = Vec::new();
         dofs.places(&y, &mut x);
@@ -310,7 +312,7 @@ mod tests {
             *value += 0.5;
         }
         dofs.places(&y, &mut x);
-        // In the plane x + y = 3 still.
+        // Still in the plane x + y = 3.
         assert!((x[0][0] + x[0][1] - 3.0).abs() < 1e-15);
         assert!(norm(sub(turned(x[1], core::f64::consts::FRAC_PI_2), x[2])) < 1e-15);
         assert!(norm(sub(x[3], [0.0, 0.0, 1.5])) < 1e-15);
@@ -326,7 +328,7 @@ mod tests {
         supports.ride(0, a, 5).unwrap();
         supports.ride(0, a, 6).unwrap();
         assert_eq!(supports.ride(0, b, 7), clash(0, ClashKind::TwoFittings, [5, 7]));
-        // Across the axis a fitting holds its nodes anyway.
+        // A fitting holds its nodes across the axis anyway.
         supports.hold(0, [1.0, 1.0, 0.0], 8);
         assert!(supports.clone().dofs(&places[..2]).is_ok());
         supports.hold(0, [0.0, 0.0, 1.0], 9);
@@ -337,7 +339,7 @@ mod tests {
         assert_eq!(supports.follow(1, 2, 1.0, 5), clash(1, ClashKind::TwoPartners, [4, 5]));
         supports.follow(2, 1, 1.0, 6).unwrap();
         assert_eq!(supports.dofs(&places).err(), clash(1, ClashKind::Chain, [6, 4]).err());
-        // A partner that is fixed, and a node that follows it on a fitting.
+        // A fixed partner, and a node on a fitting that follows it.
         let mut supports = Supports::new(2);
         let end = supports.fitting(true);
         supports.fix(0, 1);

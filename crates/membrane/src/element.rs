@@ -1,4 +1,5 @@
-//! Elements: the stored energy of each and the volume under it, with forces and stiffness from them.
+//! Elements: the stored energy of each and the volume under it, with the forces and stiffness derived from
+//! them.
 
 #![expect(
     clippy::needless_range_loop,
@@ -18,7 +19,8 @@ pub(crate) use triangle::{Carried, Triangle};
 /// A vector.
 pub(crate) type Vector = [f64; 3];
 
-/// Energy less pressure times volume of one element at the places of its N nodes: value, volume, gradients and stiffness.
+/// Energy less pressure times volume of one element at the positions of its N nodes: value, volume, gradients
+/// and stiffness.
 #[derive(Debug, Clone)]
 pub(crate) struct Local<const N: usize> {
     /// Stored energy.
@@ -29,7 +31,8 @@ pub(crate) struct Local<const N: usize> {
     pub(crate) force: [Vector; N],
     /// d(volume)/dx.
     pub(crate) sweep: [Vector; N],
-    /// Second derivatives of energy - p volume, node by node; those with the first node's number <= the second's.
+    /// Second derivatives of energy - p volume, node by node; only those with the first node's number <= the
+    /// second's.
     pub(crate) stiffness: [[[Vector; 3]; N]; N],
 }
 
@@ -73,7 +76,7 @@ pub(crate) fn norm(a: Vector) -> f64 {
     dot(a, a).sqrt()
 }
 
-/// The sum of places with weights.
+/// Weighted sum of positions.
 #[inline]
 pub(crate) fn mixed<const N: usize>(x: &[Vector; N], weights: &[f64; N]) -> Vector {
     let mut sum = [0.0; 3];

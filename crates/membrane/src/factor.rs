@@ -1,7 +1,8 @@
-//! The factors of a sparse symmetric matrix, K = L D L', with the number of its negative eigenvalues.
+//! Factorisation of a sparse symmetric matrix, K = L D L', with the number of its negative eigenvalues.
 //!
-//! By faer: the order of elimination and the places of L are found once for a structure, numbers for each matrix. D counts the negative
-//! eigenvalues (Sylvester's law of inertia): none in a stable equilibrium.
+//! Uses faer. The elimination order and the pattern of L are determined once per structure, the values for
+//! each matrix. D gives the number of negative eigenvalues (Sylvester's law of inertia), which is zero in a
+//! stable equilibrium.
 
 use crate::assembly::filled;
 use crate::error::MembraneError;
@@ -14,7 +15,7 @@ use faer::sparse::linalg::cholesky::{
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMat};
 use faer::{Conj, MatMut, Par, Side, Spec};
 
-/// Symbolic and numeric factors, and the memory to make them in.
+/// Symbolic and numeric factors, and their workspace.
 pub(crate) struct Factor {
     pattern: SymbolicSparseColMat<usize>,
     symbolic: SymbolicCholesky<usize>,
@@ -23,17 +24,17 @@ pub(crate) struct Factor {
     par: Par,
 }
 
-/// What a factorisation says of the matrix.
+/// Inertia of the matrix as a factorisation finds it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Inertia {
     /// The number of negative eigenvalues.
     Negative(usize),
-    /// A pivot is zero or no number.
+    /// A pivot is zero or not finite.
     Singular,
 }
 
 impl Factor {
-    /// For matrices with these places in their upper triangle, by columns, the diagonal among them.
+    /// For matrices with this pattern of the upper triangle, by columns, including the diagonal.
     pub(crate) fn new(columns: Vec<usize>, rows: Vec<usize>, par: Par) -> Result<Self, MembraneError> {
         let n = columns.len() - 1;
         let pattern = SymbolicSparseColMat::new_checked(n, n, columns, None, rows);
@@ -53,7 +54,7 @@ impl Factor {
         Ok(Self { pattern, symbolic, values, memory, par })
     }
 
-    /// Numbers in the factors.
+    /// Number of entries of the factors.
     pub(crate) fn size(&self) -> usize {
         self.values.len()
     }
@@ -85,7 +86,7 @@ impl Factor {
         };
         match self.symbolic.raw() {
             SymbolicCholeskyRaw::Simplicial(l) => {
-                // D stands first in each column.
+                // D comes first in each column.
                 for start in &l.col_ptr()[..l.ncols()] {
                     see(self.values[*start]);
                 }
@@ -104,7 +105,7 @@ impl Factor {
         if is_good { Inertia::Negative(negative) } else { Inertia::Singular }
     }
 
-    /// Replaces a right side by the solution.
+    /// Replaces a right-hand side by the solution.
     pub(crate) fn solve(&mut self, right: &mut [f64]) {
         let n = right.len();
         let right = MatMut::from_column_major_slice_mut(right, n, 1);
@@ -117,7 +118,7 @@ impl Factor {
     }
 }
 
-/// Room for numbers of a matrix of so many unknowns.
+/// Storage for `count` entries of a matrix with `unknowns` unknowns.
 pub(crate) fn zeros(count: usize, unknowns: usize) -> Result<Vec<f64>, MembraneError> {
     filled(count, 0.0).map_err(|_| MembraneError::Memory { unknowns })
 }
@@ -126,7 +127,7 @@ pub(crate) fn zeros(count: usize, unknowns: usize) -> Result<Vec<f64>, MembraneE
 mod tests {
     use super::*;
 
-    /// The second difference on a grid of n x n points less `shift`: its eigenvalues are known.
+    /// The second-difference matrix on a grid of n x n points less `shift`, whose eigenvalues are known.
     fn grid(n: usize, shift: f64) -> (Vec<usize>, Vec<usize>, Vec<f64>) {
         let (mut columns, mut rows, mut values) = (vec![0], Vec::new(), Vec::new());
         for j in 0..n * n {
@@ -147,7 +148,7 @@ mod tests {
 
     #[test]
     fn solves_and_counts_negative_eigenvalues() {
-        // Small: simplicial; larger: supernodal.
+        // The small one is factorised simplicially, the larger one supernodally.
         for n in [3, 40] {
             for shift in [0.0, 0.3, 1.7] {
                 let (columns, rows, values) = grid(n, shift);

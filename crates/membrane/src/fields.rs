@@ -1,4 +1,4 @@
-//! What a state looks like: places of the nodes, and what every element carries.
+//! Fields of a state: positions of the nodes, and forces of every element.
 
 use crate::element::{Carried, CarriedByRing, Vector, norm};
 use crate::material::Tension;
@@ -9,14 +9,14 @@ use crate::state::State;
 use crate::structure::Group;
 use serde::Serialize;
 
-/// A state in space.
+/// The fields of a state.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Fields {
-    /// Place of each node, m.
+    /// Position of each node, m.
     pub places: Vec<Vector>,
-    /// Displacement of each node from its place in the mesh, m.
+    /// Displacement of each node from its position in the mesh, m.
     pub displacements: Vec<Vector>,
-    /// What the elements of each group carry, in the order of the groups.
+    /// Forces in the elements of each group, in the order of the groups.
     pub groups: Vec<GroupFields>,
 }
 
@@ -31,7 +31,8 @@ pub struct GroupFields {
     pub is_revolved: bool,
     /// Nodes of each cell.
     pub cells: Vec<u32>,
-    /// Stress-free area of each cell, m^2 (0 for cables); round the axis for a membrane of revolution.
+    /// Stress-free area of each cell, m^2 (0 for cables); over the full circumference for a membrane of
+    /// revolution.
     pub areas: Vec<f64>,
     /// The sheets, layer by layer; triangles have one or none.
     pub sheets: Vec<Vec<SheetField>>,
@@ -39,22 +40,25 @@ pub struct GroupFields {
     pub threads: Vec<Vec<ThreadField>>,
 }
 
-/// What a sheet carries in the middle of an element.
+/// Forces of a sheet in the middle of an element.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct SheetField {
-    /// Principal forces per present length, N/m: the larger first; of a membrane of revolution along the meridian and around.
+    /// Principal forces per current length, N/m, the larger first; in a membrane of revolution along the
+    /// meridian and around.
     pub force: [f64; 2],
-    /// Stretches: in the same directions for a membrane of revolution, else the principal ones, the larger first.
+    /// Stretches: in the same directions for a membrane of revolution, otherwise the principal ones, the
+    /// larger first.
     pub stretch: [f64; 2],
     /// Unit vector along the first force; zero for a membrane of revolution.
     pub direction: Vector,
-    /// Taut, wrinkled or slack. Of a sheet that doesn't wrinkle: pulled in two directions, in one, in none; it bears pressure in the others.
+    /// Taut, wrinkled or slack. For a sheet that doesn't wrinkle: tension in two directions, in one, or in
+    /// none; it carries compression in the others.
     pub tension: Tension,
-    /// The part of the cloth's width that is folded away; 0 where it is taut.
+    /// The fraction of the cloth's width that is folded away; 0 if it is taut.
     pub folded: f64,
 }
 
-/// What a thread carries in the middle of an element.
+/// Forces of a thread in the middle of an element.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct ThreadField {
     /// Tension of each thread, N.
@@ -65,12 +69,12 @@ pub struct ThreadField {
     pub angle: f64,
 }
 
-/// The numbers of a state that fit a line of a table.
+/// Scalar results of a state, as for a line of a table.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Summary {
     /// Largest distance from the z axis, m.
     pub radius: f64,
-    /// Shares of the sheets' stress-free area that are taut, wrinkled and slack.
+    /// Fractions of the sheets' stress-free area that are taut, wrinkled and slack.
     pub shares: [f64; 3],
     /// Smallest and largest principal force of the sheets, N/m.
     pub forces: [f64; 2],
@@ -79,7 +83,7 @@ pub struct Summary {
 }
 
 impl Solver {
-    /// Places, forces and stretches of a state.
+    /// Positions, forces and stretches of a state.
     #[must_use]
     pub fn fields(&mut self, state: &State) -> Fields {
         self.restore(state);
@@ -181,7 +185,7 @@ fn put<T>(layers: &mut Vec<Vec<T>>, layer: usize, value: T) {
     layers[layer].push(value);
 }
 
-/// Each element with the places of its nodes, whose numbers are noted.
+/// Each element with the positions of its nodes; their numbers are recorded.
 fn each<'a, E: Element<N>, const N: usize>(
     set: &'a Set<E, N>,
     x: &[Vector],
@@ -196,7 +200,7 @@ fn each<'a, E: Element<N>, const N: usize>(
 }
 
 impl Fields {
-    /// The numbers of a table.
+    /// The scalar results.
     #[must_use]
     pub fn summary(&self) -> Summary {
         let mut is_used = vec![false; self.places.len()];

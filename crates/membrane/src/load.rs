@@ -1,4 +1,4 @@
-//! Loads: gas in the membrane, and what is prescribed at the end fittings.
+//! Loads: gas in the membrane, and prescribed motions or forces of the end fittings.
 
 use serde::Serialize;
 
@@ -7,7 +7,8 @@ use serde::Serialize;
 pub enum Inflation {
     /// A gauge pressure, Pa.
     Pressure(f64),
-    /// A volume, m^3; the pressure is a result. Passes limit points, where pressure falls as the membrane grows.
+    /// A volume, m^3; the pressure is a result. Passes limit points, where the pressure falls as the membrane
+    /// grows.
     Volume(f64),
     /// A closed amount of gas.
     Gas(Gas),
@@ -18,14 +19,14 @@ pub enum Inflation {
 pub struct Gas {
     /// (p + ambient) V^gamma, in Pa and m^3.
     pub constant: f64,
-    /// 1: at constant temperature; 1.4: without exchange of heat, air.
+    /// 1 at constant temperature; 1.4 for air without heat exchange.
     pub gamma: f64,
-    /// Pressure around, Pa.
+    /// Ambient pressure, Pa.
     pub ambient: f64,
 }
 
 impl Gas {
-    /// The gas that fills `volume` m^3 at the gauge pressure `pressure`, Pa.
+    /// The gas that fills `volume`, m^3, at the gauge pressure `pressure`, Pa.
     #[must_use]
     pub fn filling(volume: f64, pressure: f64, ambient: f64, gamma: f64) -> Self {
         Self { constant: (pressure + ambient) * volume.powf(gamma), gamma, ambient }
@@ -37,7 +38,8 @@ impl Gas {
         (absolute - self.ambient, -self.gamma * absolute / volume)
     }
 
-    /// What has been taken out of the gas by growing to a volume: minus the integral of its gauge pressure.
+    /// Work done by the gas in growing to a volume, with a negative sign: minus the integral of its gauge
+    /// pressure.
     pub(crate) fn energy(&self, volume: f64) -> f64 {
         let work = if (self.gamma - 1.0).abs() < 1e-12 {
             self.constant * volume.ln()
@@ -48,12 +50,13 @@ impl Gas {
     }
 }
 
-/// Everything that acts.
+/// All loads on the structure.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Load {
     /// What fills it.
     pub inflation: Inflation,
-    /// For each fitting how far it stands from its place in the mesh along z, m, or the force on it along z, N.
+    /// For each fitting its displacement along z from its position in the mesh, m, or the force on it along
+    /// z, N.
     pub fittings: Vec<f64>,
 }
 

@@ -1,4 +1,5 @@
-//! Materials: energies per unit area of the stress-free membrane, and of threads, with their derivatives.
+//! Materials: energies per unit area of a stress-free membrane, and per unit length of a thread, with their
+//! derivatives.
 
 mod law;
 mod orthotropic;

@@ -1,4 +1,4 @@
-//! A mesh: nodes, and blocks of cells with the names by which a case gives them material, load and support.
+//! A mesh: nodes, and blocks of cells with names to which a case assigns materials, loads and supports.
 
 mod any_format;
 mod error;
@@ -11,18 +11,19 @@ use crate::dofs::turned;
 use crate::element::{norm, sub};
 use crate::error::MembraneError;
 
-/// What a cell is. Nodes are counted as Gmsh does: corners first, then the middles of the edges 1-2, 2-3, 3-1.
+/// Kind of a cell. Nodes are ordered as in Gmsh: corners first, then the midpoints of the edges 1-2, 2-3,
+/// 3-1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize)]
 pub enum CellKind {
-    /// One node: a place to hold or to look at.
+    /// One node, for a support or for output.
     Point,
-    /// A cable or a membrane of revolution, two nodes.
+    /// A cable or a membrane of revolution with two nodes.
     Line2,
-    /// The same with a node between.
+    /// The same with a middle node.
     Line3,
-    /// A membrane, three corners.
+    /// A membrane with three corners.
     Triangle3,
-    /// A membrane with nodes on its edges.
+    /// A membrane with additional nodes on its edges.
     Triangle6,
 }
 
@@ -42,32 +43,33 @@ impl CellKind {
 /// Cells of one kind under one name (a physical group of Gmsh).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Block {
-    /// The group's name; empty where the mesh gives none.
+    /// The group's name; empty if the mesh has none.
     pub group: String,
     /// What the cells are.
     pub kind: CellKind,
     /// Indices into [`Mesh::nodes`], `kind.nodes()` for each cell.
     pub cells: Vec<usize>,
-    /// The number of each cell in the file it came from, for messages.
+    /// The number of each cell in its file, for messages.
     pub numbers: Vec<u64>,
-    /// Where the nodes of each cell lie in the flat, stress-free pattern of the cloth, one place for each entry of `cells`, m. `None`: the mesh
-    /// itself is free of stress.
+    /// Positions of each cell's nodes in the flat, stress-free pattern of the cloth, one for each entry of
+    /// `cells`, m. `None`: the mesh itself is stress-free.
     pub pattern: Option<Vec<[f64; 2]>>,
 }
 
 /// Nodes and cells.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Mesh {
-    /// Places, m. A membrane of revolution lies in the plane y = 0 with its axis along z: x is the radius.
+    /// Positions, m. A membrane of revolution lies in the plane y = 0 with its axis along z: x is the radius.
     pub nodes: Vec<[f64; 3]>,
-    /// The number of each node in the file it came from, for messages.
+    /// The number of each node in its file, for messages.
     pub numbers: Vec<u64>,
     /// The cells.
     pub blocks: Vec<Block>,
 }
 
 impl Mesh {
-    /// The nodes of all cells of a group, in order and each once; `None` if there is no such group.
+    /// The nodes of all cells of a group, in ascending order without duplicates; `None` if there is no such
+    /// group.
     #[must_use]
     pub fn nodes_of(&self, group: &str) -> Option<Vec<usize>> {
         let mut nodes = Vec::new();
@@ -81,12 +83,12 @@ impl Mesh {
         is_known.then_some(nodes)
     }
 
-    /// The number of a node in the file it came from.
+    /// The number of a node in its file.
     pub(crate) fn number(&self, node: usize) -> u64 {
         self.numbers.get(node).copied().unwrap_or(node as u64 + 1)
     }
 
-    /// The diagonal of the box about all nodes, m.
+    /// The diagonal of the bounding box of all nodes, m.
     pub(crate) fn size(&self) -> f64 {
         let mut range = [[f64::INFINITY, f64::NEG_INFINITY]; 3];
         for place in &self.nodes {
@@ -97,7 +99,7 @@ impl Mesh {
         range.iter().map(|[low, high]| (high - low).powi(2)).sum::<f64>().sqrt()
     }
 
-    /// Each node of a group with the one of `partner` from which it is `angle` about z.
+    /// Each node of a group with the node of `partner` from which it is `angle` away about z.
     pub(crate) fn partners(
         &self,
         group: &str,
@@ -107,7 +109,7 @@ impl Mesh {
         angle: f64,
     ) -> Result<Vec<(usize, usize)>, MembraneError> {
         let size = nodes.iter().flat_map(|node| self.nodes[*node]).fold(0.0_f64, |a, x| a.max(x.abs()));
-        // By z, so that only a few are looked at.
+        // Sorted by z, so that only a few need to be compared.
         let mut sorted: Vec<(f64, usize)> =
             partners.iter().map(|node| (self.nodes[*node][2], *node)).collect();
         sorted.sort_by(|a, b| a.0.total_cmp(&b.0));

@@ -1,6 +1,7 @@
 //! Meshes of our own muscles, and of simple membranes: for pictures, for sizing, and for verification.
 //!
-//! All lie about the z axis; a membrane of revolution in the half-plane y = 0. Groups are named for what a case says of them.
+//! All are placed around the z axis; a membrane of revolution lies in the half-plane y = 0. The names of the
+//! groups tell their roles in a case.
 
 mod grid;
 mod pleated;

@@ -1,4 +1,4 @@
-//! Newton's method: steps, how they are guarded, and when they have arrived.
+//! Newton's method: steps, their globalisation, and convergence.
 
 use crate::error::MembraneError;
 use crate::factor::Inertia;
@@ -10,40 +10,42 @@ use std::time::Instant;
 struct Step {
     by: Vec<f64>,
     pressure: f64,
-    /// Gradient times step.
+    /// Inner product of gradient and step.
     slope: f64,
 }
 
-/// How the way down is guarded.
+/// Regularisation of the descent.
 #[derive(Debug, Clone, Copy, Default)]
 struct Guard {
     /// Multiple of the unit matrix that is added to the stiffness.
     shift: f64,
-    /// Whether the last step was made with the stiffness under a dead pressure, and whether this one begins with it.
+    /// Whether the last step used the stiffness without the pressure's contribution (a dead pressure); the
+    /// next flag is for the current step.
     was_dead: bool,
     is_dead: bool,
 }
 
-/// What is known where the iteration stands.
+/// The current iterate.
 struct Now {
     gradient: Vec<f64>,
     potential: f64,
-    /// Residual over what is allowed.
+    /// Residual relative to the allowed one.
     ratio: f64,
-    /// Residual over the scale of the forces.
+    /// Residual relative to the scale of the forces.
     residual: f64,
 }
 
-/// Trials of one direction.
+/// Most trial lengths along one direction.
 const HALVINGS: usize = 5;
-/// Trials of one iteration with more and more shift.
+/// Most trials of one iteration with increasing shift.
 const SHIFTS: usize = 30;
-/// The first shift of a stiffness that isn't positive, over its mean diagonal.
+/// First shift of a stiffness that isn't positive definite, relative to its mean diagonal.
 const LEAST_SHIFT: f64 = 1e-6;
-/// How far a node goes in one solution, over the size of the structure: farther is a way without end.
+/// Largest displacement of a node in one solution, relative to the size of the structure; beyond, the
+/// iteration diverges.
 const FARTHEST: f64 = 3.0;
 
-/// What the pressure does as the volume changes.
+/// Response of the pressure to a change of the volume.
 #[derive(Debug, Clone, Copy)]
 enum Closure {
     Pressure,
@@ -52,7 +54,7 @@ enum Closure {
 }
 
 impl Solver {
-    /// W - p V, or W and the gas, less the work of the fittings' forces.
+    /// W - p V, or W plus the energy of the gas, less the work of the forces on the fittings.
     fn potential(&self, load: &Load, y: &[f64], energy: f64, volume: f64) -> f64 {
         let inside = match load.inflation {
             Inflation::Pressure(p) => -p * volume,
@@ -62,7 +64,7 @@ impl Solver {
         energy + inside - self.outside(load).iter().map(|(dof, force)| force * y[*dof]).sum::<f64>()
     }
 
-    /// Gradient and residual at the last [`Self::work`].
+    /// Gradient and residual after the last [`Self::work`].
     fn now(&self, load: &Load, y: &[f64], pressure: f64) -> Now {
         let free = self.structure.dofs.free;
         let mut gradient: Vec<f64> =
@@ -70,13 +72,13 @@ impl Solver {
         for (dof, force) in self.outside(load) {
             gradient[dof] -= force;
         }
-        // Forces are differences of lengths times stiffness: what rounding leaves of them.
+        // Forces are differences of lengths times stiffness, which bounds their rounding errors.
         let rounding = 32.0 * f64::EPSILON * self.size;
         let (mut ratio, mut residual) = (0.0_f64, 0.0_f64);
         for (i, g) in gradient.iter().enumerate() {
             let diagonal = self.matrix[self.assembly.diagonal[i]].abs();
             let allowed = self.tolerance.residual * self.totals.scale + rounding * diagonal;
-            // Also true of NaN.
+            // The comparison also catches NaN.
             let own = g.abs() / allowed.max(f64::MIN_POSITIVE);
             ratio = if own.is_nan() { f64::INFINITY } else { ratio.max(own) };
             residual = residual.max(g.abs());
@@ -113,10 +115,10 @@ impl Solver {
         self.effort.solving += clock.elapsed();
     }
 
-    /// The step from the factors that are there, and the number of negative eigenvalues of what it solves.
+    /// The step from the current factors, and the number of negative eigenvalues of the matrix behind it.
     ///
-    /// Gas of a closed amount adds c v v' to the stiffness, with v = dV/dy and c = -dp/dV (Sherman and Morrison); a prescribed volume is
-    /// the limit of an infinite c, in which dp becomes an unknown.
+    /// A closed amount of gas adds c v v' to the stiffness, with v = dV/dy and c = -dp/dV (Sherman and
+    /// Morrison). A prescribed volume is the limit of infinite c, in which dp becomes an unknown.
     fn step(&mut self, gradient: &[f64], closure: Closure, negative: usize) -> (Step, usize) {
         let mut by: Vec<f64> = gradient.iter().map(|g| -g).collect();
         self.backsolve(&mut by);
@@ -138,7 +140,7 @@ impl Solver {
                 }
                 Closure::Pressure => 1.0,
             };
-            // One negative eigenvalue is mended by the gas.
+            // The gas removes one negative eigenvalue.
             if bordered < 0.0 {
                 negative = negative.saturating_sub(1);
             }
@@ -150,7 +152,7 @@ impl Solver {
         (Step { by, pressure, slope }, negative)
     }
 
-    /// The least potential.
+    /// Minimises the potential.
     pub(crate) fn downhill(
         &mut self,
         load: &Load,
@@ -162,7 +164,7 @@ impl Solver {
         let mut last = f64::INFINITY;
         let first = y.to_vec();
         for iteration in 0..self.tolerance.iterations {
-            // Running away: beyond a limit point there is nothing to find.
+            // The iteration diverges: beyond a limit point there is no equilibrium.
             let farthest = y.iter().zip(&first).fold(0.0_f64, |a, (y, first)| a.max((y - first).abs()));
             if farthest > FARTHEST * self.size || self.effort.factorisations >= self.deadline {
                 break;
@@ -177,7 +179,8 @@ impl Solver {
                 Inflation::Volume(_) => (*pressure, Closure::Pressure),
             };
             *pressure = p;
-            // Far from equilibrium most attempts with the whole stiffness are in vain: only every third is made after one that was.
+            // Far from equilibrium, most attempts with the full stiffness fail. After a failure it is only
+            // tried in every third iteration.
             guard.is_dead = guard.was_dead && last > 0.03 && !(self.effort.iterations + 1).is_multiple_of(3);
             self.work(y, if guard.is_dead { 0.0 } else { p });
             let now = self.now(load, y, p);
@@ -198,7 +201,7 @@ impl Solver {
             }
             self.effort.iterations += 1;
             if !self.improve(load, &now, closure, &mut guard, y) {
-                // Nothing lowers the energy of what is in equilibrium: a mesh at rest without load, for one.
+                // An equilibrium is a minimum already, for example a mesh at rest without load.
                 if now.ratio <= 1.0 {
                     return Ok((now.residual, 0));
                 }
@@ -212,7 +215,7 @@ impl Solver {
         })
     }
 
-    /// One accepted step; false if none is found.
+    /// Takes one accepted step; false if none is found.
     fn improve(
         &mut self,
         load: &Load,
@@ -222,7 +225,7 @@ impl Solver {
         y: &mut [f64],
     ) -> bool {
         let unit = self.mean_diagonal();
-        // What rounding leaves of the potential.
+        // Rounding error of the potential.
         let floor = 1e-13 * (self.totals.energy.abs() + now.potential.abs());
         let mut trial = y.to_vec();
         let mut is_dead = guard.is_dead;
@@ -237,7 +240,8 @@ impl Solver {
                 if is_dead {
                     guard.shift = (4.0 * guard.shift).max(LEAST_SHIFT * unit);
                 } else {
-                    // As if the pressure kept its direction: what it adds to the stiffness is all that a slack cloth can't bear.
+                    // Drop the pressure's contribution, as if the pressure kept its direction: it is what
+                    // makes the stiffness of a slack cloth indefinite.
                     is_dead = true;
                     self.work(y, 0.0);
                 }
@@ -253,7 +257,7 @@ impl Solver {
                 let is_lower = fell <= 1e-4 * length * step.slope + floor;
                 let is_first = halving == 0;
                 if is_lower || (is_first && self.is_calmer(load, now, (y, &trial), step.slope, is_dead)) {
-                    // A quadratic potential falls by slope/2.
+                    // A quadratic potential decreases by slope/2.
                     let expected = length * (1.0 - 0.5 * length) * step.slope;
                     let is_as_expected = (fell - expected).abs() < 0.3 * expected.abs() + floor;
                     if is_as_expected {
@@ -278,7 +282,8 @@ impl Solver {
         false
     }
 
-    /// Where the potential is lost in its rounding (small strains), a smaller residual is what counts. Leaves the assembly at y if it isn't.
+    /// Accepts a smaller residual instead if the change of the potential is below rounding (small strains).
+    /// If not, leaves the assembly at y.
     fn is_calmer(
         &mut self,
         load: &Load,
@@ -349,7 +354,7 @@ impl Solver {
                 let p = *pressure + length * step.pressure;
                 self.work(&trial, p);
                 let next = self.now(load, &trial, p);
-                // Near round-off the residual can't fall any more.
+                // Near round-off the residual can't decrease any more.
                 let after = merit(&next, self.totals.volume - volume);
                 if after < before * (1.0 - 0.1 * length)
                     || (after.is_finite() && after < 1e-11)

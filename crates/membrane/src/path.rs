@@ -1,31 +1,34 @@
-//! Paths: from one load to another in steps that find their own length.
+//! Load paths: from one load to another, with adaptive steps.
 
 use crate::error::MembraneError;
 use crate::load::{Inflation, Load};
 use crate::solver::Solver;
 use crate::state::State;
 
-/// The smallest step, over the whole path; of a pressure that rises far, over the pressure reached.
+/// Smallest step relative to the whole path; for a large increase of pressure, relative to the pressure
+/// reached.
 const SMALLEST: f64 = 1.0 / 1024.0;
-/// Factorisations for one path, or as many as twice the iterations allowed for one equilibrium.
+/// Most factorisations for one path, unless twice the iterations allowed for one equilibrium are more.
 const BUDGET: usize = 6000;
-/// Volumes that are tried to see whether the pressure falls, and the first of these steps over the volume.
+/// Most volumes that are tried to detect a maximum of the pressure; then the first of these steps relative to
+/// the volume.
 const VOLUMES: usize = 60;
 const FIRST_VOLUME: f64 = 0.01;
-/// A pressure where none says what is much, Pa.
+/// A pressure for meshes that have no scale of their own, Pa.
 const ATMOSPHERE: f64 = 1e5;
-/// Iterations that one step of a path is worth: a shorter step costs less than a long search.
+/// Most iterations for a step of a path, because a shorter step is cheaper than a long search.
 const PATIENCE: usize = 80;
-/// How far an extrapolation may reach, over the step before it.
+/// Largest extrapolation relative to the step before it.
 const REACH: f64 = 2.0;
 
 impl Solver {
-    /// The equilibrium under `load`, reached from the equilibrium `from` under `before` in as few steps as it takes. The loads must
-    /// prescribe the same kinds of things. `seen` is told each equilibrium on the way with its share of the path.
+    /// The equilibrium under `load`, reached from the equilibrium `from` under `before` in as few steps as
+    /// possible. Both loads must prescribe the same kinds of quantities. `seen` is called with each
+    /// equilibrium on the way and its fraction of the path.
     ///
     /// # Errors
-    /// [`MembraneError::LimitPoint`] if the pressure was seen to fall before it came to what is asked; [`MembraneError::NotConverged`] and the
-    /// other errors of [`Self::solve`].
+    /// [`MembraneError::LimitPoint`] if the pressure decreases before it reaches the prescribed one;
+    /// [`MembraneError::NotConverged`] and the other errors of [`Self::solve`].
     pub fn follow(
         &mut self,
         before: &Load,
@@ -37,7 +40,8 @@ impl Solver {
         let budget = BUDGET.max(2 * patience);
         self.deadline = self.effort.factorisations + budget;
         let found = match self.steps(before, from, load, &mut seen) {
-            // A flat or slack mesh has no volume to begin with: gas comes first.
+            // A flat or slack mesh has no volume at first, so it is filled under pressure before the volume
+            // is prescribed.
             Err(_) if matches!(load.inflation, Inflation::Volume(_)) && from.iterations == 0 => {
                 self.deadline = self.effort.factorisations + budget;
                 self.inflated(before, from, load).and_then(|first| {
@@ -66,7 +70,7 @@ impl Solver {
         let mut last = from.clone();
         let mut older: Option<(f64, State)> = None;
         let mut said = None;
-        // From a mesh at rest it may be a long way; from an equilibrium it isn't.
+        // The first state may be far from a mesh at rest, but states on a path are close to each other.
         let patience = self.tolerance.iterations;
         if from.iterations > 0 {
             self.tolerance.iterations = patience.min(PATIENCE);
@@ -81,7 +85,7 @@ impl Solver {
                 _ => self.stretched(&last, &between),
             };
             let solved = self.solve(&between, &start).or_else(|error| {
-                // An extrapolation may lead astray where the last state itself wouldn't.
+                // If the extrapolation fails, the last state itself may still work as a start.
                 if older.is_some() { self.solve(&between, &last) } else { Err(error) }
             });
             match solved {
@@ -98,7 +102,7 @@ impl Solver {
                 Err(error) => {
                     step *= 0.5;
                     let is_late = self.effort.factorisations >= self.deadline;
-                    // An attempt that was cut off says nothing.
+                    // An attempt that was cut off isn't informative, so report the error before it.
                     let error = if is_late { said.unwrap_or(error) } else { error };
                     if is_late || step < smallest(before, &last, load) {
                         self.tolerance.iterations = patience.min(PATIENCE);
@@ -110,7 +114,8 @@ impl Solver {
         }
     }
 
-    /// Where the pressure won't rise any more: by volumes, to see whether it has a maximum. `None` if that can't be seen.
+    /// If the pressure can't be raised any more, increases the volume to see whether the pressure has a
+    /// maximum. `None` if that can't be decided.
     fn beyond(
         &mut self,
         before: &Load,
@@ -120,7 +125,7 @@ impl Solver {
         seen: &mut impl FnMut(f64, &State),
     ) -> Option<Result<State, MembraneError>> {
         let Inflation::Pressure(asked) = load.inflation else { return None };
-        // Nothing is known where no equilibrium was found at all, or where an end moved as well.
+        // Nothing is known without an equilibrium before, or if an end moved as well.
         if asked <= last.pressure || last.iterations == 0 || before.fittings != load.fittings {
             return None;
         }
@@ -151,16 +156,17 @@ impl Solver {
         None
     }
 
-    /// A mesh at rest under as much pressure as brings it near the volume asked.
+    /// A mesh at rest under a pressure that brings it near the prescribed volume.
     fn inflated(&mut self, before: &Load, rest: &State, load: &Load) -> Result<State, MembraneError> {
         let Inflation::Volume(volume) = load.inflation else { return Ok(rest.clone()) };
         let under = |p: f64| Load { inflation: Inflation::Pressure(p), fittings: before.fittings.clone() };
         self.work(&rest.y, 0.0);
         let breath = 1e-3 * self.mean_diagonal() / self.size;
-        // Threads without stretch have no stiffness of their own, and their shape needs no certain pressure.
+        // Inextensible threads have no stiffness of their own, and their shape is independent of the
+        // pressure.
         let mut pressure = if breath > 1e-200 { breath } else { ATMOSPHERE };
         let mut state = self.solve(&under(pressure), rest)?;
-        // A bag is full soon: less gas.
+        // A bag fills at low pressure, so reduce it.
         for _ in 0..VOLUMES {
             if state.volume <= volume {
                 break;
@@ -186,7 +192,8 @@ impl Solver {
         Ok(state)
     }
 
-    /// A state whose nodes have followed the fittings along z in proportion: what a new place of a fitting starts from.
+    /// A state whose nodes have followed the fittings along z in proportion: the start for new positions of
+    /// the fittings.
     fn stretched(&self, state: &State, load: &Load) -> State {
         let structure = &self.structure;
         let mut start = state.clone();
@@ -201,7 +208,7 @@ impl Solver {
             let before = state.y[dof as usize];
             ends.push((structure.places[node][2] + before, load.fittings[fitting] - before));
         }
-        // Nodes held on a plane across z count as an end that doesn't move.
+        // Nodes held on a plane orthogonal to z count as an end that doesn't move.
         let still = dofs.nodes.iter().find(|node| {
             node.axis.iter().zip(node.dof).all(|(axis, dof)| dof == crate::dofs::NONE || axis[2] == 0.0)
         });
@@ -227,7 +234,7 @@ impl Solver {
 }
 
 impl Load {
-    /// The load at a share of the way to another.
+    /// The load at a fraction of the way to another one.
     pub(crate) fn towards(&self, other: &Self, share: f64) -> Self {
         let mix = |a: f64, b: f64| if share >= 1.0 { b } else { a + share * (b - a) };
         let inflation = match (self.inflation, other.inflation) {
@@ -244,7 +251,7 @@ impl Load {
     }
 }
 
-/// From two states on, by `ratio` of the step between them.
+/// Extrapolates from two states by `ratio` of the step between them.
 fn extrapolated(older: &State, last: &State, ratio: f64) -> State {
     let mut start = last.clone();
     for (y, older) in start.y.iter_mut().zip(&older.y) {
@@ -254,7 +261,7 @@ fn extrapolated(older: &State, last: &State, ratio: f64) -> State {
     start
 }
 
-/// The smallest step worth a trial.
+/// The smallest step that is tried.
 fn smallest(before: &Load, last: &State, load: &Load) -> f64 {
     match (before.inflation, load.inflation) {
         (Inflation::Pressure(a), Inflation::Pressure(b)) if last.iterations > 0 && b > a => {

@@ -1,7 +1,7 @@
-//! All elements of one kind and one group: what the solver asks of them, in parallel, into places of their own.
+//! All elements of one kind in one group: evaluates them in parallel for the solver.
 //!
-//! Every element writes to its own part of a buffer, and the sums over elements are taken in one fixed order ([`crate::assembly`]), so that
-//! results are the same on any number of threads.
+//! Every element writes to its own part of a buffer, and sums over elements are taken in a fixed order
+//! ([`crate::assembly`]), so that results are identical for any number of threads.
 
 use crate::dofs::NodeDofs;
 use crate::element::{Cable, Local, Ring, Triangle, Vector, dot};
@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 /// One kind of element with N nodes.
 pub(crate) trait Element<const N: usize>: Send + Sync + core::fmt::Debug {
-    /// The quadrature points of the volume.
+    /// Quadrature points of the volume.
     type Rule: Send + Sync + core::fmt::Debug;
     fn rule() -> Self::Rule;
     /// Energy and volume.
@@ -82,7 +82,7 @@ pub(crate) struct Set<E: Element<N>, const N: usize> {
     rule: E::Rule,
 }
 
-/// Where the structure is.
+/// The current configuration of the structure.
 #[derive(Clone, Copy)]
 pub(crate) struct Place<'a> {
     pub(crate) x: &'a [Vector],
@@ -91,41 +91,41 @@ pub(crate) struct Place<'a> {
     pub(crate) pressure: f64,
 }
 
-/// What a set writes, each element its own part.
+/// Output buffers of a set; each element writes its own part.
 pub(crate) struct Parts<'a> {
     /// Energy and volume.
     pub(crate) measures: &'a mut [f64],
-    /// d(energy)/dy, then d(volume)/dy, of each of the element's own degrees of freedom: 2 x 3 N.
+    /// d(energy)/dy, then d(volume)/dy, for each of the element's own degrees of freedom: 2 x 3 N.
     pub(crate) gradients: &'a mut [f64],
-    /// The upper triangle of the stiffness over them.
+    /// The upper triangle of the stiffness over these degrees of freedom.
     pub(crate) stiffness: &'a mut [f64],
 }
 
-/// What the solver asks of a set.
+/// Interface of a set to the solver.
 pub(crate) trait Elements: Send + Sync + core::fmt::Debug {
-    /// Elements.
+    /// Number of elements.
     fn count(&self) -> usize;
-    /// The nodes of one.
+    /// The nodes of one element.
     fn nodes(&self, element: usize) -> &[u32];
-    /// Nodes of each.
+    /// Number of nodes per element.
     fn each(&self) -> usize;
     fn measure(&self, place: Place<'_>, out: &mut [f64]);
     fn work(&self, place: Place<'_>, out: Parts<'_>);
-    /// The largest |l - 1| of a taut inextensible thread, whose tension is taken over.
+    /// Transfers the tensions of inextensible threads to T0. Returns the largest |l - 1| of a taut one.
     fn hold(&mut self, place: Place<'_>) -> f64;
-    /// Those tensions, to be read and written.
+    /// The tensions T0, to be read and written.
     fn held(&mut self) -> Vec<&mut f64>;
 }
 
 /// Measures, gradients and stiffness of one element.
 type Slices<'a> = ((&'a mut [f64], &'a mut [f64]), &'a mut [f64]);
 
-/// Below so many elements threads cost more than they bring.
+/// With fewer elements, threads cost more than they gain.
 const ALONE: usize = 256;
-/// Elements that a thread takes at a time.
+/// Elements per task.
 const BATCH: usize = 64;
 
-/// Numbers in the upper triangle of a matrix of n rows.
+/// Number of entries in the upper triangle of a matrix with n rows.
 pub(crate) fn packed(n: usize) -> usize {
     n * (n + 1) / 2
 }
@@ -153,7 +153,7 @@ impl<E: Element<N>, const N: usize> Set<E, N> {
                 sweep[3 * a + k] = dot(own[a].axis[k], local.sweep[a]);
             }
         }
-        // Row by row of the upper triangle.
+        // Row by row in the upper triangle.
         for a in 0..N {
             for k in 0..3 {
                 for b in a..N {

@@ -4,12 +4,14 @@
 //! find y with   d/dy [ W(y) - p V(y) - f.y ] = 0
 //! ```
 //!
-//! At a prescribed pressure, or with a closed amount of gas, the energy is made smaller until it is least: where the stiffness isn't positive
-//! (slack cloth, a flat start) it is raised by a multiple of the unit matrix (Levenberg), which vanishes again as the state improves. With
-//! a prescribed volume the pressure is one more unknown, and what counts is the residual.
+//! At a prescribed pressure, or with a closed amount of gas, the energy is minimised. If the stiffness isn't
+//! positive definite (slack cloth, a flat start), a multiple of the unit matrix is added (Levenberg), which
+//! vanishes again as the state improves. With a prescribed volume the pressure is one more unknown, and the
+//! residual is minimised instead.
 //!
-//! Threads without stretch: an augmented Lagrangian. Each is as stiff as the structure's own scale asks for, and after each equilibrium its
-//! tension is taken over, until its length is right.
+//! Inextensible threads are treated by an augmented Lagrangian. Their penalty stiffness follows from the
+//! structure's own scale; after each equilibrium their tension is transferred to the multiplier, until their
+//! length is right.
 
 use crate::assembly::{Assembly, Totals};
 use crate::element::Vector;
@@ -36,24 +38,26 @@ pub struct Solver {
     pub(crate) penalty: f64,
     pub(crate) size: f64,
     pub(crate) effort: Effort,
-    /// Factorisations after which a search is given up.
+    /// Number of factorisations after which a search is given up.
     pub(crate) deadline: usize,
 }
 
-/// Outer iterations of the augmented Lagrangian.
+/// Most outer iterations of the augmented Lagrangian.
 const HOLDS: usize = 40;
-/// The stiffness of an inextensible thread over the forces that the pressure can make.
+/// Stiffness of an inextensible thread relative to the forces that the pressure can cause.
 const STIFF: f64 = 3e2;
 
 impl Solver {
-    /// For a structure that stands for `copies` of itself: half a lobe of n over half the length for 2 n around and 2 along.
+    /// A solver for a structure that represents `copies` of itself: half a lobe of n over half the length has
+    /// 2 n copies around and 2 along.
     ///
     /// # Errors
     /// [`MembraneError::Memory`].
     pub fn new(structure: Structure, copies: Copies, tolerance: Tolerance) -> Result<Self, MembraneError> {
         let sets = sets(&structure);
         let assembly = Assembly::new(&sets, &structure.dofs)?;
-        // One thread for the factors: a second one brings little on a surface, and would change the last digits.
+        // The factorisation uses one thread: a second one gains little on a surface, and would change the
+        // last digits.
         let factor = Factor::new(assembly.columns.clone(), assembly.rows.clone(), Par::Seq)?;
         let [matrix, shifted] = [0, 1].map(|_| zeros(assembly.rows.len(), structure.dofs.free));
         let (matrix, shifted) = (matrix?, shifted?);
@@ -75,7 +79,7 @@ impl Solver {
         })
     }
 
-    /// What has been spent so far.
+    /// The computational effort so far.
     #[must_use]
     pub fn effort(&self) -> Effort {
         self.effort
@@ -87,13 +91,13 @@ impl Solver {
         &self.structure
     }
 
-    /// Numbers in the stiffness and in its factors.
+    /// Number of entries of the stiffness and of its factors.
     #[must_use]
     pub fn sizes(&self) -> (usize, usize) {
         (self.matrix.len(), self.factor.size())
     }
 
-    /// The mesh as it is, without load: where to start from. No equilibrium by itself.
+    /// The mesh as it is, without load: a start, but not an equilibrium by itself.
     #[must_use]
     pub fn at_rest(&mut self) -> State {
         let y = self.structure.start.clone();
@@ -119,7 +123,7 @@ impl Solver {
         self.structure.groups.iter_mut().flat_map(|(_, group)| group.elements_mut().held()).collect()
     }
 
-    /// Gives the inextensible threads the tensions that they have in a state.
+    /// Sets the tensions of inextensible threads to those of a state.
     pub(crate) fn restore(&mut self, state: &State) {
         for (tension, held) in self.held().into_iter().zip(&state.held) {
             *tension = *held;
@@ -130,7 +134,7 @@ impl Solver {
     /// The equilibrium under `load` that is reached from `start`.
     ///
     /// # Errors
-    /// [`MembraneError::NotConverged`]; the state that failed is not kept.
+    /// [`MembraneError::NotConverged`]; the failed state is not kept.
     pub fn solve(&mut self, load: &Load, start: &State) -> Result<State, MembraneError> {
         let mut y = start.y.clone();
         for (i, kind) in self.structure.fittings.iter().enumerate() {
@@ -159,7 +163,7 @@ impl Solver {
             let state = self.state(&y, pressure, residual, unstable, iterations);
             let before = worst;
             worst = self.hold(&y);
-            // At the round-off of the lengths it gets no better.
+            // At the round-off of the lengths it can't improve any more.
             if worst <= self.tolerance.stretch || (worst < 1e-9 && worst > 0.3 * before) {
                 return self.upright(&state).map(|()| state);
             }
@@ -188,7 +192,8 @@ impl Solver {
         Ok(())
     }
 
-    /// A breath of gas for a mesh at rest, so that a prescribed volume finds a membrane under tension.
+    /// Applies a small pressure to a mesh at rest, so that a prescribed volume starts from a membrane under
+    /// tension.
     fn puff(&mut self, load: &Load, y: &mut Vec<f64>, pressure: &mut f64) {
         self.work(y, 0.0);
         let mut breath = 1e-3 * self.mean_diagonal() / self.size;
@@ -204,7 +209,8 @@ impl Solver {
         }
     }
 
-    /// From the loads: forces of p V^(2/3) shall stretch a thread by 1/STIFF in the first round.
+    /// Chooses the penalty from the loads: forces of p V^(2/3) stretch a thread by 1/STIFF in the first
+    /// round.
     fn choose_penalty(&mut self, load: &Load, pressure: f64, volume: f64) {
         let pressure = match load.inflation {
             Inflation::Pressure(p) => p,
@@ -238,7 +244,7 @@ impl Solver {
         self.effort.assembling += clock.elapsed();
     }
 
-    /// Takes the tensions of inextensible threads over.
+    /// Transfers the tensions of inextensible threads to the multipliers.
     fn hold(&mut self, y: &[f64]) -> f64 {
         self.structure.dofs.places(y, &mut self.x);
         let mut worst = 0.0_f64;
@@ -250,7 +256,7 @@ impl Solver {
         worst
     }
 
-    /// Force on a degree of freedom from outside, of one copy.
+    /// External forces on degrees of freedom, for one copy.
     pub(crate) fn outside(&self, load: &Load) -> Vec<(usize, f64)> {
         let fittings = self.structure.fittings.iter().zip(&self.structure.dofs.fittings);
         fittings
@@ -260,7 +266,7 @@ impl Solver {
             .collect()
     }
 
-    /// The state at y, from a last assembly there.
+    /// The state at y; assembles there once more.
     fn state(
         &mut self,
         y: &[f64],
@@ -295,7 +301,7 @@ impl Solver {
 }
 
 impl Load {
-    /// The largest force on a fitting, N.
+    /// The largest prescribed force on a fitting, N.
     fn fittings_force(&self, kinds: &[Fitting]) -> f64 {
         let loaded = self.fittings.iter().zip(kinds).filter(|(_, kind)| **kind == Fitting::Loaded);
         loaded.fold(0.0, |a, (force, _)| a.max(force.abs()))

@@ -1,17 +1,18 @@
-//! An equilibrium, how good it must be, and what it took.
+//! An equilibrium, its tolerances, and the effort for it.
 
 use serde::Serialize;
 use std::time::Duration;
 
-/// When an equilibrium is good enough.
+/// Convergence criteria of an equilibrium.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tolerance {
-    /// Residual of each node over the mean of the forces that meet at one.
+    /// Residual of each node relative to the mean of the forces that meet at a node.
     pub residual: f64,
-    /// Stretch of an inextensible thread.
+    /// Largest error of the stretch of an inextensible thread.
     pub stretch: f64,
-    /// Most iterations for one equilibrium. Some tens do for most; slack cloth that is blown up from a flat mesh folds and unfolds on its way, the more
-    /// often the finer the mesh: a square airbag of 28800 triangles takes 350.
+    /// Most iterations for one equilibrium. Most take some tens. Slack cloth that is inflated from a flat
+    /// mesh folds and unfolds on its way, more often on finer meshes: a square airbag of 28800 triangles
+    /// takes 350.
     pub iterations: usize,
 }
 
@@ -21,13 +22,13 @@ impl Default for Tolerance {
     }
 }
 
-/// An equilibrium. Whole structure: energies, forces and volumes count every copy of a sector.
+/// An equilibrium of the whole structure: energies, forces and volumes include every copy of a sector.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct State {
-    /// The degrees of freedom.
+    /// Values of the degrees of freedom.
     #[serde(skip)]
     pub(crate) y: Vec<f64>,
-    /// Tensions T0 of the inextensible threads, and the stiffness with which they belong to it.
+    /// Tensions T0 of the inextensible threads; the next field is the penalty stiffness that belongs to them.
     #[serde(skip)]
     pub(crate) held: Vec<f64>,
     #[serde(skip)]
@@ -38,29 +39,30 @@ pub struct State {
     pub volume: f64,
     /// Stored energy, J.
     pub energy: f64,
-    /// Place of each fitting along z from that in the mesh, m.
+    /// Displacement of each fitting along z from its position in the mesh, m.
     pub fittings: Vec<f64>,
-    /// Force on each fitting along z that holds it there, N: what the muscle pulls with.
+    /// Force along z that holds each fitting in place, N: the pulling force of the muscle.
     pub forces: Vec<f64>,
-    /// Residual over the mean of the forces that meet at a node.
+    /// Residual relative to the mean of the forces that meet at a node.
     pub residual: f64,
-    /// Directions in which the energy falls: 0 in a stable equilibrium.
+    /// Number of directions in which the energy decreases: 0 in a stable equilibrium.
     pub unstable: usize,
-    /// Iterations it took.
+    /// Number of iterations.
     pub iterations: usize,
 }
 
-/// How often the structure stands in the whole muscle.
+/// How often the structure occurs in the whole muscle.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Copies {
-    /// Round the z axis, side by side: their forces on a fitting add up.
+    /// Side by side around the z axis: their forces on a fitting add up.
     pub around: f64,
-    /// Along it, one behind the other: 2 for half a muscle on its middle plane. Their lengths add up, and the force goes through all.
+    /// One behind the other along the axis: 2 for half a muscle on its middle plane. Their lengths add up,
+    /// and the same force goes through all.
     pub along: f64,
 }
 
 impl Copies {
-    /// The whole.
+    /// A single copy.
     pub const ONE: Self = Self { around: 1.0, along: 1.0 };
 
     pub(crate) fn all(self) -> f64 {
@@ -68,17 +70,17 @@ impl Copies {
     }
 }
 
-/// What has been spent.
+/// Computational effort.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 pub struct Effort {
     /// Iterations of Newton's method.
     pub iterations: usize,
     /// Factorisations.
     pub factorisations: usize,
-    /// In elements and their sums.
+    /// Time for elements and their sums.
     pub assembling: Duration,
-    /// In factors.
+    /// Time for factorisations.
     pub factorising: Duration,
-    /// In solving with them.
+    /// Time for solving with the factors.
     pub solving: Duration,
 }

@@ -1,4 +1,4 @@
-//! A structure: the elements over a mesh, and what holds its nodes.
+//! A structure: the elements of a mesh, and the supports of its nodes.
 
 mod held;
 mod rigid;
@@ -12,64 +12,64 @@ use crate::set::{Element, Elements, Set};
 use crate::surface::{Rims, backwards, oriented};
 use serde::Serialize;
 
-/// What the cells of a group are.
+/// Type of the cells of a group.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub enum Part {
     /// Triangles in space.
     Membrane {
-        /// Its material; `None`: it only hands the pressure on.
+        /// Its material; `None`: it only transmits the pressure.
         sheet: Option<Sheet>,
         /// Direction of the sheet's first axis (warp), in the pattern if there is one.
         warp: Vector,
     },
     /// Lines in the half-plane y = 0, x > 0, revolved about z.
     Revolved {
-        /// What lies on it.
+        /// The layers on it.
         layers: Vec<RingLayer>,
     },
     /// Lines in space.
     Cable {
         /// Its material.
         thread: Thread,
-        /// The part of it that belongs to the structure: 1/2 for one that lies in a plane of symmetry.
+        /// The fraction of it that belongs to the structure: 1/2 if it lies in a plane of symmetry.
         share: f64,
     },
 }
 
-/// What holds the nodes of a group.
+/// Support of the nodes of a group.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub enum Support {
-    /// They don't move.
+    /// The nodes don't move.
     Fixed,
-    /// They don't move along this direction: they stay in a plane of symmetry across it.
+    /// The nodes don't move along this direction: they stay in a plane of symmetry orthogonal to it.
     Plane {
-        /// Across the plane.
+        /// Normal of the plane.
         normal: Vector,
     },
-    /// They stay on the z axis.
+    /// The nodes stay on the z axis.
     Axis,
-    /// They keep their distance from the z axis and their angle about it, and may slide along it.
+    /// The nodes keep their distance from the z axis and their angle about it, and may slide along it.
     Slide,
-    /// They ride on a rigid end fitting, which moves along z.
+    /// The nodes are attached to a rigid end fitting, which moves along z.
     Fitting {
-        /// Which: the fittings are counted from 0.
+        /// Index of the fitting, from 0.
         fitting: usize,
     },
-    /// They follow the nodes of another group, turned about z: the far edge of a cyclic sector.
+    /// The nodes follow those of another group, rotated about z: the far edge of a cyclic sector.
     Cyclic {
-        /// The group they follow.
+        /// The group that they follow.
         partner: String,
-        /// From the partner to this group, rad.
+        /// Angle from the partner to this group, rad.
         angle: f64,
     },
 }
 
-/// How an end fitting moves.
+/// Motion of an end fitting.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub enum Fitting {
-    /// Its place is prescribed; the force on it is a result.
+    /// Its position is prescribed; the force on it is a result.
     Placed,
-    /// The force on it is prescribed; its place is a result.
+    /// The force on it is prescribed; its position is a result.
     Loaded,
 }
 
@@ -107,23 +107,23 @@ impl Group {
     }
 }
 
-/// Elements and supports: what an equilibrium is sought for.
+/// Elements and supports of an equilibrium problem.
 #[derive(Debug)]
 pub struct Structure {
     pub(crate) groups: Vec<(String, Group)>,
     pub(crate) dofs: Dofs,
-    /// Degrees of freedom at the mesh's own places.
+    /// Values of the degrees of freedom at the positions of the mesh.
     pub(crate) start: Vec<f64>,
     pub(crate) places: Vec<Vector>,
     pub(crate) fittings: Vec<Fitting>,
 }
 
 impl Structure {
-    /// Elements over `mesh`: `parts` and `supports` by the names of its groups, which must exist.
+    /// The structure over `mesh`, with `parts` and `supports` by the names of its groups, which must exist.
     ///
     /// # Errors
-    /// An unknown group, an element without length or area, an open edge, contradictory supports, a part that nothing holds, a structure with
-    /// nothing to solve for.
+    /// An unknown group, an element without length or area, an open edge, contradictory supports, a part that
+    /// isn't held, or a structure with nothing to solve for.
     pub fn new(
         mesh: &Mesh,
         parts: &[(String, Part)],
@@ -171,19 +171,19 @@ impl Structure {
         Ok(Self { groups, dofs, start, places: mesh.nodes.clone(), fittings: fittings.to_vec() })
     }
 
-    /// Degrees of freedom that are solved for.
+    /// Number of degrees of freedom that are solved for.
     #[must_use]
     pub fn unknowns(&self) -> usize {
         self.dofs.free
     }
 
-    /// Elements.
+    /// Number of elements.
     #[must_use]
     pub fn elements(&self) -> usize {
         self.groups.iter().map(|(_, group)| group.elements().count()).sum()
     }
 
-    /// Threads that pull side by side, at most.
+    /// The largest number of threads that pull side by side.
     pub(crate) fn threads(&self) -> f64 {
         let count = |layers: &[crate::element::Layer]| {
             layers.iter().map(crate::element::Layer::count).fold(0.0, f64::max)
@@ -196,7 +196,7 @@ impl Structure {
         groups.fold(0.0, f64::max)
     }
 
-    /// The size of the structure: the diagonal of the box about its nodes.
+    /// The size of the structure: the diagonal of the bounding box of its nodes.
     pub(crate) fn size(&self) -> f64 {
         let mut range = [[f64::INFINITY, f64::NEG_INFINITY]; 3];
         for place in &self.places {
@@ -208,7 +208,7 @@ impl Structure {
     }
 }
 
-/// A block on its way to elements.
+/// A block before its elements are built.
 struct Source<'a> {
     mesh: &'a Mesh,
     block: &'a Block,
@@ -216,7 +216,7 @@ struct Source<'a> {
 }
 
 impl Source<'_> {
-    /// The places where the nodes of a cell are free of stress.
+    /// The stress-free positions of a cell's nodes.
     fn stress_free<const N: usize>(&self, cell: usize) -> [Vector; N] {
         core::array::from_fn(|i| match &self.block.pattern {
             Some(pattern) => {

@@ -1,7 +1,8 @@
-//! Whether the membranes of a mesh close a volume, and which way they face.
+//! Checks that the membranes of a mesh enclose a volume, and orients them.
 //!
-//! The pressure acts along the normals, and the volume is the flux through the elements: neighbours must face the same side, and an open edge
-//! must lie on something that closes it without elements (a fitting, a fixed rim, a plane of symmetry, the other edge of a cyclic sector).
+//! The pressure acts along the normals, and the volume is the flux through the elements. Neighbours must
+//! therefore face the same side, and an open edge must lie on something that closes it without elements (a
+//! fitting, a fixed rim, a plane of symmetry, the other edge of a cyclic sector).
 
 mod rims;
 mod sector;
@@ -15,10 +16,10 @@ use crate::mesh::{Block, CellKind, Mesh};
 use crate::structure::Part;
 use std::collections::HashMap;
 
-/// One cell: block and number in it.
+/// One cell: its block and its number there.
 type Cell = (usize, usize);
 
-/// Cells whose nodes are to be taken in the opposite sense.
+/// Cells whose nodes must be reversed.
 pub(crate) struct Turned {
     is_turned: HashMap<Cell, bool>,
 }
@@ -26,10 +27,10 @@ pub(crate) struct Turned {
 /// A side of a cell.
 #[derive(Debug, Clone, Copy)]
 struct Side {
-    /// Its two end nodes, the smaller first.
+    /// Its two end nodes, the smaller number first.
     nodes: [usize; 2],
     cell: Cell,
-    /// Whether the cell goes from the smaller to the larger number.
+    /// Whether the cell traverses it from the smaller to the larger number.
     is_forward: bool,
     middle: Option<usize>,
 }
@@ -40,7 +41,7 @@ impl Turned {
     }
 }
 
-/// The blocks of membranes: of triangles, and of lines that are revolved.
+/// The blocks of membranes: triangles, and revolved lines.
 pub(crate) fn membranes(mesh: &Mesh, parts: &[(String, Part)]) -> Result<Vec<usize>, MembraneError> {
     let mut blocks = Vec::new();
     for (name, _) in parts.iter().filter(|(_, part)| !matches!(part, Part::Cable { .. })) {
@@ -64,7 +65,7 @@ fn cables(mesh: &Mesh, parts: &[(String, Part)]) -> Vec<usize> {
     (0..mesh.blocks.len()).filter(|b| is_cable(&mesh.blocks[*b])).collect()
 }
 
-/// Checks the membranes, and finds which of their cells face the wrong way.
+/// Checks the membranes, and finds the cells that face the wrong way.
 pub(crate) fn oriented(
     mesh: &Mesh,
     parts: &[(String, Part)],
@@ -82,7 +83,7 @@ pub(crate) fn oriented(
     Ok(Turned { is_turned })
 }
 
-/// The sides of all triangles, those between the same nodes together.
+/// The sides of all triangles, sorted so that those with the same nodes are adjacent.
 fn sides(mesh: &Mesh, blocks: &[usize]) -> Vec<Side> {
     let mut sides = Vec::new();
     for b in blocks {
@@ -102,7 +103,7 @@ fn sides(mesh: &Mesh, blocks: &[usize]) -> Vec<Side> {
             }
         }
     }
-    // The first one to complain about is the same every time.
+    // Sorted, so that the first reported error is always the same.
     sides.sort_unstable_by_key(|side| (side.nodes, side.cell));
     sides
 }
@@ -125,7 +126,7 @@ fn check_sides(mesh: &Mesh, sides: &[Side], rims: &Rims<'_>) -> Result<(), Membr
     Ok(())
 }
 
-/// A cable along the side of a triangle has the same node in its middle, or none as the triangle.
+/// Checks that a cable along the side of a triangle has a middle node exactly if the triangle has one.
 fn check_cables(mesh: &Mesh, sides: &[Side], cables: &[usize]) -> Result<(), MembraneError> {
     for b in cables {
         let block = &mesh.blocks[*b];
@@ -152,7 +153,7 @@ fn mixed_orders(mesh: &Mesh, one: Cell, two: Cell, nodes: [usize; 2]) -> Membran
     MembraneError::MixedOrders { element, group, other, other_group, nodes }
 }
 
-/// Lets each connected surface face one way: outwards, if its volume says where that is.
+/// Orients each connected surface consistently: outwards, if its volume determines the direction.
 fn spread(
     mesh: &Mesh,
     blocks: &[usize],
@@ -162,7 +163,7 @@ fn spread(
     let mut neighbours: HashMap<Cell, Vec<(Cell, bool)>> = HashMap::new();
     for found in sides.chunk_by(|a, b| a.nodes == b.nodes) {
         if let [a, b] = found {
-            // Neighbours that face the same side go along their common side in opposite senses.
+            // Neighbours that face the same side traverse their common side in opposite directions.
             let is_same = a.is_forward != b.is_forward;
             neighbours.entry(a.cell).or_default().push((b.cell, is_same));
             neighbours.entry(b.cell).or_default().push((a.cell, is_same));
@@ -217,7 +218,7 @@ fn flux(mesh: &Mesh, (b, c): Cell) -> f64 {
     0.25 * dot(mean, cross(sub(q, p), sub(r, p)))
 }
 
-/// Lines of revolution: every node joins two of them, or is an end that is held or lies on the axis.
+/// Checks lines of revolution: every node joins two of them, or is an end that is held or lies on the axis.
 fn chain(
     mesh: &Mesh,
     blocks: &[usize],
@@ -245,7 +246,7 @@ fn chain(
             count => return Err(MembraneError::Branch { element, group, nodes: [number; 2], count }),
         }
     }
-    // From one element to the next, all in one sense; upwards where that can be told.
+    // From one element to the next, all in one direction; upwards if that can be decided.
     for (_, ends) in &nodes {
         let first = ends[0].0;
         if is_turned.contains_key(&first) {
@@ -287,7 +288,7 @@ fn name(mesh: &Mesh, (b, c): Cell) -> (u64, String) {
     (numbers.get(c).copied().unwrap_or(c as u64 + 1), group.clone())
 }
 
-/// The nodes of a cell in the opposite sense.
+/// The nodes of a cell in reverse order.
 pub(crate) fn backwards<T, const N: usize>(kind: CellKind, mut nodes: [T; N]) -> [T; N] {
     match kind {
         CellKind::Point => (),
@@ -325,7 +326,7 @@ mod tests {
         super::oriented(&mesh, &parts, &Rims::new(&mesh, &supports)?)
     }
 
-    /// A tetrahedron's surface, some of its faces inside out.
+    /// A tetrahedron's surface with some faces inside out.
     fn tetrahedron() -> Mesh {
         let faces = [[0, 1, 2], [0, 1, 3], [1, 2, 3], [0, 2, 3]];
         Mesh {
@@ -356,7 +357,7 @@ mod tests {
         let face = mesh.blocks[0].cells.split_off(9);
         let error = oriented(&mesh, &[]).err().unwrap();
         assert!(matches!(error, MembraneError::Hole { nodes: [11, 13], .. }), "{error}");
-        // Held at its rim it closes.
+        // If its rim is held, the surface is closed.
         assert!(oriented(&mesh, &[0, 2, 3]).is_ok());
         mesh.blocks[0].cells.extend(face.iter().chain(&face));
         mesh.blocks[0].numbers.push(25);

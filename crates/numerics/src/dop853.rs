@@ -13,7 +13,7 @@ use crate::dop853_coefficients::{A, B, E3, E5};
 const SHRINK: f64 = 0.333;
 const GROW: f64 = 6.0;
 const SAFETY: f64 = 0.9;
-/// A step smaller than this part of what remains is given up: rounding would swallow it.
+/// A step smaller than this fraction of the remaining interval is given up, because rounding would absorb it.
 const SMALLEST: f64 = 1e-14;
 
 /// The adaptive step of the integrator: the size to try next, and counters.
@@ -110,6 +110,7 @@ fn step_with_errors<D: Real, const N: usize>(
             (a[10], &k11),
         ],
     ));
+    // Stages 2 to 5 have no weight in the solution and in both error estimates.
     let used = [(0, k1), (5, &k6), (6, &k7), (7, &k8), (8, &k9), (9, &k10), (10, &k11), (11, &k12)];
     let new = combine(y, h, used.map(|(i, k)| (B[i], k)));
     let estimate = |weights: &[f64; 12]| -> [f64; N] {
@@ -155,7 +156,7 @@ impl Dop853 {
                 *k1 = slope;
                 self.accepted += 1;
                 let grow = if rejected { 1.0 } else { GROW };
-                // A step cut short by the limit says little about the size that the error would have allowed.
+                // A step cut short by the limit doesn't tell how large a step the error would have allowed.
                 let next = h.value().abs() * (SAFETY * error.powf(-0.125)).clamp(SHRINK, grow);
                 if !whole || next < self.step {
                     self.step = next;
@@ -163,7 +164,8 @@ impl Dop853 {
                 return Ok(h);
             }
             rejected = true;
-            // Where the end itself is none a small error says nothing: without this the step would never get shorter.
+            // If the end point itself isn't finite, a small error estimate means nothing; without this the
+            // step would never get shorter.
             let says_something = error.is_finite() && is_finite;
             let factor = if says_something { (SAFETY * error.powf(-0.125)).max(SHRINK) } else { SHRINK };
             self.step = h.value().abs() * factor;
@@ -206,7 +208,7 @@ mod tests {
         y
     }
 
-    /// A right-hand side that ends at x = 1: the last steps are tiny, but there are not endlessly many.
+    /// A right-hand side that ends at x = 1: the last steps are tiny, but their number is limited.
     #[test]
     fn a_slope_that_is_none_ends_the_way() {
         let mut f = |y: &[f64; 1]| [if y[0] > 1.0 { f64::NAN } else { 1.0 }];
@@ -283,7 +285,7 @@ mod tests {
     }
 
     #[test]
-    // y' = 1 is not defined beyond y = 1.
+    // y' = 1 is undefined beyond y = 1.
     fn a_singularity_stalls_with_its_step() {
         let mut y = [0.0];
         let mut f = |y: &[f64; 1]| [if y[0] < 1.0 { 1.0 } else { f64::NAN }];

@@ -1,4 +1,5 @@
-//! Incomplete elliptic integrals by Carlson's duplication, the two that a meridian needs in one pass.
+//! Incomplete elliptic integrals by Carlson's duplication; the two that a meridian needs are computed in one
+//! pass.
 //!
 //! B. C. Carlson, *Numerical computation of real or complex elliptic integrals*, Numerical Algorithms 10 (1995) 13-26;
 //! NIST Digital Library of Mathematical Functions, sections 19.25 and 19.36.
@@ -25,7 +26,7 @@ pub struct Pair {
 
 /// Deviation below which the series after the duplications is exact to rounding: its error is about 0.1 x^8.
 const SERIES: f64 = 0.012;
-/// Duplications divide the deviation by four each: enough for a spread of 1e300.
+/// Most duplications; each divides the deviation by four, which is enough for a spread of 1e300.
 const MAX_DUPLICATIONS: u32 = 300;
 
 /// F and D for the amplitude phi with `tan(phi) = t >= 0` (phi below 90 degrees) and `m < 1 + 1/t^2`.

@@ -1,7 +1,8 @@
 //! Dual numbers, adaptive Runge-Kutta integration, elliptic integrals, bracketed roots, least squares and random numbers for membrane equilibria.
 //!
-//! How to compute; knows no muscle, no file and no unit. Everything is `f64`; only the integrator and what runs through it
-//! is generic over [`Real`], so that it can carry exact derivatives ([`Dual`]).
+//! Numerical methods without any knowledge of muscles, files or units. Everything is `f64`; only the
+//! integrator and the code that runs in it are generic over [`Real`], so that they can carry exact
+//! derivatives ([`Dual`]).
 
 pub mod dop853;
 mod dop853_coefficients;

@@ -1,25 +1,28 @@
-//! Random numbers by counting: Philox4x32-10 (Salmon, Moraes, Dror, Shaw: Parallel random numbers: as easy as 1, 2, 3, SC'11).
+//! Counter-based random numbers: Philox4x32-10 (Salmon, Moraes, Dror, Shaw: Parallel random numbers: as easy
+//! as 1, 2, 3, SC'11).
 
 use std::f64::consts::TAU;
 
 /// Multipliers of the two halves of the counter.
 const MULTIPLIERS: [u32; 2] = [0xD251_1F53, 0xCD9E_8D57];
-/// What each round adds to the key.
+/// Increments of the key in each round.
 const STEPS: [u32; 2] = [0x9E37_79B9, 0xBB67_AE85];
 const ROUNDS: usize = 10;
 
 /// The random numbers of one stream of a seed.
 ///
-/// Block i of the stream is the Philox permutation of (i, stream) under the key `seed`, so streams with different numbers never share a block, and
-/// what one stream yields doesn't depend on how much was drawn from another one: streams can be drawn from in parallel.
+/// Block i of the stream is the Philox permutation of (i, stream) under the key `seed`. Streams with
+/// different numbers therefore never share a block, and the values of one stream don't depend on how many
+/// were drawn from another: streams can be used in parallel.
 ///
-/// [`uniform`](Self::uniform) is the same on all machines; the others use `ln`, `exp_m1` and `cos` and are the same where these are.
+/// [`uniform`](Self::uniform) is identical on all machines; the other methods use `ln`, `exp_m1` and `cos`,
+/// and are identical where these are.
 #[derive(Debug, Clone)]
 pub struct Random {
     key: [u32; 2],
     stream: u64,
     next_block: u64,
-    /// The second word of a block whose first one was given out.
+    /// The second word of a block, after the first one was returned.
     word: Option<u64>,
     /// The second normal number of a pair.
     spare: Option<f64>,
@@ -32,7 +35,7 @@ impl Random {
         Self { key: halves(seed), stream, next_block: 0, word: None, spare: None }
     }
 
-    /// Uniform in (0, 1), both ends left out: (k + 1/2) 2^-52 with the 52 random bits k.
+    /// Uniform in (0, 1) without the ends: (k + 1/2) 2^-52 with the 52 random bits k.
     pub fn uniform(&mut self) -> f64 {
         ((self.bits() >> 12) as f64 + 0.5) / (1_u64 << 52) as f64
     }
@@ -62,7 +65,7 @@ impl Random {
     /// ```text
     /// sqrt(dof (u^(-2/dof) - 1)) cos(2 pi v)
     /// ```
-    /// From 1 (Cauchy) to infinity (normal); less is taken as 1.
+    /// `dof` is from 1 (Cauchy) to infinity (normal); smaller values are taken as 1.
     pub fn student(&mut self, dof: f64) -> f64 {
         let dof = dof.max(1.0);
         if dof.is_infinite() {

@@ -1,4 +1,4 @@
-//! The one scalar abstraction of Bulge: what the integrator and the equilibrium laws need of a number.
+//! The only scalar abstraction of Bulge: the operations that the integrator and the equilibrium laws need.
 //!
 //! Solvers are written once against [`Real`]; with `f64` they compute a value, with [`crate::Dual`] the same code also
 //! carries exact derivatives. Nothing else in the workspace is generic over its scalar.
@@ -44,7 +44,7 @@ pub trait Real:
     /// Absolute value; its derivative at 0 is taken as 0.
     #[must_use]
     fn abs(self) -> Self;
-    /// A whole power; `0^0` is 1.
+    /// An integer power; `0^0` is 1.
     #[must_use]
     fn powi(self, exponent: i32) -> Self;
     /// `self * a + b` with a plain factor: the inner operation of a Runge-Kutta stage.

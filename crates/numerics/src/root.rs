@@ -1,4 +1,4 @@
-//! Roots of one function of one variable: Newton's method that never leaves its bracket.
+//! Roots of a function of one variable: Newton's method within a bracket.
 
 /// A root could not be found.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
@@ -6,7 +6,7 @@ pub enum RootError<E> {
     /// The function itself failed.
     #[error("{0}")]
     Function(E),
-    /// The budget of evaluations ran out.
+    /// The evaluation limit was reached.
     #[error("no root to the asked accuracy in [{low}, {high}]: at {at} the function is {value:e}")]
     Budget {
         /// Lower end of the last bracket.
@@ -20,10 +20,12 @@ pub enum RootError<E> {
     },
 }
 
-/// Root of a function that is positive at `low` and negative at `high`, from `start`, by Newton steps that fall back to bisection.
+/// Root of a function that is positive at `low` and negative at `high`, from `start`, by Newton steps with
+/// bisection as fallback.
 ///
-/// `f` returns value and derivative. Neither end is evaluated: the caller vouches for the signs there. Ends when a Newton step is shorter than
-/// `absolute + relative |x|`, which makes its end far more exact than that, or when the value is zero or the bracket has no number inside.
+/// `f` returns value and derivative. The ends are not evaluated: the caller guarantees their signs. Ends when
+/// a Newton step is shorter than `absolute + relative |x|`, so that its end is far more accurate than that,
+/// when the value is zero, or when the bracket contains no further number.
 ///
 /// # Errors
 /// [`RootError::Function`] with the error of `f`, or [`RootError::Budget`] after 100 evaluations.
@@ -61,10 +63,11 @@ pub fn newton_bracketed<E>(
     Err(RootError::Budget { low, high, at: x, value })
 }
 
-/// Root of a continuous function with a sign change in \[`low`, `high`\] by the Illinois variant of regula falsi, to `tolerance` in the
-/// variable or 60 evaluations, whichever comes first. Without a sign change the end with the smaller value is returned.
+/// Root of a continuous function with a sign change in \[`low`, `high`\] by the Illinois variant of regula
+/// falsi, to `tolerance` in the variable, with at most 60 evaluations. Without a sign change, the end with
+/// the smaller absolute value is returned.
 ///
-/// For starting values, where a rough answer is better than an error.
+/// For starting values, where an approximate answer is better than an error.
 pub fn illinois(mut f: impl FnMut(f64) -> f64, low: f64, high: f64, tolerance: f64) -> f64 {
     let (mut a, mut b) = (low, high);
     let (mut fa, mut fb) = (f(a), f(b));

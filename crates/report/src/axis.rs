@@ -3,7 +3,7 @@
 use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, ValueFormatter};
 use std::ops::Range;
 
-/// Range of an axis and the distance of its ticks, all multiples of 1, 2 or 5 times a power of ten.
+/// Range of an axis and distance between its ticks, all multiples of 1, 2 or 5 times a power of ten.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Axis {
     low: f64,
@@ -11,20 +11,21 @@ pub(crate) struct Axis {
     step: f64,
 }
 
-/// Intervals an axis has at most before it is extended to round ends.
+/// Most intervals of an axis before it is extended to round ends.
 const INTERVALS: f64 = 8.0;
 
 impl Axis {
-    /// Smallest round range around finite `values`; `None` if there are none or their range overflows.
+    /// Smallest round range that contains finite `values`; `None` if there are none or their range overflows.
     pub(crate) fn around(values: impl Iterator<Item = f64>) -> Option<Self> {
         Self::with_intervals(values, INTERVALS)
     }
 
-    /// The same with at most so many intervals before it is extended to round ends: fewer for a small panel.
+    /// As [`Axis::around`], with at most `intervals` intervals before the axis is extended to round ends:
+    /// fewer for a small panel.
     pub(crate) fn with_intervals(values: impl Iterator<Item = f64>, intervals: f64) -> Option<Self> {
         let (min, max) = range(values)?;
         let magnitude = min.abs().max(max.abs());
-        // A constant has no range of its own: a tenth of its size, or one unit around zero.
+        // Constant values have no range: it becomes a tenth of their size, or one unit around zero.
         let (min, max) = if max - min > 1e-9 * magnitude {
             (min, max)
         } else {
@@ -39,7 +40,7 @@ impl Axis {
         (step > 0.0 && (axis.high - axis.low).is_finite()).then_some(axis)
     }
 
-    /// Where a value lies between the ends: 0 at the low one, 1 at the high one.
+    /// Position of a value between the ends: 0 at the low end, 1 at the high end.
     pub(crate) fn share(&self, value: f64) -> f64 {
         (value - self.low) / (self.high - self.low)
     }
@@ -104,14 +105,14 @@ impl ValueFormatter<f64> for Axis {
     }
 }
 
-/// Least and largest of the values; `None` if there are none, or if they lie further apart than a number reaches.
+/// Smallest and largest of the values; `None` if there are none, or if their difference overflows.
 pub(crate) fn range(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
     let (min, max) =
         values.fold((f64::INFINITY, f64::NEG_INFINITY), |(min, max), v| (min.min(v), max.max(v)));
     (max - min).is_finite().then_some((min, max))
 }
 
-/// Least of 1, 2, 5 times a power of ten that isn't below `value`.
+/// Smallest of 1, 2, 5 times a power of ten that is at least `value`.
 fn round_up(value: f64) -> f64 {
     let power = 10_f64.powf(value.log10().floor());
     [1.0, 2.0, 5.0]

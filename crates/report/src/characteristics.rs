@@ -13,14 +13,14 @@ use plotters::style::text_anchor::HPos;
 pub struct Curve<'a> {
     /// Gauge pressure \[Pa\], for the legend.
     pub pressure_pa: f64,
-    /// Its points in the order of drawing, at least 2.
+    /// Its points in drawing order, at least 2.
     pub points: &'a [Response],
 }
 
 /// Draws force \[N\] and volume \[ml\] against contraction \[%\] side by side, one line per pressure, with a legend, as an SVG document.
 ///
 /// # Errors
-/// No curve, a curve of fewer than 2 points, or a value that isn't finite.
+/// There is no curve, a curve has fewer than 2 points, or a value isn't finite.
 ///
 /// # Examples
 /// ```
@@ -42,7 +42,7 @@ pub fn characteristics_svg(title: &str, curves: &[Curve]) -> Result<String, Plot
 /// Size of the picture in pixels.
 const SIZE: (u32, u32) = (1160, 470);
 const LEGEND_WIDTH: u32 = 130;
-/// A quantity of a response, in the unit of its axis.
+/// A quantity of a response in the unit of its axis.
 #[derive(Clone, Copy)]
 struct Quantity {
     name: &'static str,
@@ -109,11 +109,11 @@ fn panel(area: &Area, quantity: Quantity, curves: &[Curve]) -> Result<(), PlotEr
     Ok(())
 }
 
-/// Rows a legend has at most; of more curves only every second, third, ... is named.
+/// Most rows of a legend; of more curves only every second, third, ... is named.
 const ROWS: usize = 16;
 const ROW_HEIGHT: i32 = 24;
 
-/// Highest pressure on top, as the curves mostly lie.
+/// Draws the legend with the highest pressure on top, which is the usual order of the curves.
 fn legend(area: &Area, curves: &[Curve]) -> Result<(), PlotError> {
     let every = curves.len().div_ceil(ROWS);
     let mut named: Vec<usize> = (0..curves.len()).step_by(every).collect();

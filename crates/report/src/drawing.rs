@@ -1,4 +1,4 @@
-//! What the plots share: paper, letters, axes, and the SVG at its end.
+//! Parts that the plots share: background, text, axes, and the final SVG.
 
 use crate::PlotError;
 use crate::axis::Axis;
@@ -11,7 +11,7 @@ use plotters::prelude::{
 };
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-/// Plotters rounds to whole units: it draws this many times as large, and the viewer scales back.
+/// Plotters rounds to whole units: it draws at this scale, and the viewer scales back.
 pub(crate) const SCALE: u32 = 10;
 pub(crate) const LINE: u32 = 2 * SCALE;
 const TITLE_HEIGHT: u32 = 50;
@@ -20,7 +20,8 @@ const GRID: RGBColor = RGBColor(222, 222, 222);
 
 pub(crate) type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
-/// White paper with a title on top; the rest of it. Control characters aren't allowed in XML.
+/// Draws a white background with a title and returns the area below. Control characters aren't allowed in
+/// XML.
 pub(crate) fn titled<'a>(paper: &Area<'a>, title: &str, width: u32) -> Result<Area<'a>, PlotError> {
     paper.fill(&WHITE).map_err(failed)?;
     let (head, body) = paper.split_vertically(TITLE_HEIGHT * SCALE);
@@ -29,7 +30,7 @@ pub(crate) fn titled<'a>(paper: &Area<'a>, title: &str, width: u32) -> Result<Ar
     Ok(body)
 }
 
-/// Axes with their names, ticks and grid.
+/// Draws axes with names, ticks and grid.
 pub(crate) fn chart<'a, 'b>(
     area: &'b Area<'a>,
     (x, across): (Axis, &str),
@@ -90,8 +91,8 @@ pub(crate) fn bar(pressure_pa: f64) -> String {
     }
 }
 
-/// Scales the drawing back and adds the dashes, for which plotters would draw every dash as a line of its own. Text can't be mistaken for
-/// an attribute: its quotation marks are escaped.
+/// Scales the drawing back and adds the dashes, since plotters would draw every dash as a separate line. Text
+/// can't be mistaken for an attribute: its quotation marks are escaped.
 pub(crate) fn finish(svg: &str, (width, height): (u32, u32), n: usize) -> String {
     let size = |factor: u32| format!(r#"width="{}" height="{}""#, width * factor, height * factor);
     let mut svg = svg.replacen(&size(SCALE), &size(1), 1);

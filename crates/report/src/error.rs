@@ -3,10 +3,10 @@
 /// Why a plot couldn't be drawn.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum PlotError {
-    /// Nothing to draw.
+    /// There is nothing to draw.
     #[error("a plot needs at least one curve")]
     NoCurves,
-    /// A point is no curve.
+    /// The curve has fewer than two points.
     #[error("the curve at {pressure_pa} Pa has {found} point(s): it needs at least 2")]
     TooFewPoints {
         /// Pressure of the curve \[Pa\].
@@ -27,7 +27,7 @@ pub enum PlotError {
         "{quantity} is {value} at point {point} of the curve at {pressure_pa} Pa: only finite values can be drawn"
     )]
     NotFinite {
-        /// What it is, with its unit.
+        /// The quantity, with its unit.
         quantity: &'static str,
         /// Index of the point.
         point: usize,
@@ -39,17 +39,17 @@ pub enum PlotError {
     /// A number of a comparison is infinite or not a number.
     #[error("{quantity} is {value}: only finite values can be drawn; leave the rows out that gave it")]
     Value {
-        /// What it is.
+        /// The quantity.
         quantity: String,
         /// The value found.
         value: f64,
     },
-    /// Lists that belong together differ in length.
+    /// Corresponding lists have different lengths.
     #[error("{found} {what} where {expected} are needed")]
     Lengths {
         /// What is listed.
         what: &'static str,
-        /// As many as the axis has.
+        /// Length of the axis.
         expected: usize,
         /// Number found.
         found: usize,
@@ -57,29 +57,29 @@ pub enum PlotError {
     /// The template of a page can't be filled in.
     #[error("the page can't be written: {reason}")]
     Page {
-        /// What the template engine says.
+        /// Message of the template engine.
         reason: String,
     },
-    /// Values so large that their difference overflows.
+    /// The difference between two values overflows.
     #[error("{quantity} from {low} to {high} is more than an axis can span")]
     Span {
-        /// What it is, with its unit.
+        /// The quantity, with its unit.
         quantity: &'static str,
-        /// Least value.
+        /// Smallest value.
         low: f64,
         /// Largest value.
         high: f64,
     },
-    /// The drawing library refuses.
+    /// The drawing library failed.
     #[error("the plot can't be drawn: {reason}")]
     Drawing {
-        /// What it says.
+        /// Its message.
         reason: String,
     },
 }
 
 impl PlotError {
-    /// Values that lie further apart than an axis reaches.
+    /// The error of values whose range overflows.
     pub(crate) fn span(quantity: &'static str, values: impl Iterator<Item = f64>) -> Self {
         let (low, high) = crate::axis::range(values).unwrap_or((f64::MIN, f64::MAX));
         Self::Span { quantity, low, high }

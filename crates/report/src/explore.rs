@@ -1,4 +1,5 @@
-//! The part of a report that a reader can ask: the plots of rows, with the rows and the script that draws them in the page.
+//! The interactive part of a report: the plots of rows. The page contains the rows and the script that draws
+//! them.
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -13,20 +14,20 @@ use crate::comparison::number::count;
 use crate::rows::of_report;
 use crate::scripts::BUNDLE;
 
-/// Names of the drawings that these plots stand for where scripts run.
+/// Names of the drawings that these plots replace if scripts run.
 const REPLACED: [&str; 2] = ["force", "residual-map"];
 
-/// What a template shows of it.
+/// Values of the template.
 #[derive(Debug, Serialize)]
 pub(crate) struct Explore {
     says: String,
-    /// Base64, which has no letter that ends an element.
+    /// Encoded as Base64, which has no character that could end an element.
     rows: Value,
     script: Value,
 }
 
 impl Explore {
-    /// None without rows.
+    /// `None` without rows.
     ///
     /// # Errors
     /// Columns of different lengths.
@@ -44,12 +45,13 @@ impl Explore {
     }
 }
 
-/// Whether these plots stand for a drawing.
+/// Whether these plots replace a drawing.
 pub(crate) fn replaces(name: &str) -> bool {
     REPLACED.contains(&name)
 }
 
-/// What a browser may do with a report: show it, and run its own script if it has one, whatever the names in it look like.
+/// The content security policy of a report: a browser may show it and run only its own script, if it has one,
+/// whatever the names in the report look like.
 #[must_use]
 pub fn policy(has_script: bool) -> String {
     let script = if has_script {

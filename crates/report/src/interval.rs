@@ -1,7 +1,7 @@
-//! How many decimals show an interval.
+//! Number of decimals that show an interval.
 
-/// A value and the ends of its interval, to the decimals that two digits of the width need, so that the interval can be seen in what is
-/// printed; none where there is no such number of decimals.
+/// A value and the ends of its interval, with as many decimals as two digits of the width need, so that the
+/// interval is visible in the printed numbers; `None` if no such number of decimals exists.
 ///
 /// ```
 /// let shown = bulge_report::with_interval(0.310_14, [0.309_81, 0.310_46]);
@@ -12,13 +12,13 @@
 pub fn with_interval(value: f64, [low, high]: [f64; 2]) -> Option<[String; 3]> {
     let width = high - low;
     let decimals = 1.0 - width.log10().floor();
-    // Also refuses a width that is none.
+    // Also rejects a width that is zero, negative or NaN.
     if !(-1.0..=9.0).contains(&decimals) || !value.is_finite() {
         return None;
     }
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 0 and 9")]
     let decimals = decimals.max(0.0) as usize;
-    // Adding 0 takes the sign from -0.
+    // Adding 0 removes the sign of -0.
     Some([value, low, high].map(|x| format!("{:.decimals$}", x + 0.0)))
 }
 

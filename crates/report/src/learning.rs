@@ -1,4 +1,5 @@
-//! What a fit has taught: the muscle file that holds it, with where its numbers come from, and the document.
+//! The result of a fit: the muscle file that contains it, with the origin of its parameters, and the JSON
+//! document.
 
 use bulge_inference::{DataSummary, DrawnForms, Extension, Fit, Fitting, HeldNumber, NoiseFloor, extended};
 use bulge_model::ModelError;
@@ -8,10 +9,10 @@ use std::fmt::Write;
 
 use crate::interval::with_interval;
 
-/// Why a fit teaches nothing.
+/// Why the result of a fit can't be used.
 #[derive(Debug, thiserror::Error)]
 pub enum LearningError {
-    /// It did not converge.
+    /// The fit did not converge.
     #[error(
         "the fit did not converge: {reason}, after {iterations} iterations from {starts} starts; fit fewer effects at once, or measure more"
     )]
@@ -23,13 +24,13 @@ pub enum LearningError {
         /// Number of starts.
         starts: usize,
     },
-    /// The muscle can't have an effect with these numbers.
+    /// The muscle can't have an effect with these parameters.
     #[error(transparent)]
     Model(#[from] ModelError),
 }
 
 impl LearningError {
-    /// Whose fault it is.
+    /// The kind of the error: wrong input, no solution, or a search that failed.
     #[must_use]
     pub fn fault(&self) -> Fault {
         match self {
@@ -39,14 +40,14 @@ impl LearningError {
     }
 }
 
-/// A fit, and the muscle that has learnt from it.
+/// A fit, and the muscle extended by its result.
 #[derive(Debug, Clone)]
 pub struct Learnt {
     /// The fit.
     pub fitting: Fitting,
-    /// The muscle with what was learnt.
+    /// The muscle with the fitted effects.
     pub extension: Extension,
-    /// Its file, with the errors and the fitted numbers as comments at its head.
+    /// Its file, with the errors and the fitted parameters as comments at the head.
     pub model: String,
 }
 
@@ -70,7 +71,7 @@ pub struct LearntDocument<'a> {
 }
 
 impl<'a> LearntDocument<'a> {
-    /// The same with the forms that the data want, as `drawn`; without it where none were asked for.
+    /// Adds the forms that the data suggest, as `drawn`; nothing is added if none were requested.
     #[must_use]
     pub fn with_drawn(self, drawn: Option<&'a DrawnForms>) -> Self {
         Self { drawn, ..self }
@@ -78,10 +79,10 @@ impl<'a> LearntDocument<'a> {
 }
 
 impl Learnt {
-    /// From a fit.
+    /// The result of a fit.
     ///
     /// # Errors
-    /// If it has not converged, or the muscle can't have what it found.
+    /// The fit has not converged, or the muscle can't have the effects that it found.
     pub fn of(fitting: Fitting) -> Result<Self, LearningError> {
         let convergence = &fitting.fit.convergence;
         if !convergence.converged {
@@ -117,7 +118,7 @@ impl Learnt {
         }
     }
 
-    /// The error before and after, and the noise floor, a line each.
+    /// The error before and after, and the noise floor, one line each.
     #[must_use]
     pub fn errors(&self) -> Vec<String> {
         errors(&self.fitting)
@@ -138,11 +139,11 @@ fn percent(fitting: &Fitting, error: f64) -> f64 {
     100.0 * error / fitting.data.full_scale_n.max(f64::MIN_POSITIVE)
 }
 
-/// Comments at the head of the file: where its numbers come from.
+/// Comments at the head of the file: the origin of its parameters.
 fn provenance(fitting: &Fitting) -> String {
     let mut text = String::new();
     let data = &fitting.data;
-    // File names are the user's: a line break in one would end the comment.
+    // File names come from the user: a line break in one would end the comment.
     let names: Vec<String> =
         data.files.iter().map(|name| name.replace(|c: char| c.is_control(), " ")).collect();
     let _ = writeln!(text, "# Fitted to {} ({} rows, sha256 {}).", names.join(", "), data.used, data.sha256);
@@ -161,7 +162,7 @@ fn provenance(fitting: &Fitting) -> String {
     text + "# Widths of effects (+-) are one standard deviation, for the reader: later fits take the numbers as known.\n\n"
 }
 
-/// A value and its interval, to the decimals that show it.
+/// A value and its interval, with enough decimals to show the interval.
 fn shown(value: f64, low: f64, high: f64) -> [String; 3] {
     with_interval(value, [low, high]).unwrap_or_else(|| [value, low, high].map(|x| significant(x, 3)))
 }

@@ -1,13 +1,16 @@
 //! Plots of pneumatic muscle characteristics, and the reports of comparisons and diagnoses.
 //!
-//! [`characteristics_svg`] draws force and volume against contraction, one curve for every pressure, as an SVG that stands for itself.
-//! [`sizing_svg`] draws isobars with the way of a load. [`comparison`] turns a [`bulge_inference::Comparison`] into one page with plots and tables, [`diagnosis`] a
-//! [`bulge_inference::Diagnosis`]. Letters stay letters: no font is needed to draw.
-//! The same input gives the same bytes.
+//! [`characteristics_svg`] draws force and volume against contraction as a self-contained SVG, with one curve
+//! per pressure. [`sizing_svg`] draws isobars with the path of a load. [`comparison`] turns a
+//! [`bulge_inference::Comparison`] into one page with plots and tables, and [`diagnosis`] does so for a
+//! [`bulge_inference::Diagnosis`]. Text remains text: drawing needs no font. The same input gives the same
+//! bytes.
 //!
-//! [`scripts`] are the plots of rows in a browser, and [`rows`] what they draw: the page of the workbench and the reports share them.
+//! [`scripts`] contains the plots of rows for a browser, and [`rows`] the data they draw. The page of the
+//! workbench and the reports share both.
 //!
-//! This crate computes no equilibrium, fits nothing and writes no file: a picture is a function of its numbers.
+//! This crate computes no equilibrium, fits nothing and writes no file: a picture is a function of its
+//! numbers.
 mod axis;
 mod characteristics;
 pub mod comparison;

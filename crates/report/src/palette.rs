@@ -1,15 +1,16 @@
-//! Colours and dashes that tell curves apart on screen, in grey print and with any kind of colour vision.
+//! Colours and dashes that distinguish curves on screen, in grey print and with any kind of colour vision.
 
 use plotters::style::RGBColor;
 
-/// Stops of a scale from cold to hot whose lightness rises evenly (as in "plasma"), without the light end that fades on paper.
+/// Stops of a scale from cold to hot with evenly increasing lightness (as in "plasma"), without the light
+/// end, which fades on paper.
 const STOPS: [[f64; 3]; 4] =
     [[13.0, 8.0, 135.0], [126.0, 3.0, 168.0], [204.0, 71.0, 120.0], [240.0, 140.0, 50.0]];
 
-/// Dashes of neighbouring curves, in widths of a line; the first is solid.
+/// Dash patterns of neighbouring curves, in line widths; the first is solid.
 const DASHES: [&[u32]; 4] = [&[], &[6, 3], &[2, 2], &[8, 2, 2, 2]];
 
-/// More curves than this are told apart by the order of their colours alone.
+/// With more curves than this only the order of their colours distinguishes them.
 const MOST_DASHED: usize = 12;
 
 /// Colour of curve `i` of `n`.
@@ -24,7 +25,7 @@ pub(crate) fn colour(i: usize, n: usize) -> RGBColor {
 
 /// Text and axes.
 pub(crate) const INK: RGBColor = RGBColor(34, 34, 34);
-/// Names of axes and lines of zero.
+/// Names of axes and zero lines.
 pub(crate) const SOFT_INK: RGBColor = RGBColor(96, 96, 96);
 /// Lines of a grid.
 pub(crate) const GRID: RGBColor = RGBColor(228, 228, 228);
@@ -32,10 +33,11 @@ pub(crate) const GRID: RGBColor = RGBColor(228, 228, 228);
 pub(crate) const FIRST: RGBColor = RGBColor(158, 164, 170);
 /// The model with all effects.
 pub(crate) const LAST: RGBColor = RGBColor(11, 92, 173);
-/// The noise floor, and what should be noticed.
+/// The noise floor, and anything that needs attention.
 pub(crate) const ALERT: RGBColor = RGBColor(190, 78, 10);
 
-/// Colours of categories (Okabe and Ito, 2008, without black), told apart with any kind of colour vision.
+/// Colours of categories (Okabe and Ito, 2008, without black), distinguishable with any kind of colour
+/// vision.
 pub(crate) const CATEGORIES: [RGBColor; 7] = [
     RGBColor(0, 114, 178),
     RGBColor(230, 159, 0),
@@ -57,7 +59,7 @@ pub(crate) fn signed(value: f64) -> RGBColor {
     RGBColor(r, g, b)
 }
 
-/// As SVG writes it.
+/// The colour in SVG notation.
 pub(crate) fn hex(RGBColor(r, g, b): RGBColor) -> String {
     format!("#{r:02X}{g:02X}{b:02X}")
 }
@@ -109,7 +111,7 @@ mod tests {
         assert!(red(-0.5) < red(-0.1) && red(0.5) > red(-0.5));
     }
 
-    /// Grey values (Rec. 709) rise along the scale: the order survives a copying machine.
+    /// Grey values (Rec. 709) increase along the scale, so the order survives a photocopy.
     #[test]
     fn lightness_rises() {
         let grey = |i| {

@@ -1,15 +1,17 @@
-//! All rows of a comparison as bytes, for the plots of rows: a header of JSON, then one column after the other as 32-bit numbers.
+//! All rows of a comparison as bytes, for the plots of rows: a JSON header, then the columns one after the
+//! other as 32-bit floating-point numbers.
 //!
-//! Little endian: the length of the header (u32); the header, padded with blanks so that what follows begins at a multiple of 4; then for each of
-//! the header's columns one `f32` for each row. What a row doesn't have is NaN. [`bytes`] is what the workbench's page asks for; a report holds
-//! the same with the force of each rung.
+//! The format is little endian: the length of the header (u32); the header, padded with blanks so that the
+//! data begin at a multiple of 4; then for each column of the header one `f32` per row. A missing value is
+//! NaN. [`bytes`] is what the page of the workbench requests. A report contains the same with the force of
+//! each rung.
 
 use bulge_inference::Rows;
 use bulge_measurements::SweepKind;
 use serde::Serialize;
 use std::borrow::Cow;
 
-/// A report holds no more rows than this: that is about a megabyte.
+/// Most rows in a report, about a megabyte.
 const MOST_ROWS: usize = 10_000;
 
 #[derive(Debug, Serialize)]
@@ -32,10 +34,10 @@ struct Column {
     unit: &'static str,
 }
 
-/// What a report says beside the rows, because nobody can be asked.
+/// What the header of a report contains besides the rows, since a report has no server to ask.
 #[derive(Debug, Serialize)]
 struct ForReport<'a> {
-    /// Rows that there are; of every so many the first is here.
+    /// Total number of rows. The report contains the first of every `every` rows.
     all: usize,
     every: usize,
     is_path: bool,
@@ -46,24 +48,24 @@ struct ForReport<'a> {
 #[derive(Debug, Serialize)]
 struct Rung<'a> {
     added: Option<&'a str>,
-    /// Column of its force.
+    /// Name of the column of its force.
     column: Cow<'static, str>,
-    /// Over all rows that count.
+    /// RMS error over all rows that count.
     rmse_n: f64,
 }
 
-/// All rows, with the force of base and model.
+/// All rows, with the forces of base and model.
 ///
 /// # Errors
-/// If the header can't be written.
+/// The header can't be written.
 pub fn bytes(rows: &Rows, revision: u64) -> Result<Vec<u8>, serde_json::Error> {
     written(rows, revision, 1, None)
 }
 
-/// The rows of a report, with the force of each rung: all of them, or every n-th.
+/// The rows of a report, with the force of each rung: all rows, or every n-th.
 ///
 /// # Errors
-/// If the header can't be written.
+/// The header can't be written.
 pub(crate) fn of_report(rows: &Rows, noise_floor_n: Option<f64>) -> Result<Vec<u8>, serde_json::Error> {
     let every = rows.len().div_ceil(MOST_ROWS).max(1);
     let added = std::iter::once(None).chain(rows.effects.iter().map(|effect| Some(effect.as_str())));
@@ -77,7 +79,7 @@ pub(crate) fn of_report(rows: &Rows, noise_floor_n: Option<f64>) -> Result<Vec<u
     written(rows, 0, every, Some(report))
 }
 
-/// The force of each rung from the base to the model, as far as it was asked for, with the name of its column.
+/// The force of each rung from the base to the model, if it was requested, with the name of its column.
 fn forces(rows: &Rows) -> impl Iterator<Item = (Cow<'static, str>, &[f64])> {
     let between = rows.between_n.iter().enumerate();
     let between = between.map(|(i, force)| (Cow::Owned(format!("rung {}", i + 1)), force.as_slice()));
@@ -123,7 +125,7 @@ fn written(
     Ok(bytes)
 }
 
-/// Every column with its values at every n-th row.
+/// All columns with their values at every n-th row.
 #[expect(clippy::cast_possible_truncation, reason = "as exact as a plot needs")]
 fn columns(rows: &Rows, every: usize) -> Vec<(Column, Vec<f32>)> {
     let kept = || (0..rows.len()).step_by(every);

@@ -1,6 +1,8 @@
-//! The plots of rows for a browser, embedded: scripts and their style, one copy for the workbench's page and for reports.
+//! The plots of rows for a browser, embedded: scripts and their style, one copy for the page of the workbench
+//! and for reports.
 
-/// Files that a page can be served, by their names: scripts of the plots as modules that import each other, their style, ECharts.
+/// Files that a page can be served, by name: scripts of the plots as modules that import each other, their
+/// style, and ECharts.
 pub const FILES: &[(&str, &[u8])] = &[
     ("axis.js", include_bytes!("../scripts/axis.js")),
     ("cells.js", include_bytes!("../scripts/cells.js")),
@@ -22,7 +24,8 @@ pub const FILES: &[(&str, &[u8])] = &[
 /// Palette, controls and plots.
 pub(crate) const STYLE: &str = include_str!("../scripts/plots.css");
 
-/// All of the scripts as one, which starts by itself in a report: modules of one file can't import each other. `vendor/build.mjs` makes it.
+/// All scripts as one, which starts by itself in a report: modules within one file can't import each other.
+/// `vendor/build.mjs` creates it.
 pub(crate) const BUNDLE: &str = include_str!("../scripts/report/bundle.js");
 
 #[cfg(test)]
@@ -42,7 +45,7 @@ mod tests {
         assert_eq!(there, embedded.collect());
     }
 
-    /// What would end the element of the page that it stands in, or what the page doesn't pass on as it is.
+    /// The bundle must contain nothing that ends its element, or that the page would change.
     #[test]
     fn the_bundle_can_stand_in_a_page() {
         let lower = BUNDLE.to_lowercase();

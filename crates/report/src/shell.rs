@@ -1,8 +1,9 @@
-//! Words of a command line that a reader may copy.
+//! Words of a command line for a reader to copy.
 
-/// A word of a command line, in quotes if a shell would take it for more than one.
+/// A word of a command line, quoted if a shell would take it for more than one word.
 ///
-/// Names of files and headings are anybody's: one that a shell would run within double quotes, such as `$(..)`, stands in single ones.
+/// Names of files and headings are arbitrary. A name that a shell would evaluate within double quotes, such
+/// as `$(..)`, is put in single quotes.
 #[must_use]
 pub fn shell_word(word: &str) -> String {
     let plain = |c: char| c.is_alphanumeric() || "-_./,:=+@\\".contains(c);
@@ -15,27 +16,27 @@ pub fn shell_word(word: &str) -> String {
     }
 }
 
-/// What a command line says of an analysis: `compare`, `diagnose` and `fit` take the same words.
+/// The arguments of an analysis on the command line: `compare`, `diagnose` and `fit` take the same ones.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Call {
     /// Data files.
     pub data: Vec<String>,
-    /// Which column is which.
+    /// Assignment of the columns.
     pub columns: Option<String>,
-    /// Lines of the rows that are left out.
+    /// Lines of the rows that are excluded.
     pub exclude: Option<String>,
     /// Muscle: a file, or the name of a shipped one.
     pub muscle: String,
     /// File of the user's own effects.
     pub effects: Option<String>,
-    /// Effects, in their order.
+    /// Effects, in order.
     pub with: Vec<String>,
-    /// What is stated of numbers: `--hold`, `--bound` or `--tie`, each with its value.
+    /// Restrictions on parameters: `--hold`, `--bound` or `--tie`, each with its value.
     pub restrictions: Vec<(&'static str, String)>,
 }
 
 impl Call {
-    /// What stands behind the name of the command.
+    /// The text after the name of the command.
     #[must_use]
     pub fn arguments(&self) -> String {
         let mut words: Vec<String> = self.data.iter().map(|file| shell_word(file)).collect();
@@ -76,7 +77,7 @@ mod tests {
     #[test]
     fn words_of_a_shell_are_quoted() {
         assert_eq!(["a.csv", "my file", ""].map(shell_word), ["a.csv", "\"my file\"", "\"\""]);
-        // Nothing in a name is run.
+        // Nothing in a name is executed.
         let names = ["$(reboot).csv", "`x`", "a\"; x", "it's $x"].map(shell_word);
         assert_eq!(names, ["'$(reboot).csv'", "'`x`'", "'a\"; x'", r"'it'\''s $x'"]);
     }

@@ -1,4 +1,4 @@
-//! Lines with a legend: isobars of a muscle with the way of a load, torques of a joint.
+//! Lines with a legend: isobars of a muscle with the path of a load, torques of a joint.
 
 use crate::PlotError;
 use crate::axis::{Axis, range};
@@ -14,11 +14,11 @@ const ROW_HEIGHT: i32 = 24;
 const CONTRACTION: &str = "contraction [%]";
 const FORCE: &str = "force [N]";
 
-/// Draws force \[N\] against contraction \[%\]: one line for each gauge pressure \[Pa\] with its contractions and forces, in the order of rising
-/// pressure, and over them the points of a load, joined. As an SVG document.
+/// Draws force \[N\] against contraction \[%\] as an SVG document: one line per gauge pressure \[Pa\] with
+/// its contractions and forces, in the order of rising pressure, and over them the points of a load, joined.
 ///
 /// # Errors
-/// No isobar, one of fewer than 2 points, no load, or a value that isn't finite.
+/// There is no isobar or no load, an isobar has fewer than 2 points, or a value isn't finite.
 ///
 /// # Examples
 /// ```
@@ -40,10 +40,10 @@ pub fn sizing_svg(
     drawn(title, [CONTRACTION, FORCE], &lines, &percent(load))
 }
 
-/// Draws lines with their names against two axes, the first one lowest in the legend. As an SVG document.
+/// Draws named lines against two axes as an SVG document. The first line is lowest in the legend.
 ///
 /// # Errors
-/// No line, one of fewer than 2 points, or a value that isn't finite.
+/// There is no line, a line has fewer than 2 points, or a value isn't finite.
 pub fn lines_svg(
     title: &str,
     axes: [&str; 2],
@@ -74,7 +74,7 @@ fn check(isobars: &[(f64, Vec<[f64; 2]>)], load: &[[f64; 2]]) -> Result<(), Plot
     Ok(())
 }
 
-/// Lines, and a load over them if there is one.
+/// Draws the lines, and a load over them if there is one.
 fn drawn(
     title: &str,
     names: [&str; 2],
@@ -127,7 +127,7 @@ fn draw(
     paper.present().map_err(failed)
 }
 
-/// The last line on top, as isobars lie; the load last.
+/// Draws the legend with the last line on top, which is the order of isobars, and the load at the end.
 fn named(area: &Area, lines: &[(String, Vec<[f64; 2]>)], has_load: bool) -> Result<(), PlotError> {
     let scale = pixels(1);
     let row = |row: i32| (22 + row * ROW_HEIGHT) * scale;
@@ -162,7 +162,7 @@ mod tests {
         for words in [CONTRACTION, FORCE, "1 bar", "2 bar", "4 bar", "load", "DMSP-20 &lt;of 400 mm&gt;"] {
             assert!(svg.contains(words), "{words}");
         }
-        // Each isobar, and once more in the legend.
+        // Each isobar occurs in the plot and in the legend.
         for i in 0..3 {
             let RGBColor(r, g, b) = palette::colour(i, 3);
             let stroke = format!("stroke=\"#{r:02X}{g:02X}{b:02X}\"");

@@ -1,16 +1,20 @@
-//! How is a joint with two pleated muscles controlled a thousand times a second, when the force of a muscle takes an elliptic integral?
+//! How is a joint with two pleated muscles controlled a thousand times a second, when computing the force of
+//! a muscle takes an elliptic integral?
 //!
-//! The muscles pull against each other on a pulley of radius r (S1, section 4.1). A table holds f of `F = p l0^2 a f(eps)` with its derivative,
-//! and at an angle the torque and the stiffness are linear in the two pressures:
+//! The muscles act against each other on a pulley of radius r (S1, section 4.1). A table holds f of `F = p
+//! l0^2 a f(eps)` with its derivative. At a given angle the torque and the stiffness are linear in the two
+//! pressures:
 //!
 //! ```text
 //! M = r l0^2 a (p1 f(eps1) - p2 f(eps2))    K = -dM/dtheta = -r^2 l0 a (p1 f'(eps1) + p2 f'(eps2))    eps1,2 = eps0 +- r theta/l0
 //! ```
 //!
-//! Two equations for two pressures: their difference sets the torque, their sum the stiffness. The controller solves them for the torque that
-//! the motion needs, one time constant of the valves ahead; a PID makes up for the load, which it takes for 4 kg instead of 5.
-//! Expect an error of at most 5.8 mrad through steps of up to 0.6 rad, and of 21.2 mrad without the PID.
-//! Try next: a stiffness of 60 N m/rad, a load of 8 kg, no look ahead.
+//! These are two equations for two pressures: their difference sets the torque, their sum the stiffness. The
+//! controller solves them for the torque that the motion needs one time constant of the valves ahead. A PID
+//! controller compensates for the load, which the controller assumes to be 4 kg instead of 5.
+//!
+//! Expect an error of at most 5.8 mrad through steps of up to 0.6 rad, and of 21.2 mrad without the PID. Try
+//! next: a stiffness of 60 N m/rad, a load of 8 kg, no look-ahead.
 
 use std::f64::consts::TAU;
 use std::hint::black_box;
@@ -31,7 +35,7 @@ const LAG: f64 = 0.02; // time constant of the valves, s
 const STIFFNESS: f64 = 90.0; // that is wanted, N m/rad
 const STEP: f64 = 1e-3; // of the controller, s
 
-/// Torque and stiffness per pascal of each muscle at an angle: two lookups.
+/// Torque and stiffness of each muscle per pascal at an angle, from two lookups.
 fn per_pascal(table: &Lookup<'_, 2, 2>, angle: f64) -> Option<[[f64; 2]; 2]> {
     let of = |side: f64| {
         let [f, _volume] = table.at([MIDDLE + side * PULLEY * angle / LENGTH, SLENDERNESS])?;
@@ -41,14 +45,15 @@ fn per_pascal(table: &Lookup<'_, 2, 2>, angle: f64) -> Option<[[f64; 2]; 2]> {
     Some([of(1.0)?, of(-1.0)?])
 }
 
-/// The pressures for a torque and a stiffness, between 0 and 3 bar.
+/// The pressures that give a torque and a stiffness, limited to 0 to 3 bar.
 fn pressures([[m1, k1], [m2, k2]]: [[f64; 2]; 2], torque: f64, stiffness: f64) -> [f64; 2] {
     let determinant = m1 * k2 - m2 * k1;
     [(torque * k2 - stiffness * m2) / determinant, (stiffness * m1 - torque * k1) / determinant]
         .map(|p| p.clamp(0.0, 3e5))
 }
 
-/// Angle, speed and acceleration that are wanted: every second a step to the next angle, smoothly in half a second, then rest.
+/// Reference angle, speed and acceleration: every second a smooth step of half a second to the next angle,
+/// then rest.
 fn wanted(t: f64) -> [f64; 3] {
     const ANGLES: [f64; 7] = [0.0, 0.3, -0.3, 0.15, 0.25, 0.0, 0.0];
     const TIME: f64 = 0.5;
@@ -59,18 +64,19 @@ fn wanted(t: f64) -> [f64; 3] {
     [from + step * (x - sin / TAU), step * (1.0 - cos) / TIME, step * TAU * sin / (TIME * TIME)]
 }
 
-/// The torque of a motion with a load: inertia, friction and gravity.
+/// The torque that moves a load along the reference motion: inertia, friction and gravity.
 fn needed([angle, speed, acceleration]: [f64; 3], mass: f64) -> f64 {
     mass * ARM * ARM * acceleration + FRICTION * speed + mass * ARM * 9.81 * angle.sin()
 }
 
-/// Largest error in rad, and that after the last step, with a PID of these gains; `None` if a muscle leaves the table.
+/// Largest error over the whole run and after the last step \[rad\], with these PID gains; `None` if a muscle
+/// leaves the table.
 fn errors(table: &Lookup<'_, 2, 2>, [kp, ki, kd]: [f64; 3]) -> Option<[f64; 2]> {
     let [mut angle, mut speed, mut sum, mut worst, mut last] = [0.0_f64; 5];
     let mut pressure = pressures(per_pascal(table, 0.0)?, 0.0, STIFFNESS);
     for k in 0..6000 {
         let t = f64::from(k) * STEP;
-        // The controller: it knows angle and speed, and what is wanted.
+        // The controller knows angle and speed, and the reference.
         let ([now, rate, _], ahead) = (wanted(t), wanted(t + LAG));
         last = (now - angle).abs();
         worst = worst.max(last);

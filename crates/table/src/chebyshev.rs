@@ -2,10 +2,10 @@
 
 use crate::spline::{Graded, Number};
 
-/// Most orders along an axis: what fits on a small stack.
+/// Most orders along an axis; their values fit on a small stack.
 pub const MOST_ORDERS: usize = 96;
 
-/// T_i(2u - 1) and its derivative by u for the first orders.
+/// T_i(2u - 1) of the first orders and their derivatives by u.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Basis {
     value: [f64; MOST_ORDERS],
@@ -13,7 +13,7 @@ pub(crate) struct Basis {
 }
 
 impl Basis {
-    /// By the recurrences T_{i+1} = 2 x T_i - T_{i-1} and its derivative.
+    /// Evaluates the recurrence T_{i+1} = 2 x T_i - T_{i-1} and its derivative.
     pub(crate) fn at(u: f64, orders: usize) -> Self {
         let x = 2.0 * u - 1.0;
         let mut basis = Self { value: [0.0; MOST_ORDERS], slope: [0.0; MOST_ORDERS] };
@@ -46,7 +46,8 @@ impl<const A: usize> Polynomial<'_, A> {
         self.contracted::<N, O>(0, 0, &basis)
     }
 
-    /// The sum over the axes from `axis` on of the block with the number `block` among those of its level.
+    /// Sum over the axes from `axis` on. `block` is the number of the block of coefficients, counted over the
+    /// orders of the axes before.
     fn contracted<N: Number, const O: usize>(
         &self,
         axis: usize,

@@ -1,8 +1,8 @@
-//! From a point to the unit coordinates, with derivatives.
+//! Map from a point to the unit coordinates, with derivatives.
 
 use crate::sqrt::reciprocal_root;
 
-/// The coordinate of an axis without fitted edge.
+/// The coordinate of an axis without a fitted edge.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Fixed {
     pub(crate) low: f64,
@@ -36,7 +36,7 @@ impl Fixed {
     }
 }
 
-/// s and ds/dx of a distance from the lower end > 0: the distance or its root.
+/// s and ds/dx at a distance > 0 from the lower end: s is the distance or its square root.
 #[inline]
 pub(crate) fn rooted(distance: f64, is_root: bool) -> [f64; 2] {
     if !is_root {
@@ -46,7 +46,8 @@ pub(crate) fn rooted(distance: f64, is_root: bool) -> [f64; 2] {
     [distance * r, 0.5 * r]
 }
 
-/// Cell of a coordinate in \[0, 1\] of a spline with `nodes` >= 4 coefficients, and the place in it from 0 to 1.
+/// Cell of a coordinate in \[0, 1\] in a spline with `nodes` >= 4 coefficients, and the position in the cell
+/// from 0 to 1.
 #[inline]
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within 0 and 2^32")]
 pub(crate) fn cell(v: f64, nodes: usize) -> (usize, f64) {
@@ -55,12 +56,12 @@ pub(crate) fn cell(v: f64, nodes: usize) -> (usize, f64) {
     (cell, along - cell as f64)
 }
 
-/// 1.5 2^52: added to a small number, the sum is a whole number whose low bits are its own.
+/// 1.5 2^52: adding it to a small number rounds that to an integer, which the low bits of the sum hold.
 pub(crate) const WHOLE: f64 = 6_755_399_441_055_744.0;
-/// Keeps a coordinate of 1 and the rounding above it in the last cell.
+/// Factor that keeps a coordinate of 1, and rounding above it, in the last cell.
 pub(crate) const INSIDE: f64 = 1.0 - 8.0 * f64::EPSILON;
 
-/// The same without the checks of a conversion. Where two cells meet it may be either.
+/// As [`cell`], without the checks of a conversion. At the border of two cells the result may be either.
 #[inline]
 #[expect(clippy::cast_possible_truncation, reason = "the low bits are the number of the cell")]
 pub(crate) fn near(v: f64, cells: f64) -> (usize, f64) {

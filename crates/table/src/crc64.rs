@@ -1,4 +1,4 @@
-//! CRC-64/XZ: finds every error of up to 64 neighbouring bits, and others but for one in 2^64.
+//! CRC-64/XZ: detects every error burst of up to 64 bits, and all but one in 2^64 of the others.
 
 /// Reflected polynomial of ECMA-182.
 const POLYNOMIAL: u64 = 0xC96C_5795_D787_0F42;

@@ -1,12 +1,14 @@
-//! One muscle of a table: the other axes fixed, so that a lookup along axis 0 needs neither the table nor the edge.
+//! A table with all axes but axis 0 fixed, for example one muscle. Its lookup along axis 0 needs neither the
+//! table nor the edge.
 
 use crate::coordinate::{cell, near, rooted};
 use crate::format::Form;
 use crate::lookup::{Lookup, Sample};
 use crate::spline::{Basis, Double, Number, Single, Spline};
 
-/// A table along axis 0 at fixed values of the others, for tables of splines with at most `N` coefficients along axis 0. It holds its own
-/// coefficients, A O N numbers, and needs the table no more: 3 kB for two axes, two outputs and N = 96.
+/// A table along axis 0 at fixed values of the others, for tables of splines with at most `N` coefficients
+/// along axis 0. It holds its own coefficients, A O N numbers, and no longer needs the table: 3 kB for two
+/// axes, two outputs and N = 96.
 ///
 /// ```
 /// # fn run(table: &bulge_table::Table<'_>) -> Option<()> {
@@ -24,22 +26,22 @@ pub struct Curve<const A: usize, const O: usize, const N: usize> {
     is_root: bool,
     least: f64,
     least_u: f64,
-    /// Factor and pole of the coordinate, which is linear where the pole is infinite.
+    /// Factor and pole of the coordinate; the pole is infinite for a linear one.
     scale: f64,
     pole: f64,
     /// d ln(scale)/dx_i and d(pole)/dx_i of the axes 1..
     scale_by: [f64; A],
     pole_by: [f64; A],
     cells: f64,
-    /// Of each coefficient along axis 0: the outputs, then their derivatives by the axes 1..
+    /// For each coefficient along axis 0: the outputs, then their derivatives by the axes 1..
     knots: [[[f64; O]; A]; N],
     singular: [f64; O],
     vanishing: [f64; O],
 }
 
 impl<const A: usize, const O: usize> Lookup<'_, A, O> {
-    /// The table at fixed values of the axes 1.. (that of axis 0 in `point` is ignored); `None` outside, for tables of Chebyshev polynomials,
-    /// and for more than `N` coefficients along axis 0.
+    /// The table at fixed values of the axes 1.. (the value of axis 0 in `point` is ignored); `None` outside,
+    /// for tables of Chebyshev polynomials, and for more than `N` coefficients along axis 0.
     #[must_use]
     pub fn curve<const N: usize>(&self, point: [f64; A]) -> Option<Curve<A, O, N>> {
         if self.form != Form::Spline || self.nodes[0] > N {
@@ -69,7 +71,7 @@ impl<const A: usize, const O: usize> Lookup<'_, A, O> {
                 curve.scale_by[i] = edge.by[i][0] / edge.value[0] * place.own[i];
                 curve.pole_by[i] = edge.by[i][1] * place.own[i];
             }
-            // The end is where u is 1.
+            // With a fitted edge the upper end is where u is 1.
             curve.high = f64::INFINITY;
         }
         if self.is_single {
@@ -80,7 +82,7 @@ impl<const A: usize, const O: usize> Lookup<'_, A, O> {
         Some(curve)
     }
 
-    /// Contracts all axes but the first.
+    /// Contracts all axes except the first.
     fn knots<B: Number, const N: usize>(
         &self,
         at: &[f64; A],
@@ -95,7 +97,7 @@ impl<const A: usize, const O: usize> Lookup<'_, A, O> {
                 (cell, Basis::at(t))
             };
         }
-        // One coefficient along axis 0 takes as many bytes as all that belong to it along the others.
+        // One index along axis 0 spans the coefficients of all other axes and all outputs.
         let row = self.nodes[1..].iter().product::<usize>() * O * B::BYTES;
         for (i, knot) in knots.iter_mut().enumerate().take(self.nodes[0]) {
             let data = self.data.get(i * row..(i + 1) * row).unwrap_or_default();

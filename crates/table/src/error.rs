@@ -1,11 +1,11 @@
-//! Why bytes are no table, or not the table that was asked for.
+//! Errors of reading a table: the bytes are no table, or it has another shape than requested.
 
 use core::fmt;
 
 /// What is wrong with the bytes of a table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TableError {
-    /// Fewer bytes than a table has at least, or than its header says.
+    /// Fewer bytes than the smallest table has, or than the header says.
     Truncated {
         /// Bytes given.
         found: usize,
@@ -14,24 +14,25 @@ pub enum TableError {
     },
     /// The first eight bytes aren't those of a table.
     NoTable,
-    /// A version that this library doesn't know.
+    /// A version of the format that this library doesn't know.
     Version {
         /// The version.
         found: u16,
     },
-    /// The checksum doesn't fit the bytes: they are damaged.
+    /// The checksum doesn't match the bytes: they are damaged.
     Checksum {
-        /// Stored.
+        /// The checksum stored.
         stored: u64,
-        /// Of the bytes.
+        /// The checksum of the bytes.
         computed: u64,
     },
-    /// The checksum fits, but a field makes no sense: whoever wrote it made a mistake.
+    /// The checksum matches, but a field has an impossible value: the program that wrote the table has a
+    /// fault.
     Malformed {
-        /// Which field.
+        /// The field.
         field: &'static str,
     },
-    /// Another number of axes or outputs than asked for.
+    /// Another number of axes or outputs than requested.
     Shape {
         /// Axes of the table.
         axes: usize,

@@ -1,19 +1,20 @@
-//! The layout of the bytes: places of the fields, and the records of axes and outputs. See the crate's documentation for the whole.
+//! The layout of the bytes: offsets of the fields, and the records of axes and outputs. The crate's
+//! documentation describes the format.
 
 use core::ops::RangeInclusive;
 use core::str;
 
 use crate::TableError;
 
-/// The first bytes.
+/// The first bytes of a table.
 pub const MAGIC: [u8; 8] = *b"BulgeTab";
 /// The version written and read.
 pub const VERSION: u16 = 1;
-/// Bytes before the records.
+/// Bytes of the header, before the records.
 pub const HEADER: usize = 64;
-/// Bytes of an axis.
+/// Bytes of the record of an axis.
 pub const AXIS: usize = 96;
-/// Bytes of an output.
+/// Bytes of the record of an output.
 pub const OUTPUT: usize = 104;
 /// Bytes of a name.
 pub const NAME: usize = 32;
@@ -23,9 +24,9 @@ pub const UNIT: usize = 16;
 pub const MOST_AXES: usize = 4;
 /// Most outputs.
 pub const MOST_OUTPUTS: usize = 8;
-/// Flag: the coordinate of axis 0 is a root.
+/// Flag: the coordinate of axis 0 is the square root of the distance from its lower end.
 pub const ROOT: u32 = 1;
-/// Flag: the upper end of axis 0 is fitted.
+/// Flag: the upper end of axis 0 is fitted as a function of the other axes.
 pub const FITTED: u32 = 2;
 
 /// How the outputs are stored.
@@ -38,7 +39,7 @@ pub enum Form {
 }
 
 impl Form {
-    /// As stored.
+    /// The code stored in the file.
     #[must_use]
     pub const fn code(self) -> u8 {
         match self {
@@ -47,7 +48,7 @@ impl Form {
         }
     }
 
-    /// In words.
+    /// The name in words.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -66,7 +67,7 @@ pub struct Axis<'a> {
     pub unit: &'a str,
     /// Lower end.
     pub low: f64,
-    /// Upper end; of a fitted axis the largest one.
+    /// Upper end; for a fitted axis the largest one.
     pub high: f64,
     /// Pole c of the coordinate s/(s + c), > 0; infinite for a linear one.
     pub pole: f64,
@@ -89,12 +90,13 @@ pub struct Output<'a> {
     pub is_singular: bool,
     /// Whether it vanishes as 1 - u at the upper end of axis 0.
     pub vanishes: bool,
-    /// What was measured of its error.
+    /// The errors measured.
     pub certificate: Certificate,
 }
 
-/// Errors of an output, measured off the grid against the solver. Relative errors are |error|/max(|value|, floor), floor = 0.001 scale, where
-/// the output is singular over the root of the part of the way to the upper end.
+/// Errors of an output, measured off the grid against the solver. Relative errors are |error|/max(|value|,
+/// floor) with floor = 0.001 scale; for a singular output the floor is divided by the root of the fraction of
+/// the way to the upper end.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Certificate {
     /// Largest relative error of the value.
@@ -103,15 +105,15 @@ pub struct Certificate {
     pub value_rms: f64,
     /// Largest relative error of a component of the gradient, |error|/max(|component|, max(|value|, floor)/width of the axis).
     pub gradient_max: f64,
-    /// Root mean square.
+    /// Root mean square of the relative error of the gradient.
     pub gradient_rms: f64,
-    /// Bound of the relative error of the value, by subdivision.
+    /// Bound of the relative error of the value, found by subdivision.
     pub bound: f64,
-    /// Largest |y| u^k: what small values are compared with.
+    /// Largest |y| u^k, the scale with which small values are compared.
     pub scale: f64,
 }
 
-/// Little-endian numbers at a place; `None` beyond the end.
+/// Little-endian number at an offset; `None` beyond the end.
 pub(crate) fn u16_at(bytes: &[u8], at: usize) -> Option<u16> {
     Some(u16::from_le_bytes(*bytes.get(at..)?.first_chunk()?))
 }
@@ -168,7 +170,7 @@ pub(crate) fn axis_at(bytes: &[u8], at: usize) -> Result<Axis<'_>, TableError> {
     if is_right { Ok(axis) } else { Err(TableError::Malformed { field: "range of an axis" }) }
 }
 
-/// Widths and poles of axes: whatever the unit, their products and quotients are numbers.
+/// Range of widths and poles of axes: within it their products and quotients are finite in any unit.
 const MEASURES: RangeInclusive<f64> = 1e-90..=1e90;
 
 pub(crate) fn output_at(bytes: &[u8], at: usize) -> Result<Output<'_>, TableError> {
@@ -182,7 +184,7 @@ pub(crate) fn output_at(bytes: &[u8], at: usize) -> Result<Output<'_>, TableErro
     if bytes.get(at + 50..at + 56).is_none_or(|rest| rest.iter().any(|byte| *byte != 0)) {
         return Err(TableError::Malformed { field: "reserved bytes" });
     }
-    // Refuses NaN: it would pass for a small error.
+    // `>=` also rejects NaN, which would pass for a small error.
     if !(0..6).all(|i| number(i) >= 0.0) {
         return Err(TableError::Malformed { field: "errors of an output" });
     }

@@ -1,8 +1,9 @@
 //! Certified force and volume tables of pneumatic muscles: one binary format and its lookup.
 //!
-//! A table holds a few outputs (force f, volume v, ...) over one to four axes (contraction, slenderness, ...) as piecewise or global polynomials
-//! of coordinates that follow the domain, and what was measured of its error. A lookup gives value and exact gradient of the stored polynomial,
-//! or `None` outside the domain; nothing is ever extrapolated.
+//! A table holds a few outputs (force f, volume v, ...) over one to four axes (contraction, slenderness,
+//! ...). They are piecewise or global polynomials in coordinates that follow the domain; the measured errors
+//! are stored with them. A lookup gives the value and the exact gradient of the stored polynomial, or `None`
+//! outside the domain. Nothing is ever extrapolated.
 //!
 //! ```
 //! # fn look(bytes: &[u8]) -> Result<(), bulge_table::TableError> {
@@ -41,11 +42,13 @@
 //! | text | UTF-8: where the table comes from |
 //! | last 8 | CRC-64/XZ of all bytes before |
 //!
-//! Coefficients: for each place along the axes (axis 0 slowest, the last axis fastest), for each output one. Splines: of the cubic B-splines on equal
-//! cells of \[0, 1\], of which the places k to k + 3 are not zero in cell k. Chebyshev: of T_{i_0}(2u - 1) T_{i_1}(2v_1 - 1) ... An edge holds its two
-//! numbers like two outputs.
+//! Coefficients: one per output at each index along the axes (axis 0 slowest, the last axis fastest, then the
+//! outputs). Splines: coefficients of the cubic B-splines on equal cells of \[0, 1\]; those with the indices
+//! k to k + 3 are non-zero in cell k. Chebyshev: coefficients of T_{i_0}(2u - 1) T_{i_1}(2v_1 - 1) ... An
+//! edge stores 1/Q and c like two outputs.
 //!
-//! Deliberately absent: std, an allocator, dependencies, `unsafe`, and building tables (`bulge-sweep` does that).
+//! Deliberately absent: std, an allocator, dependencies, `unsafe`, and building tables (`bulge-sweep` does
+//! that).
 #![no_std]
 #![forbid(unsafe_code)]
 

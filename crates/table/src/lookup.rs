@@ -1,4 +1,4 @@
-//! Looking up a point: coordinates, the stored polynomial, the factors, and the chain rule back.
+//! Lookup of a point: coordinates, the stored polynomial, the factors, and the chain rule back to the axes.
 
 use crate::chebyshev::Polynomial;
 use crate::coordinate::{Fixed, cell, rooted};
@@ -6,16 +6,16 @@ use crate::format::Form;
 use crate::plane::Plane;
 use crate::spline::{Basis, Double, Graded, Number, Single, Spline};
 
-/// An output at a point.
+/// The value and gradient of an output at a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sample<const A: usize> {
     /// Its value.
     pub value: f64,
-    /// Its derivatives by the axes; exactly those of `value` as it is stored.
+    /// Its derivatives by the axes: the exact derivatives of the stored polynomial.
     pub gradient: [f64; A],
 }
 
-/// A table of `A` axes and `O` outputs, ready to be looked up. Copying it is cheap; it holds no coefficients, only where they are.
+/// A table of `A` axes and `O` outputs, ready for lookups. Copying it is cheap: it borrows the coefficients.
 #[derive(Debug, Clone, Copy)]
 pub struct Lookup<'a, const A: usize, const O: usize> {
     pub(crate) form: Form,
@@ -27,16 +27,16 @@ pub struct Lookup<'a, const A: usize, const O: usize> {
     pub(crate) edge_nodes: [usize; A],
     pub(crate) edge: &'a [u8],
     pub(crate) data: &'a [u8],
-    /// Cells along each axis, and of the edge.
+    /// Cells along each axis of the outputs, and of the edge.
     pub(crate) cells: [f64; A],
     pub(crate) edge_cells: [f64; A],
-    /// Smallest distance from the lower end of axis 0, and smallest coordinate of it.
+    /// Smallest distance from the lower end of axis 0 that is looked up, and its smallest coordinate.
     pub(crate) least: f64,
     pub(crate) least_u: f64,
-    /// k and j of each output: 0 or 1.
+    /// Exponents k and j of each output: 0 or 1.
     pub(crate) singular: [f64; O],
     pub(crate) vanishing: [f64; O],
-    /// What else two axes need.
+    /// Precomputed numbers of the lookup with two axes.
     pub(crate) plane: Plane,
 }
 
@@ -44,9 +44,9 @@ pub struct Lookup<'a, const A: usize, const O: usize> {
 pub(crate) struct Place<const A: usize> {
     /// u, v_1, ...
     pub(crate) at: [f64; A],
-    /// d(coordinate)/dx of its own axis.
+    /// Derivative of each coordinate by its own axis.
     pub(crate) own: [f64; A],
-    /// du/dv_i of the axes 1.., through the fitted edge.
+    /// du/dv_i for the axes 1.., which comes from the fitted edge.
     shift: [f64; A],
 }
 
@@ -65,8 +65,9 @@ impl<const A: usize, const O: usize> Lookup<'_, A, O> {
         self.in_space(point)
     }
 
-    /// [`Lookup::at`] of many points, bit for bit, into as many places; of the longer slice the rest is left alone. For splines over two axes
-    /// sixteen or more take half the time, since the steps of several points overlap.
+    /// [`Lookup::at`] for many points, with bit-identical results written into `found`. If the slices differ
+    /// in length, the rest of the longer one is left alone. For splines over two axes sixteen or more points
+    /// take half the time, since the steps of several points overlap.
     ///
     /// ```
     /// # fn run(table: &bulge_table::Table<'_>) -> Option<()> {
@@ -94,7 +95,8 @@ impl<const A: usize, const O: usize> Lookup<'_, A, O> {
         }
     }
 
-    /// [`Lookup::at`] for any number of axes; not inlined, since the stack that it needs would be prepared for two axes as well.
+    /// [`Lookup::at`] for any number of axes. It isn't inlined: otherwise the path of two axes would set up
+    /// its stack as well.
     #[inline(never)]
     fn in_space(&self, point: [f64; A]) -> Option<[Sample<A>; O]> {
         let place = self.place(point)?;
@@ -107,7 +109,8 @@ impl<const A: usize, const O: usize> Lookup<'_, A, O> {
         Some(self.samples(&place, &found))
     }
 
-    /// The upper end of axis 0 at the other axes' values (that of axis 0 in `point` is ignored); `None` outside.
+    /// The upper end of axis 0 at the values of the other axes (the value of axis 0 in `point` is ignored);
+    /// `None` outside.
     #[must_use]
     pub fn upper_end(&self, point: [f64; A]) -> Option<f64> {
         let place = self.others(point)?;
@@ -115,7 +118,7 @@ impl<const A: usize, const O: usize> Lookup<'_, A, O> {
             return Some(self.axes[0].high);
         }
         let edge = self.edge(&place);
-        // q K = 1 with q = s/(s + c).
+        // Solves q K = 1 with q = s/(s + c) for s.
         let s = edge.value[1] / (edge.value[0] - 1.0);
         Some(self.axes[0].low + if self.is_root { s * s } else { s })
     }
@@ -134,7 +137,7 @@ impl<const A: usize, const O: usize> Lookup<'_, A, O> {
         let mut place = self.others(point)?;
         let first = &self.axes[0];
         let distance = point[0] - first.low;
-        // Also refuses NaN.
+        // Written so that it also refuses NaN.
         if !(distance >= self.least && (self.is_fitted || point[0] <= first.high)) {
             return None;
         }
@@ -187,7 +190,7 @@ impl<const A: usize, const O: usize> Lookup<'_, A, O> {
         spline.at::<N, O>(cells, &basis).per_unit(self.cells)
     }
 
-    /// The factors (1 - u)^j/u^k, and the chain rule.
+    /// Applies the factors (1 - u)^j/u^k and the chain rule.
     fn samples(&self, place: &Place<A>, found: &Graded<A, O>) -> [Sample<A>; O] {
         let u = place.at[0];
         let over = 1.0 / u;

@@ -1,11 +1,11 @@
-//! Two numbers that take the same steps: the compiler makes packed instructions of them.
+//! Two numbers that go through the same operations, which the compiler turns into packed instructions.
 
 use core::array;
 use core::ops::{Add, Mul, Sub};
 
 use crate::sqrt::reciprocal_root;
 
-/// Two numbers, aligned so that an instruction takes them from memory.
+/// Two numbers, aligned so that one instruction can load them from memory.
 #[derive(Debug, Clone, Copy, Default)]
 #[repr(align(16))]
 pub(crate) struct Pair(pub(crate) [f64; 2]);
@@ -27,14 +27,14 @@ impl Pair {
         Self(self.0.map(reciprocal_root))
     }
 
-    /// `self` where it is less than `other`, else `other`: a NaN of `self` is dropped, one of `other` stays.
+    /// The smaller of `self` and `other`. A NaN in `self` is dropped, a NaN in `other` stays.
     #[inline]
     pub(crate) fn or_less(self, other: Self) -> Self {
         let less = |i: usize| if self.0[i] < other.0[i] { self.0[i] } else { other.0[i] };
         Self([less(0), less(1)])
     }
 
-    /// `self` where it is more than `other`, else `other`.
+    /// The larger of `self` and `other`.
     #[inline]
     pub(crate) fn or_more(self, other: Self) -> Self {
         let more = |i: usize| if self.0[i] > other.0[i] { self.0[i] } else { other.0[i] };
@@ -66,8 +66,9 @@ impl Mul for Pair {
     }
 }
 
-/// Of the four coefficients about a cell, in two steps: six times de Boor's two numbers L and H of the step before the last, then their mean
-/// L + t (H - L). The slope is half of H - L.
+/// Weights of the four coefficients of a cell, applied in two steps. The first gives six times the two
+/// numbers L and H of the last but one step of de Boor's algorithm; the second gives their mean L + t (H -
+/// L). The slope is half of H - L.
 ///
 /// ```text
 /// L = (1 - t)^2 k0 + (4 - 2 t^2) k1 + (1 + t)^2 k2      H = (2 - t)^2 k1 + (4 - 2 (1 - t)^2) k2 + t^2 k3
@@ -93,7 +94,7 @@ impl Weights {
         }
     }
 
-    /// Those of both numbers, each twice.
+    /// The weights of both numbers, each duplicated in a pair.
     #[inline]
     pub(crate) fn of_each(t: Pair) -> [Self; 2] {
         let both = Self::at(t);
@@ -110,14 +111,14 @@ impl Weights {
         [sum(&self.low, 0), sum(&self.high, 1)]
     }
 
-    /// The mean of two ends.
+    /// The weighted mean L + t (H - L) of two ends.
     #[inline]
     pub(crate) fn mean(&self, [low, high]: [Pair; 2]) -> Pair {
         low + self.t * (high - low)
     }
 }
 
-/// The factors (1 - u)^j/u^k of two outputs, over 36, as a + b u + c/u.
+/// The factors (1 - u)^j/u^k of two outputs, divided by 36, in the form a + b u + c/u.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Factors {
     constant: Pair,
@@ -126,7 +127,7 @@ pub(crate) struct Factors {
 }
 
 impl Factors {
-    /// From k and j of both: 0 or 1.
+    /// From the exponents k and j of both outputs, each 0 or 1.
     pub(crate) fn new(singular: [f64; 2], vanishing: [f64; 2]) -> Self {
         let each =
             |number: fn(f64, f64) -> f64| Pair(array::from_fn(|o| number(singular[o], vanishing[o]) / 36.0));
@@ -137,14 +138,14 @@ impl Factors {
         }
     }
 
-    /// Those of one of both outputs, twice.
+    /// The factors of one of the two outputs, duplicated.
     #[inline]
     pub(crate) fn only(&self, o: usize) -> Self {
         let both = |two: Pair| Pair::both(two.0[o]);
         Self { constant: both(self.constant), linear: both(self.linear), inverse: both(self.inverse) }
     }
 
-    /// At u and 1/u: the factors, and by how much they fall with u.
+    /// The factors and minus their derivatives by u, from u and 1/u.
     #[inline]
     pub(crate) fn at(&self, u: Pair, over: Pair) -> [Pair; 2] {
         let inverse = self.inverse * over;

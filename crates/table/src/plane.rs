@@ -1,11 +1,15 @@
-//! The lookup of splines over two axes: the general path with everything known beforehand and no loop left, two outputs at a time; for many points
-//! two points at a time in what doesn't depend on the output.
+//! Lookup of splines over two axes. It is the general path with all constants precomputed and all loops
+//! unrolled, for two outputs at a time. Many points go two at a time through the steps that don't depend on
+//! the output.
 //!
-//! A single point is two that are the same: so what it has in common needn't be spread before it meets the outputs.
+//! A single point is computed as a pair of identical points, so that its numbers are already duplicated when
+//! they meet the two outputs.
 //!
-//! Many points go through in blocks and stages. A processor sees some three hundred instructions ahead, and holds fewer results; a lookup is a chain
-//! longer than that, a stage is not, so that the waits of one point are filled with the work of the next. The stages are functions of their own, not
-//! inlined, that write to memory: only so do pairs stay pairs. Pairs are two points in all stages but that of the rows, where they are two outputs.
+//! Many points go through in blocks and stages. A processor looks some three hundred instructions ahead, and
+//! holds fewer results. The dependency chain of a lookup is longer than that, a stage is shorter: so the
+//! latency of one point is filled with the work of the next. The stages are separate functions, not inlined,
+//! that write to memory, because only then does the compiler keep the pairs as pairs. A pair is two points in
+//! all stages except that of the rows, where it is two outputs.
 
 use core::array;
 
@@ -16,24 +20,26 @@ use crate::spline::{Double, Number};
 
 /// Points that go through the stages together. An even number.
 const BLOCK: usize = 16;
-/// Fewer points go one by one: what a block needs at hand costs more than it saves.
+/// Fewer points are looked up one by one: setting up a block would cost more than it saves.
 const FEW: usize = 4;
 /// Most pairs of outputs.
 const PAIRS: usize = crate::format::MOST_OUTPUTS / 2;
 
-/// Numbers of a table of two axes, most of them twice.
+/// Precomputed numbers of a table of two axes, most of them duplicated in a pair.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Plane {
     low: [Pair; 2],
-    /// Upper ends; where the edge is one, a number before those whose multiples are infinite.
+    /// Upper ends. With a fitted edge, that of the first axis is a number so large that only its multiples
+    /// overflow.
     high: [Pair; 2],
     /// Smallest distance from the lower end of the first axis, and smallest coordinate of it.
     least: Pair,
     least_u: Pair,
-    /// Of the first coordinate scale s/(factor s + pole) without fitted edge: scale and pole.
+    /// Scale and pole of the first coordinate scale s/(factor s + pole) without a fitted edge.
     first: Pair,
     factor: Pair,
-    /// Pole of the second coordinate, and its scale by the pole and by what makes derivatives of the spline's H - L.
+    /// Pole of the second coordinate; and scale times pole times the factor that turns H - L of the spline
+    /// into a derivative.
     pole: Pair,
     own: Pair,
     is_linear: bool,
@@ -41,9 +47,9 @@ pub(crate) struct Plane {
     across: Cells,
     along: Cells,
     edge: Cells,
-    /// From H - L to a derivative by the first coordinate.
+    /// Factor from H - L to a derivative by the first coordinate.
     across_by: Pair,
-    /// Of the edge, in units of the same by the second coordinate.
+    /// The same factor of the edge, relative to that of the second coordinate.
     edge_by: Pair,
     /// Coefficients along the second axis.
     nodes: u32,
@@ -51,7 +57,8 @@ pub(crate) struct Plane {
 }
 
 impl Plane {
-    /// The factors and the chain rule: an output's value and derivatives by its axes from those of its spline.
+    /// The factors and the chain rule: value and derivatives of an output by the axes, from the value and
+    /// derivatives of its spline.
     #[inline]
     fn chain(&self, place: &Chain, factors: &Factors, [g, g_u, g_v]: [Pair; 3]) -> [Pair; 3] {
         let [factor, fall] = factors.at(place.u, place.over);
@@ -60,7 +67,7 @@ impl Plane {
         [g * factor, by_u * place.own_u, by_v]
     }
 
-    /// The numbers of a lookup whose others are known.
+    /// Precomputes the numbers from the other fields of a lookup.
     pub(crate) fn new<const A: usize, const O: usize>(lookup: &Lookup<'_, A, O>) -> Self {
         if A != 2 {
             return Self::default();
@@ -72,7 +79,7 @@ impl Plane {
         let fraction = |axis: &Fixed| {
             if axis.pole == f64::INFINITY { [axis.scale, 0.0, 1.0] } else { [axis.scale, 1.0, axis.pole] }
         };
-        // A fitted edge gives six times its numbers.
+        // The spline of a fitted edge yields six times its values, which the factor 6 balances.
         let [scale, factor, pole] = if is_fitted { [0.0, 6.0, 0.0] } else { fraction(first) };
         let (end, _) = second.coordinate(second.high - second.low);
         let scale_v = second.scale / if end > 1.0 { end } else { 1.0 };
@@ -103,11 +110,11 @@ impl Plane {
     }
 }
 
-/// From a coordinate, but for its scale, to equal cells.
+/// Map from a coordinate without its scale factor to equal cells.
 #[derive(Debug, Clone, Copy, Default)]
 struct Cells {
     number: Pair,
-    /// The same, just short of the end.
+    /// The same number, reduced so that a coordinate of 1 stays in the last cell.
     inside: Pair,
 }
 
@@ -116,7 +123,8 @@ impl Cells {
         Self { number: Pair::both(scale * number), inside: Pair::both(scale * number * INSIDE) }
     }
 
-    /// Cells and the places in them, without the checks of a conversion. Where two cells meet it may be either.
+    /// Cells and the positions in them, without the checks of a conversion. At the border of two cells the
+    /// result may be either.
     #[inline]
     #[expect(clippy::cast_possible_truncation, reason = "the low bits are the number of the cell")]
     fn at(&self, q: Pair) -> ([u32; 2], Pair) {
@@ -134,7 +142,7 @@ fn four<N: Number, const O: usize>(row: &[u8], i: usize) -> [Pair; 4] {
     [at(0), at(1), at(2), at(3)]
 }
 
-/// An output of a pair's values and derivatives.
+/// One output of a pair's values and derivatives.
 #[inline]
 fn sample<const A: usize>(found: &[Pair; 3], o: usize) -> Sample<A> {
     let mut gradient = [0.0; A];
@@ -142,10 +150,11 @@ fn sample<const A: usize>(found: &[Pair; 3], o: usize) -> Sample<A> {
     Sample { value: found[0].0[o], gradient }
 }
 
-/// [`Weights::ends`] of the four rows of coefficients about a point, of a pair of outputs.
+/// [`Weights::ends`] of the four rows of coefficients around a point, for a pair of outputs.
 type Rows = [[Pair; 2]; 4];
 
-/// 36 times the splines, and 12 times their derivatives by the places in the cell, from the rows, whose second axis is at `along` of the cell.
+/// 36 times the splines, and 12 times their derivatives by the positions in the cell, from the rows. `along`
+/// is the position in the cell along the second axis.
 #[inline]
 fn crossed(across: &Weights, along: Pair, [[l0, h0], [l1, h1], [l2, h2], [l3, h3]]: &Rows) -> [Pair; 3] {
     let low = across.ends(&[*l0, *l1, *l2, *l3]);
@@ -155,19 +164,20 @@ fn crossed(across: &Weights, along: Pair, [[l0, h0], [l1, h1], [l2, h2], [l3, h3
     [across.mean(ends), ends[1] - ends[0], across.mean(by_v)]
 }
 
-/// How far two points are along their axes, which a single point is twice.
+/// Position of two points along their axes; a single point is stored twice.
 #[derive(Debug, Clone, Copy, Default)]
 struct Start {
-    /// The distance or its root, and its derivative.
+    /// The distance from the lower end or its root, and the derivative.
     s: [Pair; 2],
-    /// The second coordinate, but for its scale; its derivative, by which H - L of the spline along it is multiplied.
+    /// The second coordinate without its scale factor; and the derivative that multiplies H - L of the spline
+    /// along it.
     q: Pair,
     own_v: Pair,
-    /// How far they are within the ends of the axes that are numbers, at least; negative or a NaN outside.
+    /// Smallest margin from the ends that don't depend on the other axis; negative or NaN outside.
     within: Pair,
 }
 
-/// Whether a distance from the ends is one of a point inside: false for a NaN.
+/// Whether a margin belongs to a point inside: false for a NaN.
 #[inline]
 fn is_within(distance: f64) -> bool {
     distance >= 0.0
@@ -178,7 +188,7 @@ impl Start {
     fn at(plane: &Plane, is_root: bool, x: Pair, y: Pair) -> Self {
         let distance = x - plane.low[0];
         let (mut q, mut own_v) = (y - plane.low[1], plane.own);
-        // A NaN stays where it comes last.
+        // `or_less` keeps a NaN only in its last argument, so the terms that may be NaN come last.
         let last = (plane.high[0] - x) + Pair::both(0.0) * q;
         let within = (distance - plane.least).or_less(q).or_less(plane.high[1] - y).or_less(last);
         if !plane.is_linear {
@@ -195,27 +205,29 @@ impl Start {
     }
 }
 
-/// 1/Q and c of the edge (six times) at two points, each with H - L of its spline; without an edge, the coordinate's own.
+/// 1/Q and c of the edge (times six) at two points, each with H - L of its spline. Without a fitted edge:
+/// scale and pole of the coordinate.
 #[derive(Debug, Clone, Copy, Default)]
 struct Edge {
     scale: [Pair; 2],
     pole: [Pair; 2],
 }
 
-/// What two points' values and derivatives need besides the spline.
+/// What the chain rule needs for two points besides the spline.
 #[derive(Debug, Clone, Copy, Default)]
 struct Chain {
     /// The first coordinate and its inverse.
     u: Pair,
     over: Pair,
-    /// Its derivative by its own axis and by the second axis, and that of the second coordinate as in [`Start`].
+    /// Derivatives of the first coordinate by its own axis and by the second axis; derivative of the second
+    /// coordinate as in [`Start`].
     own_u: Pair,
     shift: Pair,
     own_v: Pair,
 }
 
 impl Chain {
-    /// One of both, twice.
+    /// One of both points, duplicated.
     #[inline]
     fn only(&self, point: usize) -> Self {
         let both = |two: Pair| Pair::both(two.0[point]);
@@ -224,32 +236,33 @@ impl Chain {
     }
 }
 
-/// Where two points are in the table.
+/// Cells of two points in the table, and positions in them.
 #[derive(Debug, Clone, Copy, Default)]
 struct Places {
     row: [u32; 2],
     column: [u32; 2],
-    /// Places in their cells.
+    /// Positions in their cells.
     t: Pair,
     w: Pair,
     chain: Chain,
-    /// How far they are within the ends, at least, in whatever units; negative or a NaN outside.
+    /// Smallest margin from all ends, in mixed units; negative or NaN outside.
     within: Pair,
 }
 
 impl<const A: usize, const O: usize> Lookup<'_, A, O> {
-    /// [`Lookup::at`] of splines where A is 2.
+    /// [`Lookup::at`] for splines with A = 2.
     #[inline]
     pub(crate) fn in_plane<N: Number>(&self, point: [f64; A]) -> Option<[Sample<A>; O]> {
         all(|i| self.two_in_plane::<N>(point[0], point[1], i))
     }
 
-    /// Values and derivatives of a pair of outputs, in memory, as in the stages.
+    /// Values and derivatives of a pair of outputs. It isn't inlined, so that they pass through memory as in
+    /// the stages.
     #[inline(never)]
     fn two_in_plane<N: Number>(&self, x: f64, y: f64, i: usize) -> Option<[Pair; 3]> {
         let plane = &self.plane;
         let start = Start::at(plane, self.is_root, Pair::both(x), Pair::both(y));
-        // 1/Q and c of the edge go together.
+        // 1/Q and c of the edge form one pair.
         let (mut edge, mut edge_by) = (plane.first, Pair::default());
         if self.is_fitted {
             let (cell, t) = plane.edge.at(start.q);
@@ -265,7 +278,7 @@ impl<const A: usize, const O: usize> Lookup<'_, A, O> {
         Some(plane.chain(&places.chain.only(0), &plane.factors[if O > 2 { i } else { 0 }], found))
     }
 
-    /// Two points on the table. Of points outside it may be anywhere.
+    /// Cells and positions of two points. They are arbitrary for points outside.
     #[inline]
     fn both_places(&self, start: &Start, edge: &Edge) -> Places {
         let (plane, [s, s_by]) = (&self.plane, start.s);
@@ -273,7 +286,7 @@ impl<const A: usize, const O: usize> Lookup<'_, A, O> {
         let below = (s * plane.factor + pole).reciprocal();
         let part = scale * below;
         let u = part * s;
-        // A NaN stays where it comes last, that of the start as well as one of u.
+        // `or_less` keeps a NaN only in its last argument: it may come from the start or from u.
         let last = start.within + Pair::both(0.0) * u;
         let within = (Pair::both(1.0 + 4.0 * f64::EPSILON) - u).or_less(u - plane.least_u);
         let within = within.or_less(last);
@@ -282,7 +295,7 @@ impl<const A: usize, const O: usize> Lookup<'_, A, O> {
         let (column, w) = plane.along.at(start.q);
         let chain = Chain {
             u,
-            // Outputs that aren't singular multiply it by 0, so that it must be finite where u is 0.
+            // Outputs that aren't singular multiply the inverse by 0, so it must be finite at u = 0.
             over: u.or_more(Pair::both(f64::MIN_POSITIVE)).reciprocal(),
             own_u: part * (pole * below) * s_by,
             shift: (s * below) * (scale_by - part * pole_by) * (plane.edge_by * start.own_v),
@@ -291,7 +304,8 @@ impl<const A: usize, const O: usize> Lookup<'_, A, O> {
         Places { row, column, t, w, chain, within }
     }
 
-    /// The rows of a pair of outputs about one of two points, with its weights along them; `None` outside.
+    /// The rows of a pair of outputs around one of two points, contracted with the weights `along`; `None`
+    /// outside.
     #[inline]
     fn rows_at<N: Number>(&self, place: &Places, point: usize, i: usize, along: &Weights) -> Option<Rows> {
         if !is_within(place.within.0[point]) {
@@ -307,7 +321,7 @@ impl<const A: usize, const O: usize> Lookup<'_, A, O> {
         Some([first, second, third, fourth].map(|row| along.ends(&four::<N, O>(row, i))))
     }
 
-    /// [`Lookup::at_each`] of splines where A is 2.
+    /// [`Lookup::at_each`] for splines with A = 2.
     pub(crate) fn each_in_plane<N: Number>(&self, points: &[[f64; A]], found: &mut [Option<[Sample<A>; O]>]) {
         if points.len().min(found.len()) < FEW {
             for (point, found) in points.iter().zip(found) {
@@ -392,7 +406,7 @@ impl<const A: usize, const O: usize> Lookup<'_, A, O> {
         *to = self.both_places(start, edge);
     }
 
-    /// The rows about one of two points; false outside.
+    /// The rows around one of two points; false outside.
     #[inline(never)]
     fn rows_of_two<N: Number>(&self, place: &Places, point: usize, i: usize, to: &mut Rows) -> bool {
         let point = point % 2;
@@ -405,8 +419,9 @@ impl<const A: usize, const O: usize> Lookup<'_, A, O> {
     }
 }
 
-/// Of both outputs, at two points. Their rows are a slice so that the compiler doesn't know that it may read a number together with the next: the two
-/// were written apart, and a processor waits for both to reach memory.
+/// Splines of both outputs at two points. `rows` is a slice to keep the compiler from loading a number
+/// together with its neighbour: the two were written separately, so that a joint load would wait until both
+/// have reached memory.
 #[inline(never)]
 fn two_crossed(places: &Places, rows: &[Rows], to: &mut [[Pair; 3]; 2]) {
     let [first, last] = rows else { return };
@@ -417,7 +432,7 @@ fn two_crossed(places: &Places, rows: &[Rows], to: &mut [[Pair; 3]; 2]) {
     }
 }
 
-/// Outputs `2 i` and `2 i + 1` of a point inside.
+/// Writes outputs `2 i` and `2 i + 1` of a point inside.
 #[inline]
 fn give<const A: usize, const O: usize>(
     found: &mut Option<[Sample<A>; O]>,
@@ -439,7 +454,7 @@ fn give<const A: usize, const O: usize>(
     }
 }
 
-/// All outputs from those of the pairs.
+/// Collects all outputs from the pairs.
 #[inline]
 fn all<const A: usize, const O: usize>(pair: impl Fn(usize) -> Option<[Pair; 3]>) -> Option<[Sample<A>; O]> {
     if O <= 2 {

@@ -1,6 +1,7 @@
-//! Cubic B-splines on equal cells: value and gradient per cell width from the 4^A coefficients about a cell.
+//! Cubic B-splines on equal cells: value and gradient per cell width from the 4^A coefficients of a cell.
 
-/// The four basis functions that are not zero in a cell, at t in \[0, 1\] of it, and their derivatives.
+/// The four basis functions that are non-zero in a cell and their derivatives, at position t in \[0, 1\] of
+/// the cell.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Basis {
     pub(crate) value: [f64; 4],
@@ -54,7 +55,7 @@ impl Number for Double {
     }
 }
 
-/// `O` outputs with derivatives by `A` coordinates.
+/// Values of `O` outputs with their derivatives by `A` coordinates.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Graded<const A: usize, const O: usize> {
     pub(crate) value: [f64; O],
@@ -64,7 +65,7 @@ pub(crate) struct Graded<const A: usize, const O: usize> {
 impl<const A: usize, const O: usize> Graded<A, O> {
     pub(crate) const ZERO: Self = Self { value: [0.0; O], by: [[0.0; O]; A] };
 
-    /// From derivatives per cell to those per unit of the coordinates.
+    /// Converts derivatives per cell to derivatives per unit of the coordinates.
     pub(crate) fn per_unit(mut self, cells: [f64; A]) -> Self {
         for (by, cells) in self.by.iter_mut().zip(cells) {
             for number in by {
@@ -79,21 +80,21 @@ impl<const A: usize, const O: usize> Graded<A, O> {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Spline<'a, const A: usize> {
     pub(crate) data: &'a [u8],
-    /// The first axis that it has: 1 for an edge, which doesn't depend on axis 0.
+    /// The first axis of the spline: 1 for an edge, which doesn't depend on axis 0.
     pub(crate) first: usize,
     /// Coefficients along each axis.
     pub(crate) nodes: [usize; A],
 }
 
 impl<const A: usize> Spline<'_, A> {
-    /// Value and derivatives per cell at places in a cell, for any number of axes.
+    /// Value and derivatives per cell at a position in a cell, for any number of axes.
     #[inline]
     pub(crate) fn at<N: Number, const O: usize>(
         &self,
         cells: [usize; A],
         basis: &[Basis; A],
     ) -> Graded<A, O> {
-        // Bytes from a coefficient to the next along each axis.
+        // Bytes from one coefficient to the next along each axis.
         let mut stride = O * N::BYTES;
         let mut strides = [0; A];
         for i in (self.first..A).rev() {
@@ -104,7 +105,7 @@ impl<const A: usize> Spline<'_, A> {
         self.contracted::<N, O>(self.first, start, &strides, basis)
     }
 
-    /// The sum over the axes from `axis` on, from the coefficient at `start`.
+    /// Sum over the axes from `axis` on, starting at the coefficient `start`.
     fn contracted<N: Number, const O: usize>(
         &self,
         axis: usize,

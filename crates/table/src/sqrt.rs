@@ -1,9 +1,10 @@
 //! Square root without std: `core` has none on stable Rust.
 
-/// 1/sqrt(x) of a normal positive x, to 2 units in the last place; some number for any other x.
+/// 1/sqrt(x) of a normal positive x, to 2 units in the last place; an arbitrary number for any other x.
 ///
-/// From Lomont's constant (3.4 % off), by the cubic of z = x y^2 that is nearest to 1/sqrt(z) for the z that come of it (7.5e-7 off), then by a step
-/// of third order: with e = 1 - x y^2
+/// It starts from Lomont's constant (relative error 3.4 %). A cubic in z = x y^2, the best approximation of
+/// 1/sqrt(z) over the z that occur, brings the error to 7.5e-7. A step of third order follows: with e = 1 - x
+/// y^2
 ///
 /// ```text
 /// 1/sqrt(x) = y (1 - e)^(-1/2) = y (1 + e/2 + 3 e^2/8 + ...)

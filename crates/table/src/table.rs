@@ -1,4 +1,4 @@
-//! A table in its bytes: checked once, then looked up.
+//! A table as its bytes: checked once, then looked up.
 
 use core::str;
 
@@ -16,14 +16,15 @@ use crate::sqrt::reciprocal_root;
 
 /// Bytes of the checksum.
 const CHECKSUM: usize = 8;
-/// Smallest coordinate at which a singular output is looked up: its gradient has 1/u^2, which must not overflow.
+/// Smallest coordinate at which a singular output is looked up: its gradient contains 1/u^2, which must not
+/// overflow.
 const LEAST_SINGULAR: f64 = 1e-90;
-/// Coefficients of a spline of one cell.
+/// Coefficients of a spline with one cell.
 const LEAST_NODES: usize = 4;
 /// Most coefficients along an axis.
 const MOST_NODES: usize = 1 << 20;
 
-/// A table in its bytes. Everything was checked when it was made from them.
+/// A table as its bytes. Everything was checked when it was created from them.
 #[derive(Debug, Clone, Copy)]
 pub struct Table<'a> {
     bytes: &'a [u8],
@@ -38,7 +39,7 @@ pub struct Table<'a> {
 }
 
 impl<'a> Table<'a> {
-    /// Checks the bytes and makes a table of them; nothing is copied.
+    /// Checks the bytes and returns a table that borrows them; nothing is copied.
     ///
     /// # Errors
     /// [`TableError`]: truncated, damaged, of another version, or no table at all. Bytes after the table's end are an error as well.
@@ -70,7 +71,7 @@ impl<'a> Table<'a> {
         Self::checked(bytes, body)
     }
 
-    /// A table whose checksum fits: from here on a mistake is that of whoever wrote it.
+    /// Reads a table whose checksum fits: any mistake from here on was made by the program that wrote it.
     fn checked(bytes: &'a [u8], body: &'a [u8]) -> Result<Self, TableError> {
         let malformed = |field| TableError::Malformed { field };
         let number = |at| size_at(body, at).ok_or(malformed("header"));
@@ -114,7 +115,8 @@ impl<'a> Table<'a> {
         Ok(table)
     }
 
-    /// Whether edge and coefficients have the sizes that the records say, and all numbers are finite.
+    /// Checks that edge and coefficients have the sizes given in the records, and that all numbers are
+    /// finite.
     fn check_sizes(&self) -> Result<(), TableError> {
         let malformed = |field| TableError::Malformed { field };
         let product = |count: usize, by: usize| count.checked_mul(by).ok_or(malformed("number of nodes"));
@@ -123,7 +125,7 @@ impl<'a> Table<'a> {
             Form::Chebyshev => 1..=MOST_ORDERS,
         };
         let mut count = self.outputs;
-        // K and c of a fitted edge.
+        // A fitted edge stores K = 1/Q and c.
         let mut edge = if self.is_fitted() { 2 } else { 0 };
         for i in 0..self.axes {
             let axis = axis_at(self.bytes, HEADER + i * AXIS)?;
@@ -139,7 +141,7 @@ impl<'a> Table<'a> {
             if has_edge {
                 edge = product(edge, axis.edge_nodes)?;
             }
-            // The c and scale of a fitted axis aren't used.
+            // c and scale of a fitted axis aren't used.
             let has_scale = (i == 0 && self.is_fitted()) || fits_scale(&axis, i == 0 && self.is_root());
             if !(axis.scale > 0.0 && axis.scale.is_finite() && has_scale) {
                 return Err(malformed("scale of an axis"));
@@ -180,13 +182,13 @@ impl<'a> Table<'a> {
         self.outputs
     }
 
-    /// An axis; `None` beyond the last one.
+    /// The axis with index i; `None` beyond the last one.
     #[must_use]
     pub fn axis(&self, i: usize) -> Option<Axis<'a>> {
         if i < self.axes { axis_at(self.bytes, HEADER + i * AXIS).ok() } else { None }
     }
 
-    /// An output; `None` beyond the last one.
+    /// The output with index o; `None` beyond the last one.
     #[must_use]
     pub fn output(&self, o: usize) -> Option<Output<'a>> {
         let at = HEADER + self.axes * AXIS + o * OUTPUT;
@@ -205,7 +207,7 @@ impl<'a> Table<'a> {
         self.precision
     }
 
-    /// Whether the coordinate of axis 0 is the root of the distance from its lower end.
+    /// Whether the coordinate of axis 0 is the square root of the distance from its lower end.
     #[must_use]
     pub const fn is_root(&self) -> bool {
         self.flags & ROOT != 0
@@ -217,31 +219,31 @@ impl<'a> Table<'a> {
         self.flags & FITTED != 0
     }
 
-    /// Number of points at which the errors were measured, and the seed they were drawn with.
+    /// Number of points at which the errors were measured, and the seed with which they were drawn.
     #[must_use]
     pub fn checks(&self) -> [u64; 2] {
         [32, 40].map(|at| u64_at(self.bytes, at).unwrap_or(0))
     }
 
-    /// Largest error of the fitted upper end of axis 0, in its unit; 0 without one.
+    /// Largest error of the fitted upper end of axis 0, in the unit of the axis; 0 without a fitted end.
     #[must_use]
     pub fn edge_error(&self) -> f64 {
         f64_at(self.bytes, 56).unwrap_or(0.0)
     }
 
-    /// Where the table comes from: JSON, as `bulge-sweep` writes it.
+    /// Origin of the table: JSON, as `bulge-sweep` writes it.
     #[must_use]
     pub const fn text(&self) -> &'a str {
         self.text
     }
 
-    /// The whole table.
+    /// All bytes of the table.
     #[must_use]
     pub const fn bytes(&self) -> &'a [u8] {
         self.bytes
     }
 
-    /// The edge's and the outputs' coefficients, as stored.
+    /// The coefficients of the edge and of the outputs, as stored.
     #[must_use]
     pub const fn coefficients(&self) -> [&'a [u8]; 2] {
         [self.edge, self.data]
@@ -267,7 +269,7 @@ impl<'a> Table<'a> {
             data: self.data,
             cells: [0.0; A],
             edge_cells: [0.0; A],
-            // At the lower end itself a root has no derivative, and its bits must be those of a normal number.
+            // At the lower end itself the root has no derivative, and the fast root needs a normal number.
             least: if self.is_root() { f64::MIN_POSITIVE } else { 0.0 },
             least_u: 0.0,
             singular: [0.0; O],
@@ -293,8 +295,9 @@ impl<'a> Table<'a> {
         Ok(lookup)
     }
 
-    /// All outputs at a point into `values` and their derivatives into `gradients` (those of output o by axis i at `o * axes + i`), for callers
-    /// that learn the shape of the table at run time; slower than a [`Lookup`]. `None` outside the domain, or where a length doesn't fit.
+    /// All outputs at a point, written into `values`, and their derivatives into `gradients` (that of output
+    /// o by axis i at `o * axes + i`). This is for callers that learn the shape of the table at run time; it
+    /// is slower than a [`Lookup`]. `None` outside the domain, or if a length doesn't fit.
     #[must_use]
     pub fn sample(&self, point: &[f64], values: &mut [f64], gradients: &mut [f64]) -> Option<()> {
         match self.axes {
@@ -342,8 +345,8 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// The upper end of axis 0 at the other axes' values (that of axis 0 in `point` is ignored); `None` outside, or where the number of
-    /// coordinates doesn't fit.
+    /// The upper end of axis 0 at the values of the other axes (the value of axis 0 in `point` is ignored);
+    /// `None` outside, or if the number of coordinates doesn't fit.
     #[must_use]
     pub fn upper_end(&self, point: &[f64]) -> Option<f64> {
         fn of<const A: usize>(table: &Table<'_>, point: &[f64]) -> Option<f64> {
@@ -368,7 +371,7 @@ impl<'a> Table<'a> {
     }
 }
 
-/// Whether the scale is 1/Q: otherwise the coordinate would end before its axis, or after it.
+/// Whether the scale is 1/Q: otherwise the coordinate would end before or after its axis.
 fn fits_scale(axis: &Axis<'_>, is_root: bool) -> bool {
     let width = axis.high - axis.low;
     let s = if is_root { width * reciprocal_root(width) } else { width };

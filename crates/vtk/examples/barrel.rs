@@ -1,14 +1,15 @@
-//! Draws a barrel with the profile r = R + a sin(pi x/l): pleated, braided, and a film of a pleated one.
+//! Draws a barrel with the profile r = R + a sin(pi x/l): pleated, braided, and an animation of a pleated
+//! one.
 //!
-//! `cargo run -p bulge-vtk --example barrel -- FOLDER` writes `pleated.vtp`, `braided.vtp`, `film.pvd` and its members, then open them in
-//! ParaView, or check and render them with `validation/vtk_check.py`.
+//! `cargo run -p bulge-vtk --example barrel -- FOLDER` writes `pleated.vtp`, `braided.vtp`, `film.pvd` and
+//! its members. Open them in ParaView, or check and render them with `validation/vtk_check.py`.
 
 use bulge_fibre::{Convergence, MeridianPoint, Method, Response, Shape};
 use bulge_vtk::{Bulge, Style, VtkError, write_series, write_vtp};
 use std::f64::consts::PI;
 use std::path::PathBuf;
 
-/// Barrel of radius 16 mm at the ends, contracted to `length`, its fibres 110 mm long and turning by `turn`.
+/// Barrel of radius 16 mm at the ends, contracted to `length`, with fibres of 110 mm that turn by `turn`.
 fn barrel(length: f64, bulging: f64, turn: f64) -> Shape {
     let (radius, pressure, fibres) = (0.016, 2e5, 25.0);
     let meridian: Vec<MeridianPoint> = (0..=120)

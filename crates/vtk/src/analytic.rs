@@ -2,7 +2,8 @@
 
 use bulge_fibre::{Convergence, MeridianPoint, Method, Response, Shape};
 
-/// Shape over x = 0 ..= length with `intervals` equal steps; `profile` gives radius and slope, fibres turn by `turn` in all.
+/// Shape over x = 0 ..= length in `intervals` equal steps. `profile` gives radius and slope; the fibres turn
+/// by `turn` in all.
 pub(crate) fn shape(length: f64, intervals: u32, turn: f64, profile: impl Fn(f64) -> (f64, f64)) -> Shape {
     let meridian: Vec<_> = (0..=intervals)
         .map(|i| {
@@ -70,7 +71,7 @@ pub(crate) fn sphere(intervals: u32) -> Shape {
     })
 }
 
-/// Barrel r = R + a sin(pi x/l) of straight or turning fibres.
+/// Barrel r = R + a sin(pi x/l) with straight or turning fibres.
 pub(crate) fn barrel(intervals: u32, turn: f64) -> Shape {
     let wave = std::f64::consts::PI / 0.09;
     shape(0.09, intervals, turn, move |x| (0.016 + 0.02 * (wave * x).sin(), 0.02 * wave * (wave * x).cos()))

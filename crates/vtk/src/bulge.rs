@@ -1,4 +1,4 @@
-//! How a shape is drawn: the number of fibres, the kind of surface, the fineness around the axis.
+//! How a shape is drawn: number of fibres, kind of surface, and resolution around the axis.
 
 use crate::VtkError;
 use crate::mesh::Mesh;
@@ -11,16 +11,17 @@ use std::f64::consts::PI;
 pub enum Style {
     /// A surface of revolution through the fibres.
     Revolution,
-    /// Cloth of constant width between every two fibres: pleats where there is more of it than needed, lobes where the pressure has
-    /// unfolded them, flat panels where it is spanned. The fibres must be straight.
+    /// Cloth of constant width between neighbouring fibres: pleats where there is more of it than needed,
+    /// lobes where the pressure has unfolded them, flat panels where it is taut. The fibres must be straight.
     Pleats {
-        /// Circumference of the unfolded cloth \[m\]; `None`: the cloth is just unfolded (a polygon) at the largest radius.
+        /// Circumference of the unfolded cloth \[m\]. With `None` the cloth is just unfolded (a polygon) at
+        /// the largest radius.
         cloth_circumference: Option<f64>,
     },
 }
 
 impl Style {
-    /// Pleats where a pleated muscle has straight fibres and their number is known, else a surface of revolution.
+    /// Pleats for a pleated muscle with straight fibres of known number, else a surface of revolution.
     #[must_use]
     pub fn natural(muscle: &Muscle, shape: &Shape, cloth_circumference: Option<f64>) -> Self {
         let turns = shape.meridian.last().is_some_and(|end| end.turn_rad != 0.0);
@@ -31,7 +32,7 @@ impl Style {
         }
     }
 
-    /// A number of facets that looks round: 96 around the axis, or 12 for every pleat.
+    /// A number of facets that looks round: 96 around the axis, or 12 per pleat.
     #[must_use]
     pub fn default_facets(self) -> u32 {
         match self {
@@ -43,8 +44,8 @@ impl Style {
 
 /// An equilibrium shape and how to draw it.
 ///
-/// Fibres that turn about the axis (braids) are drawn as two opposite families of helices, half of the fibres each; straight ones lie in
-/// meridian planes.
+/// Fibres that turn about the axis (braids) are drawn as two opposite families of helices with half of the
+/// fibres each. Straight fibres lie in meridian planes.
 ///
 /// ```no_run
 /// # fn draw(shape: &bulge_fibre::Shape) -> Result<(), bulge_vtk::VtkError> {
@@ -60,19 +61,20 @@ pub struct Bulge<'a> {
     pub shape: &'a Shape,
     /// Number of fibres drawn: at least 3 with pleats, may be 0 for a surface of revolution.
     pub fibres: u32,
-    /// What is drawn between them.
+    /// The surface drawn between them.
     pub style: Style,
-    /// Segments around the axis: of every pleat, or of the whole circumference of a surface of revolution; at least 4.
+    /// Segments around the axis, at least 4: per pleat, or over the whole circumference of a surface of
+    /// revolution.
     pub facets: u32,
 }
 
 const LEAST_FACETS: u32 = 4;
 const LEAST_PLEATS: u32 = 3;
-/// Enough fibres to see the net where the muscle file doesn't say how many there are.
+/// Fibres drawn if the muscle file doesn't give their number: enough to show the net.
 const SHOWN: u32 = 32;
 
 impl<'a> Bulge<'a> {
-    /// A shape of a muscle, with the muscle's fibres.
+    /// A shape of a muscle, drawn with the fibres of the muscle.
     #[must_use]
     pub fn of(muscle: &Muscle, shape: &'a Shape, style: Style) -> Self {
         Self { shape, fibres: muscle.fibres().unwrap_or(SHOWN), style, facets: style.default_facets() }
@@ -80,10 +82,11 @@ impl<'a> Bulge<'a> {
 }
 
 impl Bulge<'_> {
-    /// Its points, quadrangles and polylines, with their fields: what [`crate::write_vtp`] writes.
+    /// The points, quadrangles and polylines with their fields: the content of the file that
+    /// [`crate::write_vtp`] writes.
     ///
     /// # Errors
-    /// If it can't be drawn.
+    /// The bulge can't be drawn.
     pub fn mesh(&self) -> Result<Mesh, VtkError> {
         self.check()?;
         Ok(Mesh::new(self))
@@ -112,13 +115,13 @@ impl Bulge<'_> {
         )
     }
 
-    /// Refuses what can't be drawn.
+    /// Rejects a bulge that can't be drawn.
     pub(crate) fn check(&self) -> Result<(), VtkError> {
         self.check_drawing()?;
         check_shape(self.shape)?;
         let (stations, around) =
             (self.shape.meridian.len(), self.columns().saturating_add(self.fibres as usize));
-        // Four vertices a quadrangle, and the format counts in 32 bits.
+        // Each quadrangle has four vertices, and the format counts in 32 bits.
         let most = u32::MAX / 4;
         if stations.checked_mul(around).is_none_or(|points| points > most as usize) {
             return Err(VtkError::TooLarge { stations, around, most });
@@ -148,7 +151,7 @@ fn largest_turn(shape: &Shape) -> f64 {
     shape.meridian.iter().map(|p| p.turn_rad.abs()).fold(0.0, f64::max)
 }
 
-/// The quantities of a shape as a whole that go into a file, with the names they have there.
+/// The quantities of a whole shape that go into a file, with their names there.
 pub(crate) fn whole(response: &Response) -> [(&'static str, f64); 5] {
     [
         ("pressure_Pa", response.pressure_pa),

@@ -1,11 +1,11 @@
-//! What can go wrong between a shape and a file on disk.
+//! Errors between a shape and a file on disk.
 
 use std::path::PathBuf;
 
 /// Why a VTK file wasn't written.
 #[derive(Debug, thiserror::Error)]
 pub enum VtkError {
-    /// The meridian is a point or nothing.
+    /// The meridian has fewer than two points.
     #[error("a surface needs at least 2 meridian points, the shape has {found}")]
     MeridianTooShort {
         /// Number of meridian points.
@@ -37,23 +37,23 @@ pub enum VtkError {
         /// The radius found \[m\].
         radius_m: f64,
     },
-    /// Too coarse around the axis.
+    /// Too few facets around the axis.
     #[error("{found} facets are too few to draw a round cross-section: use {least} or more")]
     Facets {
-        /// Number asked for.
+        /// Number requested.
         found: u32,
-        /// Least number.
+        /// Smallest number.
         least: u32,
     },
-    /// Too few fibres to hold a cloth between them.
+    /// Too few fibres for a cloth between them.
     #[error("pleats need at least {least} fibres to stand between, found {found}")]
     Fibres {
-        /// Number asked for.
+        /// Number requested.
         found: u32,
-        /// Least number.
+        /// Smallest number.
         least: u32,
     },
-    /// Pleats were asked for a braid.
+    /// Pleats were requested for a braid.
     #[error(
         "pleats stand between straight fibres, but these turn by {turn_rad} rad about the axis: draw a surface of revolution"
     )]
@@ -61,20 +61,20 @@ pub enum VtkError {
         /// Largest turn of a fibre \[rad\].
         turn_rad: f64,
     },
-    /// A circumference of cloth that is no length.
+    /// The circumference of the cloth is not a length.
     #[error("the cloth circumference is {value_m} m: it must be positive and finite")]
     Cloth {
         /// The circumference found \[m\].
         value_m: f64,
     },
-    /// More points than the format counts.
+    /// More points than the format can count.
     #[error(
         "{stations} rings of {around} points are more than a file holds ({most}): draw fewer facets or fibres"
     )]
     TooLarge {
         /// Number of meridian points.
         stations: usize,
-        /// Points around the axis, cloth and fibres.
+        /// Points around the axis, of cloth and fibres.
         around: usize,
         /// Largest number of points.
         most: u32,
@@ -84,16 +84,16 @@ pub enum VtkError {
     Encode {
         /// File that was to be written.
         path: PathBuf,
-        /// What the encoder says.
+        /// Message of the encoder.
         reason: String,
     },
-    /// ParaView chooses its reader by the end of the name.
+    /// The name has the wrong extension, by which ParaView chooses its reader.
     #[error("{}: the name of the file must end in .vtp", path.display())]
     Extension {
         /// File that was to be written.
         path: PathBuf,
     },
-    /// ParaView chooses its reader by the end of the name.
+    /// The name has the wrong extension, by which ParaView chooses its reader.
     #[error("{}: the name of the file must end in .vtu", path.display())]
     GridExtension {
         /// File that was to be written.
@@ -109,31 +109,31 @@ pub enum VtkError {
         /// The value found.
         value: f64,
     },
-    /// The fields of a membrane don't belong together.
+    /// The fields of a membrane are inconsistent.
     #[error("the fields of the membrane don't fit together: {what}")]
     Fields {
-        /// What is wrong.
+        /// The inconsistency.
         what: String,
     },
-    /// The part that was meshed can't be completed as asked.
+    /// The meshed part can't be completed to the requested whole.
     #[error("the whole can't be drawn: {what}")]
     Whole {
-        /// Why not.
+        /// The reason.
         what: String,
     },
-    /// More points than the format counts.
+    /// More points than the limit for a file.
     #[error(
         "{copies} copies of {points} points are more than a file holds ({most}): draw fewer facets or copies"
     )]
     TooManyPoints {
-        /// Copies of the mesh, or facets.
+        /// Number of copies of the mesh, or of facets.
         copies: usize,
-        /// Points of each.
+        /// Points per copy.
         points: usize,
         /// Largest number of points.
         most: u32,
     },
-    /// The stem of a series is no file name.
+    /// The stem of a series can't be part of a file name.
     #[error("{stem:?} can't begin the file names of a series: use a name without folders")]
     Stem {
         /// The stem found.
@@ -142,7 +142,7 @@ pub enum VtkError {
     /// A series without members.
     #[error("a series needs at least one shape")]
     EmptySeries,
-    /// A member of a series has no finite value.
+    /// The value of a member of a series isn't finite.
     #[error("the value of member {index} of the series is {value}: it must be finite")]
     SeriesValue {
         /// Index of the member.
@@ -150,14 +150,14 @@ pub enum VtkError {
         /// The value found.
         value: f64,
     },
-    /// The file system refuses.
+    /// An operation of the file system failed.
     #[error("{}: can't {action}: {source}", path.display())]
     File {
         /// File or folder concerned.
         path: PathBuf,
-        /// What was being done.
+        /// The operation.
         action: &'static str,
-        /// Why it failed.
+        /// Its error.
         source: std::io::Error,
     },
 }

@@ -1,10 +1,11 @@
 //! VTK files of bulging pneumatic muscles for ParaView.
 //!
-//! A [`Bulge`] says how an equilibrium shape is drawn: as a surface of revolution, or with the cloth between the fibres folded into pleats. [`write_vtp`]
-//! writes one of them, [`write_series`] writes many and a `.pvd` that ParaView plays as a film. Lengths are in metres; the axis of
-//! the muscle is the x axis, the left fitting lies at x = 0.
+//! A [`Bulge`] describes how an equilibrium shape is drawn: as a surface of revolution, or with the cloth
+//! folded into pleats between the fibres. [`write_vtp`] writes one shape. [`write_series`] writes many, and a
+//! `.pvd` that ParaView plays as an animation. Lengths are in metres; the axis of the muscle is the x axis,
+//! and the left fitting is at x = 0.
 //!
-//! What stands in a file (`PolyData`: the cloth as quadrangles, each fibre as one polyline, outward normals):
+//! Content of a file (`PolyData`: the cloth as quadrangles, each fibre as one polyline, outward normals):
 //!
 //! | where | arrays |
 //! |---|---|
@@ -12,11 +13,11 @@
 //! | cells | `part` (0 cloth, 1 fibre), `area_m2` (0 for a fibre), `membrane_force_N_per_m` |
 //! | field data | `pressure_Pa`, `force_N`, `length_m`, `contraction`, `volume_m3` |
 //!
-//! States of the membrane finite elements are unstructured grids in their own coordinates, the axis along z: [`MembranePicture`],
-//! [`write_vtu`], [`MembraneSeries`].
+//! States of the membrane finite elements are written as unstructured grids in their own coordinates, with
+//! the axis along z: [`MembranePicture`], [`write_vtu`], [`MembraneSeries`].
 //!
-//! This crate solves nothing and reads nothing: every file is a function of a [`bulge_fibre::Shape`], or of a [`bulge_membrane::State`] and its
-//! fields.
+//! This crate solves nothing and reads nothing: every file is a function of a [`bulge_fibre::Shape`], or of a
+//! [`bulge_membrane::State`] and its fields.
 #[cfg(test)]
 mod analytic;
 mod bulge;

@@ -7,21 +7,22 @@ use std::f64::consts::TAU;
 
 type Point = [f64; 3];
 
-/// A field: its name, which ends in its unit, and one value per point or cell.
+/// A field: its name, which ends in the unit, and one value per point or cell.
 type Field = (&'static str, Vec<f64>);
 
-/// Value of `part` for the cloth.
+/// Value of the array `part` for the cloth.
 const CLOTH: i32 = 0;
-/// Value of `part` for a fibre.
+/// Value of the array `part` for a fibre.
 const FIBRE: i32 = 1;
 
-/// What goes into a file: a drawn shape as points and cells \[SI\]. Points: the rings of cloth one after the other, then fibre after fibre. Cells: the fibres, then the quadrangles
-/// ring after ring (VTK counts the lines of a `PolyData` before its polygons).
+/// The content of a file: a drawn shape as points and cells \[SI\]. Points: the rings of cloth one after the
+/// other, then the fibres one after the other. Cells: the fibres, then the quadrangles ring by ring (VTK
+/// counts the lines of a `PolyData` before its polygons).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mesh {
-    /// Points (x along the axis) \[m\].
+    /// Points \[m\], with x along the axis.
     pub points: Vec<Point>,
-    /// Vertices counter-clockwise seen from outside.
+    /// Vertices of the quadrangles, counter-clockwise seen from outside.
     pub quads: Vec<[usize; 4]>,
     /// Vertices of every fibre from left to right.
     pub fibres: Vec<Vec<usize>>,
@@ -59,7 +60,7 @@ impl Mesh {
     }
 }
 
-/// Rings of cloth, station after station.
+/// Rings of cloth, station by station.
 fn cloth(bulge: &Bulge) -> Vec<Point> {
     let meridian = &bulge.shape.meridian;
     match bulge.style {
@@ -71,7 +72,7 @@ fn cloth(bulge: &Bulge) -> Vec<Point> {
     }
 }
 
-/// Point at the angle `theta` about the axis; y points to theta = 0, z to a quarter turn.
+/// Point at the angle `theta` about the axis: y points to theta = 0, z to theta = pi/2.
 fn at(x: f64, radius: f64, theta: f64) -> Point {
     [x, radius * theta.cos(), radius * theta.sin()]
 }
@@ -81,7 +82,7 @@ fn circle(p: &MeridianPoint, facets: u32) -> impl Iterator<Item = Point> {
     (0..facets).map(move |j| at(x, r, TAU * f64::from(j) / f64::from(facets)))
 }
 
-/// One ring of n panels; the last point of a panel is the first one of the next, so the ring closes.
+/// One ring of n panels. The last point of a panel is the first one of the next, so the ring closes.
 fn pleated_ring(p: &MeridianPoint, n: u32, width: f64, facets: u32) -> impl Iterator<Item = Point> {
     let (x, r) = (p.x_m, p.r_m);
     let half_angle = TAU / f64::from(2 * n);
@@ -97,7 +98,7 @@ fn pleated_ring(p: &MeridianPoint, n: u32, width: f64, facets: u32) -> impl Iter
     })
 }
 
-/// Quadrangles between neighbouring rings, outward normals.
+/// Quadrangles between neighbouring rings, with outward normals.
 fn quads(stations: usize, columns: usize) -> Vec<[usize; 4]> {
     let vertex = |i: usize, j: usize| i * columns + j % columns;
     (1..stations)
@@ -108,7 +109,8 @@ fn quads(stations: usize, columns: usize) -> Vec<[usize; 4]> {
         .collect()
 }
 
-/// The way of every fibre: straight ones evenly about the axis, turning ones in two opposite families.
+/// The paths of the fibres: straight ones evenly spaced about the axis, turning ones in two opposite
+/// families.
 fn fibre_paths(bulge: &Bulge) -> Vec<Vec<Point>> {
     let path = |start: f64, sense: f64| {
         bulge.shape.meridian.iter().map(|p| at(p.x_m, p.r_m, start + sense * p.turn_rad)).collect()
@@ -122,7 +124,8 @@ fn fibre_paths(bulge: &Bulge) -> Vec<Vec<Point>> {
     }
 }
 
-/// Fields of the points: those of the meridian, the same around every ring, and each point's own distance from the axis.
+/// Fields of the points: the fields of the meridian, constant around every ring, and the distance of each
+/// point from the axis.
 fn point_fields(meridian: &[MeridianPoint], points: &[Point], columns: usize, fibres: usize) -> Vec<Field> {
     type Reader = fn(&MeridianPoint) -> f64;
     let readers: [(&'static str, Reader); 6] = [
@@ -145,7 +148,7 @@ fn point_fields(meridian: &[MeridianPoint], points: &[Point], columns: usize, fi
     fields
 }
 
-/// Area of a quadrangle: half the cross product of its diagonals, exact where it is plane.
+/// Area of a quadrangle: half the cross product of its diagonals, exact if it is plane.
 fn area([a, b, c, d]: [Point; 4]) -> f64 {
     let minus = |p: Point, q: Point| [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
     let (e, f) = (minus(c, a), minus(d, b));
@@ -153,7 +156,7 @@ fn area([a, b, c, d]: [Point; 4]) -> f64 {
     0.5 * normal.iter().map(|n| n * n).sum::<f64>().sqrt()
 }
 
-/// Membrane force of the cells: mean along the fibres, mean of the two rings for the cloth.
+/// Membrane force of the cells: the mean along a fibre, and the mean of the two rings for the cloth.
 fn cell_forces(meridian: &[MeridianPoint], columns: usize, fibres: usize) -> Vec<f64> {
     let pairs = || meridian.windows(2).map(|p| (&p[0], &p[1]));
     let middle =
@@ -207,7 +210,7 @@ mod tests {
             .iter()
             .map(|&[a, b, c, d]| triple([p(a), p(b), p(c)]) + triple([p(a), p(c), p(d)]))
             .sum();
-        // The left end lies in x = 0 and adds nothing.
+        // The left end lies in x = 0 and contributes nothing.
         let last = &mesh.points[(rings - 1) * columns..rings * columns];
         let right: f64 = (0..columns)
             .map(|j| (last[j], last[(j + 1) % columns]))
@@ -241,7 +244,8 @@ mod tests {
         }
     }
 
-    /// Every edge inside belongs to two quadrangles that run through it in opposite senses; edges of one quadrangle lie in the two ends.
+    /// Every interior edge belongs to two quadrangles that run through it in opposite directions; edges of
+    /// only one quadrangle lie in the two ends.
     #[test]
     fn surface_closes_around_the_axis() {
         for (mesh, columns) in
@@ -266,7 +270,7 @@ mod tests {
         }
     }
 
-    /// Exact areas; facets inscribed in circles and arcs converge with order 2.
+    /// Areas converge to the exact ones: facets inscribed in circles and arcs have order 2.
     #[test]
     fn area_of_revolution_converges_with_order_two() {
         type Case = (fn(u32) -> Shape, f64);

@@ -10,11 +10,12 @@ use std::f64::consts::{FRAC_PI_2, PI};
 /// s >  pi w       pleat: two flanks of height h = (s - pi w)/2 and a semicircle of radius w on top
 /// ```
 ///
-/// The lobe is the shape of an inextensible cloth without bending stiffness under pressure. The pleat is how surplus cloth is drawn: a lobe
-/// that opens further would run into its neighbours (their flanks lean apart by no more than 2 pi/n).
+/// The lobe is the shape of an inextensible cloth without bending stiffness under pressure. The pleat is only
+/// a way to draw surplus cloth: a lobe that opens further would penetrate its neighbours (their flanks lean
+/// apart by no more than 2 pi/n).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Panel {
-    /// The cloth is spanned along the chord, half of which is `w`.
+    /// The cloth is taut along the chord of half-length `w`.
     Flat { w: f64 },
     /// Circular arc of radius `rho` and half-opening `v`.
     Lobe { rho: f64, v: f64 },
@@ -35,13 +36,14 @@ impl Panel {
         }
     }
 
-    /// Point at the fraction `t` (0 ..= 1) of the cloth: distance along the chord from its middle, and height above the chord.
+    /// Point at the fraction `t` (0 ..= 1) of the cloth: position along the chord from its middle, and height
+    /// above the chord.
     pub(crate) fn point(&self, t: f64) -> [f64; 2] {
         match *self {
             Self::Flat { w } => [w * (2.0 * t - 1.0), 0.0],
             Self::Lobe { rho, v } => {
                 let phi = v * (2.0 * t - 1.0);
-                // rho (cos phi - cos v) without its cancellation for shallow lobes.
+                // rho (cos phi - cos v), rewritten to avoid cancellation for shallow lobes.
                 let height = 2.0 * rho * f64::midpoint(v, phi).sin() * (0.5 * (v - phi)).sin();
                 [rho * phi.sin(), height]
             }
@@ -62,10 +64,12 @@ impl Panel {
 
 /// Root v of sin(v)/v = q for 2/pi <= q < 1.
 ///
-/// sin(v)/v is concave and falling up to pi/2, so Newton's method approaches the root from above after at most one step.
+/// sin(v)/v is concave and decreasing up to pi/2, so Newton's method approaches the root from above after at
+/// most one step.
 fn half_opening(q: f64) -> f64 {
     let mut v = (6.0 * (1.0 - q)).sqrt();
-    // Quadratic convergence from an error below 7 %: five steps are exact, the rest guards the rounding of shallow lobes.
+    // Newton's method converges quadratically from an error below 7 %: five steps are exact, the others guard
+    // against rounding in shallow lobes.
     for _ in 0..8 {
         let (sin, cos) = v.sin_cos();
         let step = (sin - q * v) / (cos - sin / v);
@@ -81,7 +85,7 @@ fn half_opening(q: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Polygon length over `n` chords.
+    /// Length of the inscribed polygon with `n` chords.
     fn length(panel: &Panel, n: u32) -> f64 {
         let points: Vec<_> = (0..=n).map(|i| panel.point(f64::from(i) / f64::from(n))).collect();
         points.windows(2).map(|p| (p[1][0] - p[0][0]).hypot(p[1][1] - p[0][1])).sum()
@@ -102,7 +106,8 @@ mod tests {
         assert!((2.0 * h + PI * w - 2.0).abs() < 1e-12);
     }
 
-    /// Points equally spaced along the cloth: the inscribed polygon is shorter by O(1/n^2), the crown by chord factor 1 - d^2/24.
+    /// The inscribed polygon of points equally spaced along the cloth is shorter by O(1/n^2), the crown by
+    /// the chord factor 1 - d^2/24.
     #[test]
     fn points_are_equally_spaced_along_the_cloth() {
         for s in [1.5, 2.1, 2.9, 3.3, 6.0, 40.0] {

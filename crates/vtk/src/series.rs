@@ -1,4 +1,4 @@
-//! Many shapes as numbered `.vtp` files and one `.pvd` that ParaView plays as a film.
+//! Many shapes as numbered `.vtp` files and one `.pvd` that ParaView plays as an animation.
 
 use crate::bulge::Bulge;
 use crate::{VtkError, whole_file, write_vtp};
@@ -6,11 +6,13 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Writes `stem_0000.vtp`, `stem_0001.vtp`, ... into the folder `dir`, which is created if needed, and last `stem.pvd`, whose path is
-/// returned. The first of each pair is the value ParaView shows as time: the contraction, or whatever orders the shapes.
+/// Writes `stem_0000.vtp`, `stem_0001.vtp`, ... into the folder `dir`, which is created if needed. Then it
+/// writes `stem.pvd` and returns its path. The first entry of each pair is the value that ParaView shows as
+/// time: the contraction, or any other value that orders the shapes.
 ///
 /// # Errors
-/// As [`write_vtp`]; and if the series is empty, one of its values isn't finite, the stem is no file name, or the folder can't be created.
+/// As [`write_vtp`]; also if the series is empty, one of its values isn't finite, the stem can't be part of a
+/// file name, or the folder can't be created.
 pub fn write_series(
     dir: impl AsRef<Path>,
     stem: &str,
@@ -28,7 +30,7 @@ pub fn write_series(
     Ok(path)
 }
 
-/// The folder of a series, and those above it.
+/// Creates the folder of a series and its parents.
 pub(crate) fn create(dir: &Path) -> Result<(), VtkError> {
     fs::create_dir_all(dir).map_err(|source| VtkError::File {
         path: dir.to_path_buf(),
@@ -37,7 +39,7 @@ pub(crate) fn create(dir: &Path) -> Result<(), VtkError> {
     })
 }
 
-/// A stem is part of file names.
+/// Checks that the stem can be part of file names.
 pub(crate) fn check_stem(stem: &str) -> Result<(), VtkError> {
     let is_name = !stem.is_empty() && !stem.contains(['/', '\\']) && !stem.contains(char::is_control);
     if is_name { Ok(()) } else { Err(VtkError::Stem { stem: stem.to_owned() }) }
@@ -58,7 +60,7 @@ pub(crate) fn member_name(stem: &str, index: usize, extension: &str) -> String {
     format!("{stem}_{index:04}.{extension}")
 }
 
-/// The `.pvd` file: names are relative to it.
+/// Content of the `.pvd` file. The file names in it are relative to it.
 pub(crate) fn collection(stem: &str, extension: &str, values: impl Iterator<Item = f64>) -> String {
     let mut xml = String::from(concat!(
         "<?xml version=\"1.0\"?>\n",
@@ -73,7 +75,7 @@ pub(crate) fn collection(stem: &str, extension: &str, values: impl Iterator<Item
     xml + "  </Collection>\n</VTKFile>\n"
 }
 
-/// Text as the value of an XML attribute.
+/// Escapes text for the value of an XML attribute.
 fn escape(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }

@@ -13,8 +13,8 @@ use vtkio::xml::Compressor;
 /// Writes one shape; the file appears whole or not at all.
 ///
 /// # Errors
-/// The bulge can't be drawn (too few facets, a value that isn't finite, ...), the name doesn't end in `.vtp`, its folder doesn't exist, or
-/// the disk refuses. The message names the path and the reason.
+/// The bulge can't be drawn (too few facets, a value that isn't finite, ...), the name doesn't end in `.vtp`,
+/// its folder doesn't exist, or the disk refuses. The message names the path and the reason.
 pub fn write_vtp(path: impl AsRef<Path>, bulge: &Bulge) -> Result<(), VtkError> {
     let path = path.as_ref();
     if path.extension().is_none_or(|e| !e.eq_ignore_ascii_case("vtp")) {
@@ -47,7 +47,7 @@ fn encode(mesh: Mesh, response: &Response) -> Result<Vec<u8>, String> {
         file_path: None,
     };
     let file = vtk.try_into_xml_format(Compressor::ZLib, 6).map_err(|e| e.to_string())?;
-    // Into memory: the writer of vtkio doesn't notice a disk that is full.
+    // Written to memory first: vtkio doesn't notice a full disk.
     let mut body = Vec::new();
     file.write(&mut body).map_err(|e| e.to_string())?;
     let body = String::from_utf8(body).map_err(|e| e.to_string())?;
@@ -55,7 +55,7 @@ fn encode(mesh: Mesh, response: &Response) -> Result<Vec<u8>, String> {
     Ok(format!("<?xml version=\"1.0\"?>\n{head}<PolyData>{}{tail}\n", field_data(response)).into_bytes())
 }
 
-/// Field data, which vtkio doesn't write.
+/// Field data, which vtkio can't write.
 fn field_data(response: &Response) -> String {
     let mut xml = String::from("<FieldData>");
     for (name, value) in whole(response) {
@@ -128,7 +128,7 @@ mod tests {
         let bulge = Bulge { shape: &shape, fibres: 6, style: Style::Revolution, facets: 24 };
         let mesh = Mesh::new(&bulge);
         let xml = encode(mesh.clone(), &shape.response).unwrap();
-        // vtkio doesn't read field data either.
+        // vtkio can't read field data either.
         let xml = String::from_utf8(xml).unwrap();
         let (head, rest) = xml.split_once("<FieldData>").unwrap();
         let (_, tail) = rest.split_once("</FieldData>").unwrap();

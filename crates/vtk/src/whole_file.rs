@@ -5,7 +5,7 @@ use bulge_muscles::output;
 use std::io;
 use std::path::Path;
 
-/// Writes `bytes` to a file, or into what the name stands for.
+/// Writes `bytes` to a file, or to the stream that the name stands for.
 pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), VtkError> {
     let failed =
         |action: &'static str| move |source| VtkError::File { path: path.to_path_buf(), action, source };

@@ -80,12 +80,12 @@ fn a_tube_revolved() {
             (read.points.len(), read.count(CellType::Quad), read.cells.len()),
             (25 * n, 24 * n, 24 * n)
         );
-        // A regular polygon in each section: the area of it over that of the circle.
+        // The section is a regular polygon: ratio of its area to that of the circle.
         let polygon = (TAU / f64::from(facets)).sin() / (TAU / f64::from(facets));
         assert!((read.volume() / (state.volume * polygon) - 1.0).abs() < 1e-12);
         assert_eq!(read.open_edges().len(), 2 * n);
         for (cell, nodes) in read.cells.iter().enumerate() {
-            // Facets turn with j: the meridian of each lies in the plane through its middle.
+            // Facet j is rotated: its meridian lies in the plane through its middle.
             let d = read.vector("direction_1", cell);
             let place = [0, 1].map(|k| nodes.iter().map(|node| read.points[*node][k]).sum::<f64>());
             assert!((d[0] * place[1] - d[1] * place[0]).abs() < 1e-12 * place[0].hypot(place[1]));
@@ -111,14 +111,14 @@ fn half_a_ball_becomes_a_closed_one() {
     let whole = Whole::of(&case);
     assert_eq!(whole, Whole::Revolved { facets: 96, middle: Some(0.0) });
     let read = drawn(&dir, &state, &fields, whole);
-    // 32 circles of the half but the pole, one of them in the middle; two poles.
+    // 32 circles in each half apart from the pole, of which the middle one is shared; two poles.
     assert_eq!(read.points.len(), (2 * 32 - 1) * 96 + 2);
     assert_eq!((read.count(CellType::Quad), read.count(CellType::Triangle)), (2 * 31 * 96, 2 * 96));
     assert_eq!(read.open_edges(), []);
     assert!((read.volume() / state.volume - 1.0).abs() < 2e-3, "{}", read.volume() / state.volume);
     let r = fields.places[0][0];
     assert!((read.area() / (4.0 * PI * r * r) - 1.0).abs() < 2e-3);
-    // As meshed it has quadratic edges, which the reader of meshes knows.
+    // As meshed it has quadratic edges, which the mesh reader can read.
     let read = drawn(&dir, &state, &fields, Whole::AsMeshed);
     assert_eq!(read.count(CellType::QuadraticEdge), 16);
     let mesh = Mesh::from_vtu(read.xml.as_bytes(), "state.vtu").unwrap();
@@ -136,21 +136,21 @@ fn half_a_lobe_becomes_the_whole_muscle() {
     let read = drawn(&dir, &state, &fields, whole);
     let copies = 4 * 8;
     assert_eq!(read.count(CellType::Triangle), copies * part.count(CellType::Triangle));
-    // Each fibre is in two halves of lobes, and drawn once.
+    // Each fibre belongs to two half lobes and is drawn once.
     assert_eq!(read.count(CellType::Line), 8 * 2 * 20);
-    // All seams are grown together: 2 * 6 * 8 points round, 2 * 20 + 1 along.
+    // All seams are merged: 2 * 6 * 8 points around, 2 * 20 + 1 along.
     assert_eq!(read.points.len(), 96 * 41);
     assert_eq!(read.open_edges().len(), 2 * 96);
     assert!((read.volume() / state.volume - 1.0).abs() < 1e-12);
     assert!((read.area() / (copies as f64 * part.area()) - 1.0).abs() < 1e-12);
-    // Without a mirror image of the middle: half of it.
+    // Without the mirror plane in the middle: half of it.
     let half = Whole::Sector { lobes: 8, mirror: Some([0.0, 1.0, 0.0]), middle: None };
     assert!((2.0 * drawn(&dir, &state, &fields, half).volume() / state.volume - 1.0).abs() < 1e-12);
     // The far edge is the other plane of the lobe.
     let mirror = Some([-(PI / 8.0).sin(), (PI / 8.0).cos(), 0.0]);
     let other = drawn(&dir, &state, &fields, Whole::Sector { lobes: 8, mirror, middle: Some(0.0) });
     assert!((other.volume() / state.volume - 1.0).abs() < 1e-12 && other.points.len() == read.points.len());
-    // Vectors: the cloth under each image of a triangle is pulled along the same direction of its own.
+    // In each image of a triangle the cloth is pulled along the image of the same direction.
     let sheets = &fields.groups[0].sheets[0];
     let triangles = part.count(CellType::Triangle);
     let surface: Vec<usize> =
@@ -190,7 +190,7 @@ fn a_quarter_of_an_airbag() {
     assert_eq!(read.count(CellType::QuadraticTriangle), 8 * 128);
     assert_eq!(read.open_edges(), []);
     assert!((read.volume() / state.volume - 1.0).abs() < 2e-3, "{}", read.volume() / state.volume);
-    // Flat at rest, both layers in one place: they stay two.
+    // A flat cloth at rest has both layers in one place: they stay separate.
     let mut flat = fields.clone();
     for (place, displacement) in flat.places.iter_mut().zip(&mut flat.displacements) {
         *place = std::array::from_fn(|k| place[k] - displacement[k]);
@@ -206,7 +206,7 @@ fn a_quarter_of_an_airbag() {
     fs::remove_dir_all(&dir).unwrap();
 }
 
-/// A lobe between two fibres, held by its cyclic edge: the seam joins different nodes.
+/// A lobe between two fibres with a cyclic edge: the seam joins different nodes.
 #[test]
 fn a_cyclic_lobe() {
     let dir = folder("cyclic");

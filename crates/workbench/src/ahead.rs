@@ -1,4 +1,5 @@
-//! Fits that may be asked for next, made while nobody waits for anything: every switch of the page is then answered from what is known.
+//! Fits computed in advance while nobody waits for a computation. A switch of the page can then be answered
+//! at once.
 
 use bulge_effects::{Catalogue, Effect};
 use bulge_inference::Comparing;
@@ -13,29 +14,30 @@ use crate::inputs::With;
 use crate::refusal::{Place, Refusal};
 use crate::worker::of_all;
 
-/// How long a model must rest before others are fitted: meanwhile the page draws, and a hand may go on switching.
+/// Time for which a model must stay unchanged before others are fitted. Meanwhile the page draws, and the
+/// user may switch further effects.
 const REST: Duration = Duration::from_secs(1);
-/// After a fit that takes longer no others are made: they would take a core for minutes.
+/// After a fit that takes longer no others are computed in advance: they would occupy a core for minutes.
 const SLOW: Duration = Duration::from_secs(3);
 
-/// Who waits for what.
+/// Number of computations a person waits for, and the model being fitted in advance.
 #[derive(Debug, Default)]
 struct Now {
     /// Computations that a person waits for.
     waited: usize,
-    /// The model that is fitted ahead.
+    /// Key of the model that is being fitted in advance.
     ahead: Option<String>,
 }
 
-/// How many computations a person waits for, and what is fitted meanwhile.
+/// Shared counter of the computations a person waits for, and of the fit in advance.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Waiting(Arc<(Mutex<Now>, Condvar)>);
 
-/// A person waits as long as it is there.
+/// Guard: a person waits until it is dropped.
 #[derive(Debug)]
 pub(crate) struct Waited(Waiting);
 
-/// A model is fitted ahead as long as it is there.
+/// Guard: a model is being fitted in advance until it is dropped.
 struct Ahead<'a>(&'a Waiting);
 
 impl Waiting {
@@ -47,13 +49,14 @@ impl Waiting {
         self.0.1.wait_while(self.now(), |now| busy(now)).unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// One more computation that a person waits for.
+    /// Registers one more computation that a person waits for.
     pub(crate) fn begin(&self) -> Waited {
         self.now().waited += 1;
         Waited(self.clone())
     }
 
-    /// The same about a model; if it is fitted ahead, once that is done.
+    /// As [`Waiting::begin`], for a computation about a model. If that model is being fitted in advance, it
+    /// returns once the fit is done.
     pub(crate) fn begin_with(&self, with: &With) -> Waited {
         let key = with.key();
         let waited = self.begin();
@@ -61,13 +64,13 @@ impl Waiting {
         waited
     }
 
-    /// Fits a model ahead.
+    /// Marks a model as being fitted in advance.
     fn ahead(&self, with: &With) -> Ahead<'_> {
         self.now().ahead = Some(with.key());
         Ahead(self)
     }
 
-    /// Returns when a person waits for nothing.
+    /// Blocks until no person waits for a computation.
     fn rest(&self) {
         drop(self.wait_while(|now| now.waited > 0));
     }
@@ -87,7 +90,7 @@ impl Drop for Ahead<'_> {
     }
 }
 
-/// Models that are one switch away: an effect less, the last one first, or one more.
+/// Models that are one switch away: with one effect less, starting with the last one, or with one more.
 fn neighbours<'a>(with: &'a With, catalogue: &'a Catalogue) -> impl Iterator<Item = With> + 'a {
     let is = |one: &Arc<dyn Effect>, name: &str| one.card().name == name;
     let without = (0..with.effects.len()).rev().map(move |place| {
@@ -105,23 +108,26 @@ fn neighbours<'a>(with: &'a With, catalogue: &'a Catalogue) -> impl Iterator<Ite
     }))
 }
 
-/// What to fit ahead.
+/// What to fit in advance.
 pub(crate) enum Next {
-    /// Whatever may follow this model.
+    /// The models that may follow this one.
     After(With),
-    /// This model: somebody points at its switch. Told when it is there; who isn't interested any more has gone.
+    /// This model, since the pointer is on its switch. The sender reports when the fit is done; it is closed
+    /// if nobody is interested any more.
     One(With, oneshot::Sender<Result<(), Refusal>>),
 }
 
-/// The threads that fit ahead: not those of whoever waits for an answer, who may wait for one of these fits.
+/// The threads that fit in advance. They are separate from the threads of those who wait for an answer, since
+/// an answer may wait for one of these fits.
 struct Pools {
-    /// One: most of what it computes nobody will ask for.
+    /// One thread, since most of its results will never be requested.
     alone: ThreadPool,
-    /// All.
+    /// All threads.
     all: ThreadPool,
 }
 
-/// Fits what is wished for, at once where somebody points at it; the neighbours of the last model one by one, and only while a person waits for nothing.
+/// Fits what is requested: at once if the pointer is on a switch; otherwise the neighbours of the last model
+/// one by one, and only while no person waits.
 pub(crate) fn work(
     comparing: &Comparing<'_>,
     catalogue: &Catalogue,
@@ -131,7 +137,7 @@ pub(crate) fn work(
     let pools = [1, 0].map(|threads| ThreadPoolBuilder::new().num_threads(threads).build());
     let [Ok(alone), Ok(all)] = pools else { return };
     let pools = Pools { alone, all };
-    // Neighbours that are still to be fitted.
+    // Neighbours still to be fitted.
     let mut rest: VecDeque<With> = VecDeque::new();
     let mut is_resting = false;
     loop {
@@ -151,7 +157,7 @@ pub(crate) fn work(
             }
             Ok(Next::One(with, told)) => {
                 if !told.is_closed() {
-                    // Whoever has gone meanwhile doesn't hear it.
+                    // Nobody receives the answer if the page has given up meanwhile.
                     let _ahead = waiting.ahead(&with);
                     drop(told.send(fit(comparing, &pools.all, &with)));
                 }
@@ -162,7 +168,7 @@ pub(crate) fn work(
                 let begun = Instant::now();
                 if let Some(with) = rest.pop_front() {
                     let _ahead = waiting.ahead(&with);
-                    // What can't be fitted says so when it is asked for.
+                    // An error is reported when the fit is requested.
                     drop(fit(comparing, &pools.alone, &with));
                 }
                 if begun.elapsed() > SLOW {

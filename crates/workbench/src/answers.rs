@@ -1,4 +1,4 @@
-//! What the page asks, answered by the library: the documents are those of the command line.
+//! Requests of the page, answered by the library: the documents are those of the command line.
 
 use axum::http::header;
 use axum::response::{IntoResponse, Response};
@@ -20,7 +20,7 @@ use crate::refusal::{Place, Refusal};
 use crate::server::{Shaped, Workbench};
 use crate::worker::{Question, Worker};
 
-/// What is analysed, at one revision.
+/// The inputs, choices and revision that a request is about.
 struct Asked {
     revision: u64,
     inputs: Arc<Inputs>,
@@ -34,7 +34,7 @@ fn asked(workbench: &Workbench) -> Result<Asked, Refusal> {
     Ok(Asked { revision: session.revision(), inputs, with })
 }
 
-/// Asks a worker and waits.
+/// Sends a question to a worker and waits for the answer.
 async fn ask<T>(
     worker: &Worker,
     asked: &Asked,
@@ -54,7 +54,7 @@ pub(crate) async fn comparison(workbench: &Workbench, held_out: bool) -> Result<
     ask(worker, &asked, asked.with.clone(), Question::Comparison).await
 }
 
-/// Gets ready for these effects, which may be switched on next.
+/// Prepares for these effects, which may be switched on next.
 pub(crate) async fn prepare(workbench: &Workbench, effects: &[ChosenEffect]) -> Result<(), Refusal> {
     let asked = asked(workbench)?;
     let with = asked.inputs.with(effects)?;
@@ -69,7 +69,7 @@ pub(crate) async fn rows(workbench: &Workbench) -> Result<Response, Refusal> {
     Ok(([(header::CONTENT_TYPE, "application/octet-stream")], bytes).into_response())
 }
 
-/// The same as a file that Bulge reads again; its name says of which kind.
+/// The rows as a file that Bulge can read again; the extension of `name` gives its format.
 pub(crate) async fn rows_file(workbench: &Workbench, name: &'static str) -> Result<Response, Refusal> {
     let asked = asked(workbench)?;
     let found = ask(&workbench.quick, &asked, asked.with.clone(), Question::Rows).await?;
@@ -108,7 +108,7 @@ fn cards(catalogue: &Catalogue, unsuitable: Vec<Option<String>>) -> Effects {
     Effects { schema: "bulge.effects/1", effects: cards.map(card).collect() }
 }
 
-/// All effects, with why some can't be added. Without data nothing keeps any from being looked at.
+/// All effects, with the reasons why some can't be added. Without data all of them can be viewed.
 pub(crate) async fn effects(workbench: &Workbench) -> Result<Effects, Refusal> {
     let Ok(asked) = asked(workbench) else {
         let catalogue = catalogue(workbench.session().choices().own_effects.as_deref())?;
@@ -118,7 +118,7 @@ pub(crate) async fn effects(workbench: &Workbench) -> Result<Effects, Refusal> {
     let all =
         With { effects: asked.inputs.catalogue.iter().map(Arc::clone).collect(), restrictions: Vec::new() };
     let unsuitable = ask(&workbench.quick, &asked, all, Question::Unsuitable).await;
-    // A muscle that can't be compared at all says so where it is compared.
+    // A muscle that can't be compared at all is reported where it is compared.
     let unsuitable = unsuitable.unwrap_or_else(|_| asked.inputs.catalogue.iter().map(|_| None).collect());
     Ok(cards(&asked.inputs.catalogue, unsuitable))
 }
@@ -151,14 +151,15 @@ pub(crate) fn muscles() -> Muscles {
     Muscles { muscles: shipped.collect() }
 }
 
-/// What the muscle of one revision has learnt.
+/// The fit of the muscle of one revision.
 pub(crate) struct Learning {
     revision: u64,
-    /// None where nothing is switched on, where it can't be fitted (the ladder says why), or where the muscle of this revision is there already.
+    /// `None` if no effect is switched on, if the fit failed (the ladder says why), or if the muscle of this
+    /// revision is already stored.
     fitting: Option<Box<Fitting>>,
 }
 
-/// The last rung of the ladder.
+/// The fit of the last rung of the ladder.
 async fn fitting(workbench: &Workbench) -> Result<Learning, Refusal> {
     let asked = asked(workbench)?;
     if asked.with.effects.is_empty() {
@@ -168,7 +169,7 @@ async fn fitting(workbench: &Workbench) -> Result<Learning, Refusal> {
     Ok(Learning { revision: asked.revision, fitting: Some(found) })
 }
 
-/// The same for [`muscle`].
+/// As [`fitting`], for use by [`muscle`]: a fit that failed is no error.
 pub(crate) async fn learning(workbench: &Workbench) -> Learning {
     let revision = workbench.session().revision();
     if workbench.shaped(revision).is_some() {
@@ -177,7 +178,7 @@ pub(crate) async fn learning(workbench: &Workbench) -> Learning {
     fitting(workbench).await.unwrap_or(Learning { revision, fitting: None })
 }
 
-/// The muscle with what it has learnt; else as it is stated.
+/// The muscle with the fitted effects; without a fit the muscle as given.
 pub(crate) fn muscle(workbench: &Workbench, learning: Learning) -> Result<Shaped, Refusal> {
     if let Some(found) = workbench.shaped(learning.revision) {
         return Ok(found);
@@ -195,33 +196,33 @@ pub(crate) fn muscle(workbench: &Workbench, learning: Learning) -> Result<Shaped
     Ok(found)
 }
 
-/// The fit of the effects that are on.
+/// The fit of the effects that are switched on.
 pub(crate) async fn learnt(workbench: &Workbench) -> Result<Box<Fitting>, Refusal> {
     fitting(workbench).await?.fitting.ok_or_else(|| Refusal::new(Place::Effects, "nothing was learnt yet"))
 }
 
-/// The muscle with what was learnt, as `bulge fit` writes it.
+/// The muscle with the fitted effects, as `bulge fit` writes it.
 pub(crate) fn model(fitting: Box<Fitting>) -> Result<String, Refusal> {
     Ok(Learnt::of(*fitting).map_err(Refusal::at(Place::Effects))?.model)
 }
 
-/// The test that the data come from, about.
+/// A protocol that resembles the test from which the data come.
 pub(crate) fn protocol(workbench: &Workbench) -> Result<Protocol, Refusal> {
     let inputs = workbench.session().inputs()?;
     Ok(Protocol::like(&inputs.data, inputs.muscle.length().si()))
 }
 
-/// A protocol as a file, and what it would show of the muscle with what was learnt.
+/// A protocol as a file, and its expected result for the fitted muscle.
 #[derive(Debug, Serialize)]
 pub(crate) struct Planned {
     toml: String,
     plan: Plan,
 }
 
-/// Before measuring: what a protocol would show.
+/// The expected result of a protocol, before measuring.
 pub(crate) fn plan(workbench: &Workbench, shaped: &Shaped, protocol: &Protocol) -> Result<Planned, Refusal> {
     let toml = protocol.to_toml();
-    // A file's reader says what is wrong, and what to write instead.
+    // The reader of files says what is wrong, and what to write instead.
     let protocol = Protocol::from_toml(&toml, "the protocol").map_err(Refusal::at(Place::Plan))?;
     let catalogue = catalogue(workbench.session().choices().own_effects.as_deref())?;
     let plan = bulge_inference::plan(&shaped.0, &shaped.1, &catalogue, &protocol);
@@ -234,7 +235,7 @@ pub(crate) fn diagnose(workbench: &Workbench) -> Result<Listener, Refusal> {
     Ok(diagnosis::begin(inputs, options, workbench.waiting.begin()))
 }
 
-/// Keeps a diagnosis with its report, and tells all pages of it.
+/// Stores a diagnosis with its report, and notifies all pages.
 pub(crate) fn keep_diagnosis(
     workbench: &Workbench,
     found: &Diagnosis,

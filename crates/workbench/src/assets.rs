@@ -1,18 +1,18 @@
-//! The files of the page, embedded; those of its plots are in `bulge-report`.
+//! The files of the page, embedded; the files of its plots are in `bulge-report`.
 
 use bulge_report::scripts;
 
-/// A file by its name: its kind and its bytes.
+/// The media type and the bytes of a file, by name.
 pub(crate) fn asset(name: &str) -> Option<(&'static str, &'static [u8])> {
     all().find(|(known, _)| *known == name).map(|(known, bytes)| (kind(known), *bytes))
 }
 
-/// Of the page, then those that reports have as well.
+/// The files of the page, then those shared with reports.
 fn all() -> impl Iterator<Item = &'static (&'static str, &'static [u8])> {
     FILES.iter().chain(scripts::FILES)
 }
 
-/// What a browser is told that a file is.
+/// The media type of a file.
 fn kind(name: &str) -> &'static str {
     match name.rsplit('.').next() {
         Some("html") => "text/html; charset=utf-8",

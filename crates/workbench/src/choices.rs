@@ -1,4 +1,4 @@
-//! What a person has chosen: everything that an answer depends on.
+//! The choices of a user: everything on which an answer depends.
 
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -7,18 +7,18 @@ use std::path::PathBuf;
 /// A file of measurements.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct DataFile {
-    /// What people call it.
+    /// Its name for the user.
     pub name: String,
-    /// Where it lies.
+    /// Its path.
     pub path: PathBuf,
 }
 
-/// A muscle: its file as text, and where that came from.
+/// A muscle: its file as text, and the origin of the file.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct MuscleFile {
     /// The TOML.
     pub toml: String,
-    /// What a command line calls it: a path or the name of a shipped muscle; none once it was edited here.
+    /// Its name on a command line: a path or the name of a shipped muscle; `None` once it was edited here.
     pub origin: Option<String>,
 }
 
@@ -28,24 +28,25 @@ pub struct MuscleFile {
 pub struct ChosenEffect {
     /// Its name in the catalogue.
     pub name: String,
-    /// Numbers that are held, by name, with their values in the unit that its card shows; the others are fitted.
+    /// Fixed parameters, by name, with their values in the unit shown on the card of the effect. The others
+    /// are fitted.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub hold: BTreeMap<String, f64>,
 }
 
 impl ChosenEffect {
-    /// Each number that is held: effect, number, value in the unit that the card shows.
+    /// Each fixed parameter: effect, parameter, value in the unit shown on the card.
     pub(crate) fn held(&self) -> impl Iterator<Item = (&str, &str, f64)> {
         self.hold.iter().map(|(number, value)| (self.name.as_str(), number.as_str(), *value))
     }
 }
 
-/// All choices of a session at one time: undo goes back from one to the one before.
+/// All choices of a session at one time; undo returns to the previous ones.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Choices {
-    /// The measurements, one analysis.
+    /// The measurements of one analysis.
     pub data: Vec<DataFile>,
-    /// Which column is which, as `--columns` takes it.
+    /// Assignment of the columns, in the format of `--columns`.
     pub columns: Option<String>,
     /// The muscle.
     pub muscle: MuscleFile,
@@ -58,7 +59,7 @@ pub struct Choices {
 }
 
 impl Choices {
-    /// Whether the rows, the muscle or the catalogue differ: more than the effects that are switched on.
+    /// Whether the rows, the muscle or the catalogue differ, and not only the effects that are switched on.
     pub(crate) fn needs_other_inputs(&self, other: &Self) -> bool {
         self.needs_other_rows(other) || self.own_effects != other.own_effects
     }
@@ -68,13 +69,13 @@ impl Choices {
         self.needs_other_data(other) || self.excluded != other.excluded
     }
 
-    /// Whether the files must be read anew: how they are read depends on the muscle.
+    /// Whether the files must be read again: reading them depends on the muscle.
     pub(crate) fn needs_other_data(&self, other: &Self) -> bool {
         self.data != other.data || self.columns != other.columns || self.muscle.toml != other.muscle.toml
     }
 }
 
-/// A change of some of the choices; what isn't there stays.
+/// A change of some of the choices; missing fields leave theirs unchanged.
 #[derive(Debug, Clone, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Change {
@@ -86,7 +87,8 @@ pub(crate) struct Change {
     pub(crate) own_effects: Text,
     pub(crate) excluded: Option<Vec<usize>>,
     pub(crate) view: Option<serde_json::Value>,
-    /// Whether it goes on with the change before it, as a slider does that is still held: both are one step then.
+    /// Whether it continues the previous change, as when a slider is being dragged: both are then one step of
+    /// undo.
     #[serde(default)]
     pub(crate) goes_on: bool,
 }
@@ -99,13 +101,13 @@ pub(crate) enum MuscleChange {
     Toml { toml: String },
 }
 
-/// A text that may be stated: a field that isn't there leaves it, `null` takes it back.
+/// Change of an optional text: a missing field leaves it unchanged, `null` removes it.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub(crate) enum Text {
-    /// As it was.
+    /// Unchanged.
     #[default]
     Left,
-    /// Stated, or taken back.
+    /// A new text, or none.
     Is(Option<String>),
 }
 
@@ -117,7 +119,7 @@ impl<'de> Deserialize<'de> for Text {
 }
 
 impl Text {
-    /// Puts it in the place of what was stated.
+    /// Applies the change to the text in `place`.
     pub(crate) fn put(self, place: &mut Option<String>) {
         if let Self::Is(text) = self {
             *place = text;

@@ -1,4 +1,4 @@
-//! The command line and the Python call that do the same as the page.
+//! The command line and the Python call that are equivalent to the page.
 
 use bulge_report::Call;
 use std::sync::Arc;
@@ -6,11 +6,11 @@ use std::sync::Arc;
 use crate::choices::Choices;
 use crate::inputs::{self, Inputs};
 
-/// What the files are called that the page offers to save.
+/// Names of the files that the page offers to save.
 const MUSCLE: &str = "muscle.toml";
 const EFFECTS: &str = "effects.toml";
 
-/// A file or a name as the command line has it.
+/// The muscle as given on the command line: a file or a name.
 fn muscle(choices: &Choices) -> &str {
     choices.muscle.origin.as_deref().unwrap_or(MUSCLE)
 }
@@ -19,15 +19,15 @@ fn names(choices: &Choices) -> Vec<&str> {
     choices.effects.iter().map(|effect| effect.name.as_str()).collect()
 }
 
-/// The lines of the rows that were excluded by hand, as `--exclude` takes them.
+/// The lines of the rows excluded by hand, in the format of `--exclude`.
 fn excluded(choices: &Choices, inputs: Option<&Arc<Inputs>>) -> Option<String> {
     let inputs = inputs.filter(|_| !choices.excluded.is_empty())?;
     Some(inputs.data.line_ranges(&choices.excluded).join(","))
 }
 
-/// The numbers that are held, as `--hold` takes them.
+/// The fixed parameters, in the format of `--hold`.
 fn held(choices: &Choices) -> Vec<String> {
-    // Choices that name what there isn't were refused.
+    // Choices with unknown effects were already refused.
     let catalogue = inputs::catalogue(choices.own_effects.as_deref());
     catalogue.and_then(|catalogue| inputs::held(&choices.effects, &catalogue)).unwrap_or_default()
 }
@@ -73,12 +73,12 @@ pub(crate) fn python(choices: &Choices, inputs: Option<&Arc<Inputs>>) -> String 
     )
 }
 
-/// A text as Python has it: JSON's escapes are among those of Python.
+/// A text as a Python literal; the escapes of JSON are a subset of those of Python.
 fn text(value: &str) -> String {
     serde_json::Value::from(value).to_string()
 }
 
-/// A keyword argument behind others, if it has a value.
+/// A further keyword argument, if it has a value.
 fn keyword(name: &str, value: Option<String>) -> String {
     value.map_or_else(String::new, |value| format!(", {name}={value}"))
 }

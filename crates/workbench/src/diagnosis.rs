@@ -1,4 +1,4 @@
-//! A diagnosis under way: on a thread of its own, told of by stages, and given up when nobody listens any more.
+//! A running diagnosis: it has its own thread, reports its progress, and stops when nobody listens any more.
 
 use bulge_inference::{DiagnoseOptions, Diagnosis, Options, Progress, diagnose};
 use serde::Serialize;
@@ -13,27 +13,27 @@ use crate::inputs::Inputs;
 use crate::refusal::{Place, Refusal};
 use crate::worker::of_all;
 
-/// What is told of a diagnosis.
+/// Messages of a diagnosis.
 pub(crate) enum News {
-    /// How far it is.
+    /// Its progress.
     Progress(Stage),
-    /// The answer.
+    /// The result.
     Found(Box<Diagnosis>),
-    /// Why there is none.
+    /// Why there is no result.
     Failed(Refusal),
 }
 
-/// The share that is done, and what is going on.
+/// The completed fraction, and the current step.
 #[derive(Debug, Serialize)]
 pub(crate) struct Stage {
     share: f64,
     what: String,
 }
 
-/// What unwinds a diagnosis that nobody waits for.
+/// Payload that unwinds a diagnosis for which nobody waits.
 struct GivenUp;
 
-/// Sets a flag when it goes.
+/// Receiver of the messages; dropping it ends the diagnosis.
 pub(crate) struct Listener {
     pub(crate) news: UnboundedReceiver<News>,
     given_up: Arc<AtomicBool>,
@@ -45,7 +45,7 @@ impl Drop for Listener {
     }
 }
 
-/// Begins a diagnosis; it goes on as long as the listener is there.
+/// Starts a diagnosis, which runs until it is done or the listener is dropped.
 pub(crate) fn begin(inputs: Arc<Inputs>, options: Options, waited: Waited) -> Listener {
     let (told, news) = unbounded_channel();
     let given_up = Arc::new(AtomicBool::new(false));
@@ -72,7 +72,7 @@ fn find(
         move |share: f64, what: &str| drop(told.send(News::Progress(Stage { share, what: what.to_owned() })))
     };
     let flag = Arc::clone(given_up);
-    // Not a panic: no message is printed.
+    // `resume_unwind` instead of a panic, so that no message is printed.
     let look = move || {
         if flag.load(Ordering::Relaxed) {
             resume_unwind(Box::new(GivenUp));

@@ -1,4 +1,4 @@
-//! The folder of a session: what was chosen, and the files that were dropped.
+//! The folder of a session: the choices, and the files dropped on the page.
 
 use bulge_muscles::output;
 use serde::{Deserialize, Serialize};
@@ -13,17 +13,17 @@ use crate::refusal::{Place, Refusal};
 
 /// The file that holds the choices.
 const STATE: &str = "session.json";
-/// The last diagnosis: its document, and its report.
+/// The last diagnosis: its document and its report.
 const DIAGNOSIS: &str = "diagnosis.json";
 const REPORT: &str = "diagnosis.html";
-/// The folder of the files that were dropped.
+/// The folder of the files that were dropped on the page.
 const DATA: &str = "data";
-/// What the state says of itself.
+/// Name and version of the state file.
 const SCHEMA: &str = "bulge.session-file/1";
-/// Steps that undo can go back: each is as large as the muscle's file.
+/// Most steps that undo can go back. Each is as large as the muscle's file.
 pub(crate) const MOST_STEPS: usize = 200;
 
-/// What is kept on the disk: a killed process loses nothing.
+/// The state on the disk: it survives a killed process.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub(crate) struct Kept {
     schema: String,
@@ -31,15 +31,16 @@ pub(crate) struct Kept {
     pub(crate) past: Vec<Choices>,
     pub(crate) future: Vec<Choices>,
     pub(crate) view: Value,
-    /// The word that ends the address: a page that is open finds the session again when it is served anew at the same port.
+    /// The random token at the end of the address. It is kept, so that an open page finds the session when it
+    /// is served again at the same port.
     pub(crate) token: String,
-    /// The port at which it was served last: a page that is open looks for it there.
+    /// The port of the last run, where an open page looks for the session.
     #[serde(default)]
     pub(crate) port: u16,
-    /// What was stated when it was opened last: whoever states the same again goes on.
+    /// The choices given when it was last opened: if the same are given again, the session continues.
     #[serde(default)]
     pub(crate) stated: Option<Choices>,
-    /// What the last diagnosis was about.
+    /// The choices to which the last diagnosis refers.
     #[serde(default)]
     pub(crate) diagnosed: Option<Choices>,
 }
@@ -67,7 +68,7 @@ impl Kept {
     }
 }
 
-/// Where a session lies; a temporary one goes with this value.
+/// The folder of a session; a temporary one is removed when this value is dropped.
 #[derive(Debug)]
 pub(crate) struct Folder {
     path: PathBuf,
@@ -75,7 +76,7 @@ pub(crate) struct Folder {
 }
 
 impl Folder {
-    /// A folder that stays, made if it isn't there; a temporary one without a name.
+    /// Opens a permanent folder, which is created if needed, or a temporary one without a path.
     pub(crate) fn open(path: Option<&Path>) -> io::Result<Self> {
         let temporary =
             if path.is_none() { Some(tempfile::Builder::new().prefix("bulge-").tempdir()?) } else { None };
@@ -87,7 +88,7 @@ impl Folder {
         Ok(Self { path, _temporary: temporary })
     }
 
-    /// What an earlier run has left here; none where there was none.
+    /// The state of an earlier run; `None` if there was none.
     pub(crate) fn kept(&self) -> Result<Option<Kept>, Refusal> {
         let path = self.path.join(STATE);
         let refuse = |why: String| {
@@ -111,34 +112,36 @@ impl Folder {
         }
     }
 
-    /// Keeps it, whole or not at all.
+    /// Writes the state, whole or not at all.
     pub(crate) fn keep(&self, kept: &Kept) -> Result<(), Refusal> {
         let text = serde_json::to_string(kept).map_err(Refusal::at(Place::Request))?;
         let path = self.path.join(STATE);
-        // It holds the token.
+        // Private, since the state contains the token.
         private(&path).and_then(|()| output::write(&path, text.as_bytes())).map_err(|error| {
             Refusal::new(Place::Request, format!("cannot write {}: {error}", path.display()))
         })
     }
 
-    /// Keeps a diagnosis.
+    /// Writes a diagnosis.
     pub(crate) fn keep_diagnosis(&self, found: &Diagnosed) -> io::Result<()> {
         output::write(&self.path.join(DIAGNOSIS), found.document.as_bytes())?;
         output::write(&self.path.join(REPORT), found.report.as_bytes())
     }
 
-    /// The diagnosis that is kept here.
+    /// The stored diagnosis.
     pub(crate) fn diagnosis(&self) -> io::Result<Diagnosed> {
         let [document, report] = [DIAGNOSIS, REPORT].map(|name| fs::read_to_string(self.path.join(name)));
         Ok(Diagnosed { document: document?, report: report? })
     }
 
-    /// A name for a file that is being received: beside those that are whole, under a name that none of them has.
+    /// Path of a file that is being received. It is in the folder of the complete files, under a name that
+    /// none of them has.
     pub(crate) fn unfinished(&self, number: u64) -> PathBuf {
         self.path.join(DATA).join(format!("{}{number}", output::UNFINISHED))
     }
 
-    /// Where a file that was dropped goes. One of the same name and other content stays: undo may want it.
+    /// Moves a dropped file to its place. An existing file with the same name and other content is kept,
+    /// since undo may need it.
     pub(crate) fn place(&self, name: &str, received: &Path) -> io::Result<PathBuf> {
         let folder = self.path.join(DATA);
         let path = Path::new(name);
@@ -160,7 +163,8 @@ impl Folder {
     }
 }
 
-/// Makes a file that other users of the machine can't read, if it isn't there: what replaces it keeps that.
+/// Creates a file that other users of the machine can't read, if it doesn't exist. Its replacement keeps the
+/// permissions.
 fn private(path: &Path) -> io::Result<()> {
     let mut options = fs::OpenOptions::new();
     options.write(true).create_new(true);
@@ -177,7 +181,7 @@ fn is_same(a: &Path, b: &Path) -> io::Result<bool> {
     Ok(fs::metadata(a)?.len() == fs::metadata(b)?.len() && fs::read(a)? == fs::read(b)?)
 }
 
-/// The last part of a name, as far as it is one for a file: a page may send anything.
+/// The last component of a name if it is a valid file name: a page may send anything.
 pub(crate) fn file_name(name: &str) -> Option<String> {
     let last = name.rsplit(['/', '\\']).next().unwrap_or_default().trim();
     let sound = !last.is_empty()

@@ -1,11 +1,12 @@
-//! Who may ask: only the page of this run, from this machine.
+//! Access control: only the page of this run, from this machine, may send requests.
 //!
-//! The address holds a random token, so that no other program of this machine and no other site's page knows where to ask. A page that is opened from elsewhere under another
-//! name of this machine (DNS rebinding) has another Host, and one that posts from another site has another Origin.
+//! The address contains a random token, so no other program on this machine and no page of another site knows
+//! where to send requests. A page opened under another name of this machine (DNS rebinding) has another Host,
+//! and a page of another site that posts has another Origin.
 
 use axum::http::{HeaderMap, Method, header};
 
-/// What a request must have.
+/// What a request is checked against.
 #[derive(Debug, Clone)]
 pub(crate) struct Guard {
     token: String,
@@ -13,7 +14,7 @@ pub(crate) struct Guard {
 }
 
 impl Guard {
-    /// With a token of [`new_token`].
+    /// From a token of [`new_token`].
     pub(crate) fn new(port: u16, token: String) -> Self {
         Self { token, port }
     }
@@ -23,12 +24,12 @@ impl Guard {
         format!("http://127.0.0.1:{}/{}/", self.port, self.token)
     }
 
-    /// Whether a host is this machine under a name that the address may have.
+    /// Whether a host is this machine under one of the names allowed in the address.
     fn is_here(&self, host: &str) -> bool {
         ["127.0.0.1", "localhost"].iter().any(|name| host == format!("{name}:{}", self.port))
     }
 
-    /// What is asked for, without the token; none if the request isn't from the page.
+    /// The requested path without the token; `None` if the request isn't from the page.
     pub(crate) fn admit<'a>(&self, method: &Method, path: &'a str, headers: &HeaderMap) -> Option<&'a str> {
         let text = |name| headers.get(name).map(|value| value.to_str().unwrap_or_default());
         if !text(header::HOST).is_some_and(|host| self.is_here(host)) {
@@ -38,7 +39,7 @@ impl Guard {
         let site = text(header::HeaderName::from_static("sec-fetch-site"));
         match text(header::ORIGIN) {
             Some(origin) if !is_own(origin) => return None,
-            // Browsers say where a request comes from that changes something; other programs say nothing.
+            // For requests that change something browsers send their origin; other programs send none.
             None if *method != Method::GET && site.is_some_and(|site| site != "same-origin") => return None,
             _ => {}
         }
@@ -48,14 +49,14 @@ impl Guard {
     }
 }
 
-/// A token that nobody can guess: 128 random bits.
+/// A token that can't be guessed: 128 random bits.
 pub(crate) fn new_token() -> Result<String, getrandom::Error> {
     let mut bytes = [0; size_of::<u128>()];
     getrandom::fill(&mut bytes)?;
     Ok(format!("{:032x}", u128::from_le_bytes(bytes)))
 }
 
-/// Compares in a time that doesn't tell how much is right.
+/// Compares in a time that doesn't depend on how many bytes are right.
 fn is_equal(given: &[u8], right: &[u8]) -> bool {
     given.len() == right.len() && given.iter().zip(right).fold(0, |differ, (a, b)| differ | (a ^ b)) == 0
 }

@@ -1,4 +1,4 @@
-//! What an analysis starts from, read from the choices: rows, muscle, catalogue.
+//! The inputs of an analysis, read from the choices: rows, muscle, catalogue.
 
 use bulge_effects::{Catalogue, Effect, Known, known};
 use bulge_inference::Options;
@@ -10,12 +10,12 @@ use std::sync::Arc;
 use crate::choices::{Choices, ChosenEffect};
 use crate::refusal::{Place, Refusal};
 
-/// The name that messages give the muscle's file.
+/// Name of the muscle's file in messages.
 pub(crate) const MUSCLE: &str = "the muscle";
-/// The name that messages give the user's own effects.
+/// Name of the user's own effects in messages.
 const OWN: &str = "your effects";
 
-/// What stands beside the muscle as stated: effects, and what is stated of their numbers.
+/// The model beyond the muscle's file: effects, and restrictions on their parameters.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct With {
     pub(crate) effects: Vec<Arc<dyn Effect>>,
@@ -23,14 +23,15 @@ pub(crate) struct With {
 }
 
 impl With {
-    /// What tells it from others.
+    /// Key that identifies it.
     pub(crate) fn key(&self) -> String {
         let names: Vec<&str> = self.effects.iter().map(|effect| effect.card().name).collect();
         format!("{names:?} {:?}", self.restrictions)
     }
 }
 
-/// Rows, muscle and catalogue of some choices. Two analyses of the same `Arc` of it differ in their model alone.
+/// Rows, muscle and catalogue of some choices. Two analyses with the same `Arc` of it differ only in their
+/// model.
 #[derive(Debug)]
 pub(crate) struct Inputs {
     pub(crate) data: Arc<Data>,
@@ -41,7 +42,7 @@ pub(crate) struct Inputs {
 }
 
 impl Inputs {
-    /// Reads what the choices name; rows of other choices that were read alike are taken over.
+    /// Reads the files named in the choices. `rows` are reused if other choices gave the same rows.
     pub(crate) fn read(choices: &Choices, rows: Option<Arc<Data>>) -> Result<Self, Refusal> {
         let catalogue = catalogue(choices.own_effects.as_deref())?;
         let muscle = from_toml(&choices.muscle.toml, MUSCLE).map_err(Refusal::at(Place::Muscle))?;
@@ -54,7 +55,7 @@ impl Inputs {
         Ok(Self { data, muscle, catalogue, known, excluded })
     }
 
-    /// What is compared, with these effects.
+    /// Options of a comparison with these effects.
     pub(crate) fn options(&self, with: With, held_out: bool) -> Options {
         let mut options = Options::new(self.catalogue.clone(), with.effects);
         options.restrictions = with.restrictions;
@@ -64,7 +65,7 @@ impl Inputs {
         options
     }
 
-    /// Effects from the catalogue, with the numbers that are held.
+    /// Effects from the catalogue, with their fixed parameters.
     pub(crate) fn with(&self, effects: &[ChosenEffect]) -> Result<With, Refusal> {
         let find = |name: &str| self.catalogue.find(name).map(Arc::clone);
         let found: Result<Vec<_>, _> = effects.iter().map(|chosen| find(&chosen.name)).collect();
@@ -81,26 +82,26 @@ fn read_rows(choices: &Choices, muscle: &Muscle) -> Result<Data, Refusal> {
     let options = read_options(muscle, columns.as_ref()).map_err(Refusal::at(Place::Muscle))?;
     let files: Vec<_> = choices.data.iter().map(|file| (file.name.clone(), file.path.clone())).collect();
     Data::read_named(&files, &options).map_err(|error| {
-        // A table whose columns aren't known can be mended where the columns are shown; anything else is about the file.
+        // Unknown columns can be corrected where the columns are shown; any other error is about the file.
         let place = if error.columns().is_empty() { Place::Data } else { Place::Columns };
         Refusal { columns: error.columns().to_vec(), ..Refusal::new(place, error) }
     })
 }
 
-/// Each number that is held as the command line states it: `coulomb-friction.force=14 N`.
+/// Each fixed parameter in the notation of the command line: `coulomb-friction.force=14 N`.
 pub(crate) fn held(effects: &[ChosenEffect], catalogue: &Catalogue) -> Result<Vec<String>, Refusal> {
     let one = |(effect, number, value): (&str, &str, f64)| {
         let found = catalogue.find(effect).map_err(Refusal::at(Place::Effects))?;
         let unit =
             found.parameters().iter().find(|card| card.name == number).map(|card| card.unit.to_owned());
-        // Of a number that there isn't, the library says which there are.
+        // For an unknown parameter the library's message lists the known ones.
         let unit = unit.filter(|unit| unit != "1").map_or_else(String::new, |unit| format!(" {unit}"));
         Ok(format!("{effect}.{number}={value}{unit}"))
     };
     effects.iter().flat_map(ChosenEffect::held).map(one).collect()
 }
 
-/// The same for a fit.
+/// The fixed parameters as restrictions of a fit.
 pub(crate) fn restrictions(
     effects: &[ChosenEffect],
     catalogue: &Catalogue,

@@ -1,16 +1,18 @@
-//! The workbench: a local page on which a model is compared with measurements by hand, live.
+//! The workbench: a local page on which a user compares a model with measurements interactively.
 //!
-//! [`serve`] listens on 127.0.0.1, prints nothing and opens nothing: whoever calls it is told the address. The page asks, and gets the documents that the
-//! command line writes with `--json`: it holds no physics. What a person has chosen is a session in a folder, written at each change, so that a killed
-//! process loses nothing; undo goes back through its steps.
+//! [`serve`] listens on 127.0.0.1; it prints nothing and opens nothing, and passes the address to its caller.
+//! The page contains no physics: it requests the documents that the command line writes with `--json`. The
+//! choices of a user form a session in a folder. It is written at each change, so a killed process loses
+//! nothing, and undo goes back through its steps.
 //!
-//! - `choices`, `session`, `folder`: what was chosen, how it came about, where it is kept,
-//! - `inputs`, `worker`, `ahead`, `diagnosis`: rows, muscle and catalogue, and the threads that compute with them,
+//! - `choices`, `session`, `folder`: the choices, their history, and where they are stored,
+//! - `inputs`, `worker`, `ahead`, `diagnosis`: rows, muscle and catalogue, and the threads that compute with
+//!   them,
 //! - `answers`, `surface`, `command`: the documents,
-//! - `server`, `stream`, `guard`, `assets`: HTTP, and who may ask.
+//! - `server`, `stream`, `guard`, `assets`: HTTP and access control.
 //!
-//! Deliberately absent: physics, files of the user (it reads those that are named, and writes into its session's folder alone), any other address than this
-//! machine's.
+//! Deliberately absent: physics, changes to files of the user (it reads the files named and writes only into
+//! the folder of its session), and any address other than this machine's.
 
 mod ahead;
 mod answers;
@@ -41,17 +43,17 @@ use guard::{Guard, new_token};
 use server::{Workbench, router};
 use session::Session;
 
-/// What a workbench begins with.
+/// Initial state of a workbench.
 #[derive(Debug, Clone)]
 pub struct Start {
     /// Measurements, muscle and effects.
     pub choices: Choices,
-    /// Whether they were asked for: then a session that is there goes on with them, unless they are those that it was opened with before; else it goes on with its
-    /// own.
+    /// Whether the choices were given explicitly. If so, an existing session continues with them as a new
+    /// step, unless it was last opened with the same ones. Otherwise it continues with its own choices.
     pub is_stated: bool,
-    /// Port to listen on; 0: the one that the session had before, or any that is free.
+    /// Port to listen on. 0: the previous port of the session, or any free one.
     pub port: u16,
-    /// Folder of the session; none: a temporary one.
+    /// Folder of the session; `None`: a temporary one.
     pub session: Option<PathBuf>,
 }
 
@@ -63,18 +65,18 @@ pub enum WorkbenchError {
     Folder {
         /// The folder.
         path: PathBuf,
-        /// What the system says.
+        /// Error of the system.
         source: std::io::Error,
     },
-    /// What the folder holds can't be used.
+    /// The content of the folder can't be used.
     #[error("{0}")]
     Session(String),
-    /// The port can't be had.
+    /// The port isn't available.
     #[error("cannot listen on port {port} of this machine: {source}; give another one with --port, or none")]
     Port {
         /// The port.
         port: u16,
-        /// What the system says.
+        /// Error of the system.
         source: std::io::Error,
     },
     /// The system has no random numbers.
@@ -85,10 +87,10 @@ pub enum WorkbenchError {
     Ended(std::io::Error),
 }
 
-/// Serves the page until Ctrl-C; `ready` is told the address once it can be opened.
+/// Serves the page until Ctrl-C. `ready` is called with the address once the page can be opened.
 ///
 /// # Errors
-/// If the folder or the port can't be used.
+/// The folder or the port can't be used.
 pub fn serve(start: Start, ready: impl FnOnce(&str)) -> Result<(), WorkbenchError> {
     let path = start.session.clone().unwrap_or_else(std::env::temp_dir);
     let folder =
@@ -100,7 +102,7 @@ pub fn serve(start: Start, ready: impl FnOnce(&str)) -> Result<(), WorkbenchErro
     let outcome = runtime.block_on(async {
         let of_port = |source| WorkbenchError::Port { port: start.port, source };
         let at = |port| TcpListener::bind((Ipv4Addr::LOCALHOST, port));
-        // Where none is stated, the port that it had before, so that a page that is open goes on.
+        // If no port is given, the previous one is used, so that an open page continues to work.
         let before =
             if start.port == 0 && session.port() != 0 { at(session.port()).await.ok() } else { None };
         let listener = match before {
@@ -118,12 +120,12 @@ pub fn serve(start: Start, ready: impl FnOnce(&str)) -> Result<(), WorkbenchErro
             () = asked_to_end() => Ok(()),
         }
     });
-    // Computations under way are of no use to anyone.
+    // Nobody needs the computations that are still running.
     runtime.shutdown_background();
     outcome
 }
 
-/// Ctrl-C, or the system's wish that the process ends.
+/// Waits for Ctrl-C, or a request of the system to terminate.
 async fn asked_to_end() {
     let interrupted = async { drop(tokio::signal::ctrl_c().await) };
     #[cfg(unix)]

@@ -1,4 +1,4 @@
-//! What the page asks, and who answers it.
+//! The requests of the page and their handlers.
 
 use axum::Router;
 use axum::body::{Body, Bytes, to_bytes};
@@ -30,18 +30,18 @@ use crate::stream;
 use crate::surface;
 use crate::worker::Worker;
 
-/// Most bytes of a file of measurements: what the library reads.
+/// Most bytes of a file of measurements: the limit of the library.
 const MOST_DATA: u64 = 2 << 30;
-/// Most bytes of any other request: a muscle's file, effects, a million excluded rows.
+/// Most bytes of any other request: enough for a muscle's file, effects, a million excluded rows.
 const MOST_REQUEST: usize = 16 << 20;
 
-/// What no page from elsewhere may do with ours, and ours may not do at all.
+/// Content security policy: what pages of other sites may not do with ours, and what ours may not do at all.
 const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; connect-src 'self'; font-src 'self'; \
                       base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
-/// What reports may do beside what they allow themselves: nothing.
+/// Policy of reports beyond their own: they may do nothing further.
 const REPORT_POLICY: &str = "base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 
-/// A muscle with the effects that it has learnt.
+/// A muscle with its fitted effects.
 pub(crate) type Shaped = Arc<(Muscle, Vec<Known>)>;
 
 /// A running workbench.
@@ -51,7 +51,7 @@ pub(crate) struct Workbench {
     pub(crate) waiting: Waiting,
     pub(crate) quick: Worker,
     pub(crate) held_out: Worker,
-    /// The muscle whose shape was asked for last, with the revision that it belongs to.
+    /// The muscle whose shape was requested last, with its revision.
     shaped: Mutex<Option<(u64, Shaped)>>,
     pub(crate) revision: watch::Sender<u64>,
     received: AtomicU64,
@@ -73,12 +73,12 @@ impl Workbench {
         }
     }
 
-    /// The session; a thread that panicked leaves a whole one.
+    /// Locks the session. A thread that panicked leaves it in a consistent state.
     pub(crate) fn session(&self) -> MutexGuard<'_, Session> {
         self.session.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The muscle whose shape was asked for last, if it is the one of this revision.
+    /// The muscle whose shape was requested last, if it belongs to this revision.
     pub(crate) fn shaped(&self, revision: u64) -> Option<Shaped> {
         let last = self.shaped.lock().unwrap_or_else(PoisonError::into_inner);
         last.as_ref().filter(|(of, _)| *of == revision).map(|(_, found)| Arc::clone(found))
@@ -88,7 +88,7 @@ impl Workbench {
         *self.shaped.lock().unwrap_or_else(PoisonError::into_inner) = Some((revision, Arc::clone(found)));
     }
 
-    /// Makes a change, tells all pages of it, and answers with the session.
+    /// Applies a change, notifies all pages, and answers with the session.
     pub(crate) fn change(
         &self,
         make: impl FnOnce(&mut Session) -> Result<(), Refusal>,
@@ -101,7 +101,7 @@ impl Workbench {
     }
 }
 
-/// The routes: all go through the guard.
+/// The routes: all of them pass the guard.
 pub(crate) fn router(workbench: Arc<Workbench>) -> Router {
     Router::new().fallback(move |request: Request| {
         let workbench = Arc::clone(&workbench);
@@ -207,7 +207,7 @@ async fn api(workbench: Arc<Workbench>, call: &str, parts: &Parts, body: Body) -
     }
 }
 
-/// Receives a file of measurements, straight to the disk.
+/// Receives a file of measurements and writes it directly to the disk.
 async fn receive(
     workbench: Arc<Workbench>,
     asked: &HashMap<String, String>,
@@ -245,7 +245,7 @@ async fn receive(
         file.flush().await.map_err(failed)
     };
     if let Err(refusal) = written.await {
-        // What has arrived of it is of no use.
+        // An incomplete file is useless.
         let _ = tokio::fs::remove_file(&received).await;
         return Err(refusal);
     }
@@ -256,7 +256,7 @@ async fn receive(
     .await
 }
 
-/// Runs what takes long, or waits, beside the thread that receives requests.
+/// Runs a computation that takes long or waits on another thread than the one that receives requests.
 async fn blocking<T: Send + 'static>(
     workbench: Arc<Workbench>,
     compute: impl FnOnce(Arc<Workbench>) -> Result<T, Refusal> + Send + 'static,
@@ -265,7 +265,7 @@ async fn blocking<T: Send + 'static>(
     found.unwrap_or_else(|error| Err(Refusal::new(Place::Request, error)))
 }
 
-/// The pairs behind the question mark.
+/// The pairs of the query string.
 fn query(parts: &Parts) -> HashMap<String, String> {
     let text = parts.uri.query().unwrap_or_default();
     text.split('&')
@@ -274,7 +274,7 @@ fn query(parts: &Parts) -> HashMap<String, String> {
         .collect()
 }
 
-/// Text without its escapes (`%20`).
+/// Text with its escapes (`%20`) decoded.
 fn decoded(text: &str) -> String {
     let mut bytes = Vec::with_capacity(text.len());
     let mut rest = text.as_bytes();
@@ -292,7 +292,7 @@ fn decoded(text: &str) -> String {
     String::from_utf8_lossy(&bytes).into_owned()
 }
 
-/// Where a shape is looked at.
+/// The state of which the shape is requested.
 fn state(asked: &HashMap<String, String>) -> Result<surface::State, Refusal> {
     let number = |name: &str| {
         let value =
@@ -334,7 +334,7 @@ fn refused(refusal: &Refusal) -> Response {
     (StatusCode::UNPROCESSABLE_ENTITY, as_json(text)).into_response()
 }
 
-/// What every answer says to the browser.
+/// Adds the headers of every answer.
 fn with_headers(mut response: Response) -> Response {
     let headers = response.headers_mut();
     headers.entry(header::CONTENT_SECURITY_POLICY).or_insert(HeaderValue::from_static(POLICY));

@@ -1,4 +1,4 @@
-//! A session: the choices, how they came about, and what follows from them.
+//! A session: the choices, their history, and the inputs derived from them.
 
 use bulge_inference::Options;
 use bulge_measurements::Reading;
@@ -15,10 +15,10 @@ use crate::folder::{Diagnosed, Folder, Kept, MOST_STEPS};
 use crate::inputs::{Inputs, MUSCLE, catalogue, restrictions};
 use crate::refusal::{Place, Refusal};
 
-/// Most bytes of what the page keeps of its own.
+/// Most bytes of the page's own state.
 const MOST_VIEW: usize = 64 << 10;
 
-/// What the page shows of a session.
+/// The state of a session that the page shows.
 #[derive(Debug, Serialize)]
 pub(crate) struct SessionDocument {
     schema: &'static str,
@@ -45,15 +45,15 @@ pub(crate) struct SessionDocument {
 struct DataDocument {
     names: Vec<String>,
     rows: usize,
-    /// Of what was read; empty where nothing could be.
+    /// Checksum of the data read; empty if none could be read.
     sha256: String,
 }
 
 #[derive(Debug, Serialize)]
 struct DiagnosisDocument {
-    /// Effects that the model had.
+    /// Effects of the model.
     effects: Vec<ChosenEffect>,
-    /// Whether data and muscle are still those that it is about.
+    /// Whether data and muscle are still those of the diagnosis.
     is_current: bool,
 }
 
@@ -74,7 +74,7 @@ pub(crate) struct Session {
 }
 
 impl Session {
-    /// Goes on with what the folder holds, or begins with these choices.
+    /// Continues with the state in the folder, or begins with these choices.
     pub(crate) fn open(
         folder: Folder,
         begin: Choices,
@@ -82,7 +82,7 @@ impl Session {
         token: String,
     ) -> Result<Self, Refusal> {
         let kept = match folder.kept()? {
-            // Something else that is stated on the command line is a step more of what was there.
+            // Other choices given on the command line are a further step of an existing session.
             Some(mut kept) if is_stated && kept.stated.as_ref() != Some(&begin) => {
                 kept.stated = Some(begin.clone());
                 kept.past.push(std::mem::replace(&mut kept.choices, begin));
@@ -97,17 +97,17 @@ impl Session {
         Ok(session)
     }
 
-    /// The word that ends the address.
+    /// The random token at the end of the address.
     pub(crate) fn token(&self) -> &str {
         &self.kept.token
     }
 
-    /// The port at which it was served last; 0: none.
+    /// The port of the last run; 0: none.
     pub(crate) fn port(&self) -> u16 {
         self.kept.port
     }
 
-    /// Keeps the port at which it is served.
+    /// Stores the port of this run.
     pub(crate) fn keep_port(&mut self, port: u16) -> Result<(), Refusal> {
         self.kept.port = port;
         self.folder.keep(&self.kept)
@@ -121,12 +121,12 @@ impl Session {
         &self.kept.choices
     }
 
-    /// What an analysis starts from.
+    /// The inputs of an analysis.
     pub(crate) fn inputs(&self) -> Result<Arc<Inputs>, Refusal> {
         self.inputs.clone()
     }
 
-    /// Makes a change, or says why not and changes nothing.
+    /// Applies a change, or returns an error and changes nothing.
     pub(crate) fn change(&mut self, change: Change) -> Result<(), Refusal> {
         let mut next = self.kept.choices.clone();
         change.columns.put(&mut next.columns);
@@ -160,7 +160,7 @@ impl Session {
         self.step(next)
     }
 
-    /// Takes files of measurements, in the place of those that are there or beside them.
+    /// Takes a file of measurements: it replaces the present ones, or is added to them if `beside`.
     pub(crate) fn take(&mut self, name: String, path: PathBuf, beside: bool) -> Result<(), Refusal> {
         let mut next = self.kept.choices.clone();
         // Two files of one analysis need two names.
@@ -170,7 +170,7 @@ impl Session {
         if beside {
             next.data.push(file);
         } else {
-            // What was said of other columns and other rows doesn't hold for these.
+            // The assignment of columns and the excluded rows belong to the old files.
             (next.data, next.columns) = (vec![file], None);
         }
         next.excluded = Vec::new();
@@ -193,7 +193,7 @@ impl Session {
         self.folder.keep(&self.kept)
     }
 
-    /// A new step; what was undone before is gone.
+    /// Adds a step; steps that were undone are discarded.
     fn step(&mut self, next: Choices) -> Result<(), Refusal> {
         if next != self.kept.choices {
             let before = self.go_to(next);
@@ -205,7 +205,7 @@ impl Session {
         self.folder.keep(&self.kept)
     }
 
-    /// Puts choices in the place of those that are there, which are returned.
+    /// Replaces the choices and returns the previous ones.
     fn go_to(&mut self, next: Choices) -> Choices {
         let now = &self.kept.choices;
         if next.needs_other_inputs(now) {
@@ -217,7 +217,7 @@ impl Session {
         std::mem::replace(&mut self.kept.choices, next)
     }
 
-    /// Refuses effects that are not in the catalogue or there twice, and numbers that can't be held.
+    /// Rejects effects that are unknown or occur twice, and parameters that can't be fixed.
     fn check_effects(next: &Choices) -> Result<(), Refusal> {
         let catalogue = catalogue(next.own_effects.as_deref())?;
         let mut seen = HashSet::new();
@@ -230,14 +230,14 @@ impl Session {
                 ));
             }
         }
-        // Values have bounds that the muscle knows; a muscle that can't be read says so itself.
+        // The bounds of values depend on the muscle. A muscle that can't be read is reported elsewhere.
         match from_toml(&next.muscle.toml, MUSCLE) {
             Ok(muscle) => restrictions(&next.effects, &catalogue, &muscle).map(drop),
             Err(_) => Ok(()),
         }
     }
 
-    /// Rows to exclude, sorted; not all of them.
+    /// Rows to exclude, sorted; it is an error to exclude all rows.
     fn exclude(&self, mut rows: Vec<usize>) -> Result<Vec<usize>, Refusal> {
         rows.sort_unstable();
         rows.dedup();
@@ -257,7 +257,7 @@ impl Session {
         Ok(rows)
     }
 
-    /// What the page shows.
+    /// The state that the page shows.
     pub(crate) fn document(&self) -> SessionDocument {
         let Kept { choices, past, future, view, diagnosed, .. } = &self.kept;
         let problem = self.inputs.as_ref().err();
@@ -300,7 +300,7 @@ impl Session {
         }
     }
 
-    /// Keeps a diagnosis of some choices.
+    /// Stores a diagnosis of some choices.
     pub(crate) fn diagnosed(&mut self, found: &Diagnosed, about: Choices) -> Result<(), Refusal> {
         self.folder.keep_diagnosis(found).map_err(Refusal::at(Place::Request))?;
         self.kept.diagnosed = Some(about);
@@ -316,7 +316,7 @@ impl Session {
         self.folder.diagnosis().map_err(Refusal::at(Place::Request))
     }
 
-    /// What is compared with the chosen effects.
+    /// The inputs and options of a comparison with the chosen effects.
     pub(crate) fn options(&self, held_out: bool) -> Result<(Arc<Inputs>, Options), Refusal> {
         let inputs = self.inputs()?;
         let with = inputs.with(&self.kept.choices.effects)?;
@@ -325,7 +325,7 @@ impl Session {
     }
 }
 
-/// The muscle that a change names.
+/// The muscle named in a change.
 fn other_muscle(change: MuscleChange) -> Result<MuscleFile, Refusal> {
     match change {
         MuscleChange::Shipped { shipped } => {

@@ -1,4 +1,4 @@
-//! What the page is told while it waits: server-sent events.
+//! Messages to the page while it waits: server-sent events.
 
 use axum::response::sse::{Event, KeepAlive, Sse};
 use axum::response::{IntoResponse, Response};
@@ -11,12 +11,12 @@ use tokio::sync::watch;
 use crate::diagnosis::{Listener, News};
 use crate::refusal::Refusal;
 
-/// An event with a document; what can't be written as one is empty.
+/// An event with a document; it is empty if the document can't be serialised.
 fn event(name: &str, document: &impl Serialize) -> Event {
     Event::default().event(name).data(serde_json::to_string(document).unwrap_or_default())
 }
 
-/// A diagnosis as it goes on; `keep` gets what was found before it is told.
+/// Reports a running diagnosis. `keep` receives the result before it is sent.
 pub(crate) fn of_diagnosis(
     listener: Listener,
     keep: impl Fn(&Diagnosis) -> Result<(), Refusal> + Send + 'static,
@@ -40,7 +40,7 @@ pub(crate) fn of_diagnosis(
     Sse::new(unfold((listener, keep), next)).keep_alive(KeepAlive::default()).into_response()
 }
 
-/// The number of changes, whenever it grows.
+/// Sends the number of changes whenever it grows.
 pub(crate) fn of_revisions(seen: watch::Receiver<u64>) -> Response {
     #[derive(Serialize)]
     struct Revision {

@@ -1,4 +1,4 @@
-//! The bulge of a muscle: points, triangles and fields, as VTK files have them.
+//! The bulge of a muscle: points, triangles and fields, as in VTK files.
 
 use bulge_fibre::{Approach, Given};
 use bulge_model::{Equilibrium, MuscleWithEffects};
@@ -9,10 +9,10 @@ use serde::Serialize;
 use crate::refusal::{Place, Refusal};
 use crate::server::Shaped;
 
-/// Points of a meridian: smooth on any screen.
+/// Points of a meridian: enough to look smooth on any screen.
 const POINTS: usize = 81;
 
-/// Where a muscle is looked at.
+/// The state of a muscle whose shape is shown.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct State {
     /// Gauge pressure \[Pa\].
@@ -45,7 +45,7 @@ pub(crate) struct Surface {
     contraction_limit: Option<f64>,
 }
 
-/// The equilibrium of a muscle with what its file states.
+/// The equilibrium of a muscle with the effects in its file.
 fn equilibrium(shaped: &Shaped, state: State) -> Result<(Muscle, Equilibrium), Refusal> {
     let extended = MuscleWithEffects::new(&shaped.0, &shaped.1).map_err(Refusal::at(Place::Shape))?;
     let given = Given::Contraction(state.contraction);
@@ -76,23 +76,23 @@ pub(crate) fn surface(shaped: &Shaped, state: State) -> Result<Surface, Refusal>
     })
 }
 
-/// Units at the end of the names of fields, and how people write them.
+/// Units at the end of the names of fields, and their usual notation.
 const UNITS: [(&str, &str); 4] = [("_N_per_m", "N/m"), ("_rad", "rad"), ("_m", "m"), ("_N", "N")];
 
-/// A field for people: what it is and its unit apart.
+/// A field for the page, with name and unit separated.
 fn field(name: &str, values: &[f64]) -> Field {
     let found = UNITS.iter().find_map(|(end, unit)| Some((name.strip_suffix(end)?, *unit)));
     let (name, unit) = found.unwrap_or((name, "1"));
     Field { name: name.replace('_', " "), unit, values: short(values) }
 }
 
-/// As exact as a picture needs.
+/// Single precision suffices for a picture.
 #[expect(clippy::cast_possible_truncation, reason = "a picture")]
 fn short(values: &[f64]) -> Vec<f32> {
     values.iter().map(|value| *value as f32).collect()
 }
 
-/// The same as a VTK file.
+/// The surface as a VTK file.
 pub(crate) fn vtp(shaped: &Shaped, state: State) -> Result<Vec<u8>, Refusal> {
     let (muscle, found) = equilibrium(shaped, state)?;
     let shape = &found.shape;

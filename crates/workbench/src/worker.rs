@@ -1,6 +1,6 @@
-//! The thread that compares: it keeps what it has solved, and answers one question after the other.
+//! The thread that compares. It keeps the equilibria it has solved, and answers one question after the other.
 //!
-//! A question that nobody waits for any more is passed over, so that the last one asked is answered first.
+//! A question for which nobody waits any more is skipped, so that the latest one is answered first.
 
 use bulge_inference::{Comparing, Comparison, Fitting, Options, Rows};
 use rayon::ThreadPoolBuilder;
@@ -14,9 +14,9 @@ use crate::ahead::{self, Next, Waiting};
 use crate::inputs::{Inputs, With};
 use crate::refusal::{Place, Refusal};
 
-/// What is asked of a comparison.
+/// Questions about a comparison.
 pub(crate) enum Question {
-    /// The ladder of errors and all that goes with it.
+    /// The ladder of errors and the rest of the comparison.
     Comparison(oneshot::Sender<Result<Box<Comparison>, Refusal>>),
     /// The forces row by row.
     Rows(oneshot::Sender<Result<Rows, Refusal>>),
@@ -24,9 +24,9 @@ pub(crate) enum Question {
     Report(oneshot::Sender<Result<(Box<Comparison>, Rows), Refusal>>),
     /// Why each of the effects can't be added.
     Unsuitable(oneshot::Sender<Result<Vec<Option<String>>, Refusal>>),
-    /// To be ready for the questions that may follow.
+    /// Preparation for the questions that may follow.
     Prepared(oneshot::Sender<Result<(), Refusal>>),
-    /// The last rung.
+    /// The fit of the last rung.
     Fitting(oneshot::Sender<Result<Box<Fitting>, Refusal>>),
 }
 
@@ -42,9 +42,9 @@ impl Question {
         }
     }
 
-    /// Says why there is no answer.
+    /// Answers with a refusal.
     fn refuse(self, refusal: Refusal) {
-        // Whoever has given up meanwhile doesn't hear it.
+        // Nobody receives it if the requester has given up meanwhile.
         match self {
             Self::Comparison(to) => drop(to.send(Err(refusal))),
             Self::Rows(to) => drop(to.send(Err(refusal))),
@@ -72,7 +72,7 @@ impl Question {
                 };
                 drop(to.send(of_all(|| both().map_err(&refused))));
             }
-            // Only the one that fits ahead gets ready.
+            // Only the worker that fits in advance prepares anything.
             Self::Prepared(to) => drop(to.send(Ok(()))),
             Self::Fitting(to) => {
                 let found =
@@ -88,7 +88,7 @@ impl Question {
     }
 }
 
-/// A computation whose bug ends only the answer.
+/// Runs a computation; a panic in it becomes an error of the answer and ends nothing else.
 pub(crate) fn of_all<T>(compute: impl FnOnce() -> Result<T, Refusal>) -> Result<T, Refusal> {
     catch_unwind(AssertUnwindSafe(compute)).unwrap_or_else(|_| {
         let what = "this could not be computed because of a mistake in Bulge: please report it, with the data and the muscle";
@@ -107,7 +107,7 @@ struct Task {
 pub(crate) struct Worker(Sender<Task>);
 
 impl Worker {
-    /// Starts the one that answers at once, and fits ahead while a person waits for nothing.
+    /// Starts the worker that answers at once, and fits in advance while no person waits.
     pub(crate) fn quick(waiting: &Waiting) -> Self {
         let (tasks, asked) = channel();
         let waiting = waiting.clone();
@@ -115,31 +115,31 @@ impl Worker {
         Self(tasks)
     }
 
-    /// Starts the one that computes errors on held-out data.
+    /// Starts the worker that computes errors on held-out data.
     pub(crate) fn held_out(waiting: &Waiting) -> Self {
         let (tasks, asked) = channel();
         let waiting = waiting.clone();
         thread::spawn(move || {
             let work = move || each_inputs(&asked, |task| with_held_out(task, &asked, &waiting));
-            // Held-out errors take long: they leave half of the cores to what a person waits for.
+            // Held-out errors take long: they leave half of the cores to computations a person waits for.
             let half = thread::available_parallelism().map_or(1, |cores| cores.get().div_ceil(2));
             match ThreadPoolBuilder::new().num_threads(half).build() {
                 Ok(pool) => pool.install(work),
-                // Without threads of its own it works on those of all.
+                // Without its own thread pool it uses the common one.
                 Err(_) => work(),
             }
         });
         Self(tasks)
     }
 
-    /// Asks; the answer comes through the channel of the question.
+    /// Sends a question; the answer comes through the question's channel.
     pub(crate) fn ask(&self, inputs: Arc<Inputs>, with: With, question: Question) {
-        // Without its thread the question is dropped, and whoever waits for the answer hears that.
+        // Without its thread the question is dropped, which the receiver of the answer notices.
         drop(self.0.send(Task { inputs, with, question }));
     }
 }
 
-/// Works on questions about the same inputs, then on those about the next ones.
+/// Works on questions about the same inputs, then on questions about the next ones.
 fn each_inputs(asked: &Receiver<Task>, work: impl Fn(Task) -> Option<Task>) {
     let mut first = None;
     while let Some(task) = first.take().or_else(|| asked.recv().ok()) {
@@ -149,7 +149,7 @@ fn each_inputs(asked: &Receiver<Task>, work: impl Fn(Task) -> Option<Task>) {
     }
 }
 
-/// What is compared with the inputs of a task; one that can't be compared refuses it.
+/// The comparison for the inputs of a task. If they can't be compared, the task is refused.
 fn begun<'a>(
     task: Task,
     inputs: &'a Inputs,
@@ -183,7 +183,7 @@ fn quickly(task: Task, asked: &Receiver<Task>, waiting: &Waiting) -> Option<Task
     let options = inputs.options(With::default(), false);
     let (comparing, task) = begun(task, &inputs, &options, waiting).ok()?;
     thread::scope(|threads| {
-        // It goes when the last answer is given: then nothing is fitted ahead any more.
+        // The sender is dropped after the last answer, which ends the fits in advance.
         let (ahead, wishes) = channel();
         let (comparing, catalogue) = (&comparing, &inputs.catalogue);
         threads.spawn(move || ahead::work(comparing, catalogue, waiting, &wishes));
@@ -203,7 +203,7 @@ fn quickly(task: Task, asked: &Receiver<Task>, waiting: &Waiting) -> Option<Task
     })
 }
 
-/// Answers as long as the questions are about the same inputs; returns the first that isn't.
+/// Answers questions as long as they are about the same inputs; returns the first one that isn't.
 fn answered(mut task: Task, asked: &Receiver<Task>, answer: impl Fn(Task)) -> Option<Task> {
     let inputs = Arc::clone(&task.inputs);
     loop {

@@ -1,4 +1,4 @@
-//! The workbench as a browser meets it: over HTTP, on this machine, against the answers of the library.
+//! The workbench as seen by a browser: over HTTP on this machine, compared with the answers of the library.
 
 #![expect(
     clippy::unwrap_used,
@@ -33,7 +33,7 @@ struct Page {
     token: String,
 }
 
-/// What came back.
+/// The response to a request.
 struct Answer {
     status: u16,
     head: String,
@@ -46,7 +46,7 @@ impl Answer {
             .unwrap_or_else(|_| panic!("{}", String::from_utf8_lossy(&self.body)))
     }
 
-    /// The place and the sentence of a refusal.
+    /// The part of the page and the sentence of a refusal.
     fn refusal(&self) -> (String, String) {
         assert_eq!(self.status, 422, "{}", String::from_utf8_lossy(&self.body));
         let text = |name: &str| self.json()[name].as_str().unwrap().to_owned();
@@ -80,11 +80,11 @@ impl Page {
         Self { host: host.to_owned(), token: token.to_owned() }
     }
 
-    /// A request as it stands; the whole answer.
+    /// Sends a request as given; returns the whole response.
     fn send(&self, head: &str, body: &[u8]) -> Answer {
         let mut stream = TcpStream::connect(&self.host).unwrap();
         stream.write_all(head.as_bytes()).unwrap();
-        // A server that refuses before it has read all may close.
+        // A server that refuses may close the connection before it has read everything.
         let _ = stream.write_all(body);
         let mut answer = Vec::new();
         let _ = stream.read_to_end(&mut answer);
@@ -141,7 +141,7 @@ fn opened() -> (TempDir, Page) {
     (folder, page)
 }
 
-/// One path of code: the page gets the bytes that `bulge compare --json` is made of.
+/// The page gets the same bytes that `bulge compare --json` writes.
 #[test]
 fn the_documents_are_those_of_the_library() {
     let (_folder, page) = opened();
@@ -154,7 +154,7 @@ fn the_documents_are_those_of_the_library() {
     let found = page.get("comparison");
     assert!(found.body == serde_json::to_vec(&expected).unwrap(), "the bytes differ");
     let found = found.json();
-    // Without held-out errors all else is the same.
+    // Without held-out errors everything else is unchanged.
     let quick = page.get("comparison?held_out=0").json();
     assert_eq!(quick["ladder"][2]["rmse_n"], found["ladder"][2]["rmse_n"]);
     assert!(
@@ -178,7 +178,7 @@ fn the_error_falls_and_comes_back() {
     page.ask("POST", "api/undo", b"");
     page.ask("POST", "api/redo", b"");
     assert_eq!(page.errors(), errors[..3]);
-    // What was learnt is a muscle again.
+    // The file with the fitted effects can be read as a muscle.
     let learnt = String::from_utf8(page.get("learnt.toml").body).unwrap();
     assert!(
         from_toml(&learnt, "learnt").is_ok() && learnt.contains("[effects.bladder-elasticity]"),
@@ -202,7 +202,8 @@ fn a_number_is_held_and_fitted_again() {
     assert!(session["python"].as_str().unwrap().ends_with(says), "{}", session["python"]);
     let comparison = page.get("comparison?held_out=0").json();
     let rung = &comparison["ladder"][3];
-    // What is left of the friction of 13.9 N has its sign: the error is their root of squares.
+    // The remaining friction 13.94 - 5 N changes sign with the direction: the error is the root of the sum of
+    // squares.
     let expected = (fitted[3].powi(2) + (13.94_f64 - 5.0).powi(2)).sqrt();
     assert!(
         (rung["rmse_n"].as_f64().unwrap() / expected - 1.0).abs() < 0.01,
@@ -222,7 +223,7 @@ fn a_number_is_held_and_fitted_again() {
     assert_eq!(page.errors(), fitted);
 }
 
-/// However far a slider is dragged: undo takes the whole drag back.
+/// A drag of the slider of any length is undone in one step.
 #[test]
 fn one_drag_is_one_step() {
     let (_folder, page) = opened();
@@ -239,7 +240,7 @@ fn one_drag_is_one_step() {
     assert_eq!(redone["effects"][0]["hold"]["force"], 9.0);
 }
 
-/// The bulge is that of the model: clamped ends are narrower than a cylinder's.
+/// The bulge is that of the fitted model: clamped ends are narrower than those of a cylinder.
 #[test]
 fn the_shape_follows_what_was_learnt() {
     let (_folder, page) = opened();
@@ -272,7 +273,7 @@ fn the_shape_follows_what_was_learnt() {
     assert!(
         (number("length_m") - 0.225).abs() < 1e-9 && number("radius_m") > 12e-3 && number("radius_m") < 16e-3
     );
-    // The surface has the extent that the numbers say.
+    // The extent of the surface matches the reported numbers.
     let points: Vec<f64> =
         learnt["points"].as_array().unwrap().iter().map(|value| value.as_f64().unwrap()).collect();
     let widest = points.chunks(3).map(|point| point[1].hypot(point[2])).fold(0.0, f64::max);
@@ -286,7 +287,7 @@ fn the_shape_follows_what_was_learnt() {
     assert!(file.starts_with(b"<?xml") && file.len() > 10_000);
 }
 
-/// A test that isn't made yet is looked at with the muscle as learnt, and what is saved as a file is the same test.
+/// A planned test is evaluated for the fitted muscle, and the file saved is the same test.
 #[test]
 fn a_plan_is_that_of_the_library() {
     let (_folder, page) = opened();
@@ -308,7 +309,7 @@ fn a_plan_is_that_of_the_library() {
         let catalogue = Catalogue::builtin();
         let known = known(muscle, &catalogue).unwrap();
         let plan = bulge_inference::plan(muscle, &known, &catalogue, &protocol).unwrap();
-        // By way of the text, as the page has it: reading it may round a last digit.
+        // Compared by way of the text, as the page has it: reading it may round the last digit.
         serde_json::from_str::<Value>(&serde_json::to_string(&plan).unwrap()).unwrap()
     };
     assert_eq!(stated["plan"], by_library(&muscle));
@@ -329,7 +330,7 @@ fn a_plan_is_that_of_the_library() {
     assert_eq!(plan(&wrong).refusal().0, "request");
 }
 
-/// Getting ready for an effect changes no answer, and nothing that was chosen.
+/// Preparing for an effect changes no answer and no choice.
 #[test]
 fn getting_ready_changes_nothing() {
     let (_folder, page) = opened();
@@ -394,7 +395,7 @@ fn rows_have_the_error_of_the_ladder_and_can_be_excluded() {
     assert!(rmse(&after).1 == 747 && column(&after, "state")[10..13] == [-1.0; 3]);
     let left_out = page.get("comparison?held_out=0").json()["data"]["left_out"].to_string();
     assert!(left_out.contains("excluded by hand"), "{left_out}");
-    // As a file they are measurements again, with the same error.
+    // Saved as a file they can be read as measurements, with the same error.
     let file =
         Data::from_bytes(&page.get("rows.csv").body, "rows.csv", &bulge_measurements::ReadOptions::default())
             .unwrap();
@@ -406,7 +407,8 @@ fn rows_have_the_error_of_the_ladder_and_can_be_excluded() {
     assert!(place == "excluded" && error.contains("all rows"), "{error}");
 }
 
-/// What the server sends and keeps, in every state: effects with held numbers, rows excluded, a diagnosis, columns that aren't there, steps to undo and redo.
+/// What the server sends and stores, in every state: effects with fixed parameters, excluded rows, a
+/// diagnosis, unknown columns, steps to undo and redo.
 #[test]
 fn documents_hold_what_their_schemas_name() {
     let folder = tempfile::tempdir().unwrap();
@@ -484,7 +486,7 @@ fn a_dropped_file_whose_columns_are_strange_is_mapped_by_hand() {
     let columns = format!("pressure=alpha [bar], displacement=beta [mm], force={} [N]", named[2]);
     let session = page.put(&json!({"columns": columns})).json();
     assert!(session["problem"].is_null() && session["data"]["rows"] == 5, "{}", session["problem"]);
-    // Back to the tour, with its columns.
+    // Back to the data of the tour, with its columns.
     page.ask("POST", "api/undo", b"");
     let session = page.ask("POST", "api/undo", b"").json();
     assert!(session["problem"].is_null() && session["data"]["rows"] == 750, "{session}");
@@ -500,14 +502,14 @@ fn a_file_that_is_none_takes_nothing_away() {
     assert_eq!(page.get("comparison").refusal().0, "data");
     assert!(page.get("effects").json()["effects"].as_array().unwrap().len() > 40);
     assert!(page.ask("POST", "api/undo", b"").json()["problem"].is_null());
-    // Two files of the same name beside each other keep their rows apart.
+    // Two files with the same name keep their rows separate.
     page.ask("POST", "api/data?name=twin.csv", DATA.as_bytes());
     let session =
         page.ask("POST", "api/data?name=twin.csv&add=1", DATA.replace("2.0000", "2.0001").as_bytes()).json();
     assert_eq!(session["data"]["names"], json!(["twin.csv", "twin-2.csv"]));
     assert_eq!(session["data"]["rows"], 1500);
     assert_eq!(page.ask("POST", "api/data?name=", b"x").refusal().0, "data");
-    // Refused before it is read: nothing of it is sent.
+    // Refused before it is read: its body is never sent.
     let (host, token) = (&page.host, &page.token);
     let head = format!(
         "POST /{token}/api/data?name=a.csv HTTP/1.1\r\nHost: {host}\r\nConnection: close\r\nContent-Length: 3000000000\r\n\r\n"
@@ -546,7 +548,7 @@ fn only_the_page_of_this_run_is_answered() {
     assert_eq!(page.ask("GET", "../Cargo.toml", b"").status, 422);
 }
 
-/// A killed process loses nothing: a second one finds all that the first one kept.
+/// A killed process loses nothing: a second one finds everything that the first one stored.
 #[test]
 fn a_session_is_found_again() {
     let folder = tempfile::tempdir().unwrap();
@@ -562,16 +564,16 @@ fn a_session_is_found_again() {
         let mode = std::fs::metadata(session.join("session.json")).unwrap().permissions().mode();
         assert_eq!(mode & 0o077, 0, "others could read the token");
     }
-    // A page that is still open needs no other address.
+    // An open page needs no other address.
     assert_eq!(second.token, first.token);
     let found = second.get("session").json();
     for field in ["data", "effects", "muscle", "command", "can_undo", "view"] {
         assert_eq!(found[field], left[field], "{field}");
     }
-    // Undo works across the restart; what is stated on the command line is a step more.
+    // Undo works across the restart; choices given on the command line are a further step.
     second.ask("POST", "api/undo", b"");
     assert_eq!(second.get("session").json()["data"]["names"], json!(["loops.csv"]));
-    // Stated again, the same goes on; something else is a step more.
+    // The same choices again continue the session; other ones are a further step.
     let same = Page::open(tour(folder.path()), Some(session.clone()), true).get("session").json();
     assert_eq!(same["effects"], left["effects"]);
     let other = Choices { columns: Some("force=force".to_owned()), ..tour(folder.path()) };
@@ -604,7 +606,7 @@ fn a_diagnosis_is_told_by_stages_and_kept() {
         found["missing"]
     );
     assert_eq!(page.get("diagnosis.json").json(), found);
-    // Reports hold the rows, and may run their own script alone.
+    // Reports contain the rows, and may run only their own script.
     for report in ["report", "diagnosis-report"] {
         let answer = page.get(report);
         let text = String::from_utf8(answer.body).unwrap();
@@ -612,7 +614,7 @@ fn a_diagnosis_is_told_by_stages_and_kept() {
         let policy = bulge_report::policy(true);
         assert!(text.contains(&policy) && answer.head.contains(&policy), "{report}: {}", answer.head);
     }
-    // It outlives the process, and knows whether it is about what is there.
+    // The diagnosis outlives the process, and the session knows whether it is about the present choices.
     let again = Page::open(tour(folder.path()), Some(session), false);
     assert_eq!(again.get("diagnosis.json").json(), found);
     assert_eq!(again.get("session").json()["diagnosis"]["is_current"], true);

@@ -1,4 +1,5 @@
-//! The tour's game of hide and seek: measurements with an effect hidden in them, the diagnosis that finds it, and the error that falls when it is added.
+//! The part of the tour with a hidden effect: measurements with an effect hidden in them, the diagnosis that
+//! finds it, and the error that decreases when it is added.
 
 use bulge_effects::Catalogue;
 use bulge_inference::{DiagnoseOptions, Diagnosis, Options, diagnose};
@@ -15,14 +16,15 @@ use crate::diagnose::text::{ladder, verdict};
 use crate::failure::Failure;
 use crate::files;
 
-/// A case of the suite of hidden effects, whose simulator shares no formula with this program: what the user has, and what is hidden.
+/// A case of the suite of hidden effects, whose simulator shares no formula with this program: the files of
+/// the user, and the truth.
 const FILES: [(&str, &str); 3] = [
     ("data.csv", include_str!("../../data/hidden/data.csv")),
     ("muscle.toml", include_str!("../../data/hidden/muscle.toml")),
     ("truth.json", include_str!("../../data/hidden/truth.json")),
 ];
 
-/// What is hidden.
+/// The hidden truth.
 #[derive(Debug, Deserialize)]
 struct Truth {
     hidden: Vec<Hidden>,
@@ -33,7 +35,7 @@ struct Hidden {
     effect: String,
 }
 
-/// Hides, seeks, adds, and asks again. Returns both answers.
+/// Writes the case, diagnoses it, adds the effect, and diagnoses again. Returns both diagnoses.
 pub(super) fn hidden(
     out: &Path,
     text: &mut String,

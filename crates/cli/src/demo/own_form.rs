@@ -1,4 +1,5 @@
-//! The tour's second game: an effect in a form of its own, the form that the data want of the catalogue's nearest effect, and the effect of one's own that it becomes.
+//! The part of the tour with an effect of another form: the form error that the data suggest for the nearest
+//! effect of the catalogue, and the user-defined effect that it becomes.
 
 use bulge_effects::Catalogue;
 use bulge_inference::{DiagnoseOptions, Diagnosis, Options, diagnose, drawn_forms};
@@ -13,15 +14,15 @@ use crate::diagnose::text::{ladder, verdict};
 use crate::failure::Failure;
 use crate::files;
 
-/// Measurements with a rubber liner by Gent's law, and what the user has.
+/// Measurements with a rubber liner by Gent's law, and the muscle of the user.
 const FILES: [(&str, &str); 2] = [
     ("data.csv", include_str!("../../data/own-form/data.csv")),
     ("muscle.toml", include_str!("../../data/own-form/muscle.toml")),
 ];
-/// What is hidden.
+/// The hidden law.
 const LAW: (&str, &str) = ("gent-liner.toml", include_str!("../../data/gent-liner.toml"));
 
-/// Seeks, draws the form, writes it, and asks again with it. Returns both answers.
+/// Diagnoses, draws the form, writes it as an effect, and diagnoses again with it. Returns both diagnoses.
 pub(super) fn own_form(
     out: &Path,
     text: &mut String,
@@ -56,7 +57,7 @@ pub(super) fn own_form(
     let path = folder.join("bent.toml");
     let file: Vec<&str> = drawn.forms.iter().map(|form| form.toml.as_str()).collect();
     files::write(&path, file.concat().as_bytes())?;
-    // What is not written stays as the catalogue has it.
+    // Effects whose form wasn't written keep that of the catalogue.
     let names: Vec<String> =
         drawn.forms.iter().map(|form| form.written.as_ref().unwrap_or(&form.effect).clone()).collect();
     let catalogue = arguments::catalogue(Some(&path))?;

@@ -1,4 +1,4 @@
-//! The part of the tour with a table: a family of muscles, and how far a lookup is from the solution.
+//! The part of the tour with a table: a family of muscles, and the error of lookups.
 
 use bulge_fibre::{Approach, Given, Problem};
 use bulge_muscles::{Parameter, Pressure, Quantity, preset};
@@ -16,7 +16,7 @@ use crate::text::{significant, table};
 
 /// The sweep file of the tour.
 const FAMILY: (&str, &str) = ("family.toml", include_str!("../../data/family.toml"));
-/// Contraction and slenderness of the lookups that are shown.
+/// Contraction and slenderness of the lookups shown.
 const POINTS: [[f64; 2]; 3] = [[0.05, 6.875], [0.2, 6.875], [0.35, 20.0]];
 
 /// Builds the table, writes it, and shows a few lookups beside the solutions.

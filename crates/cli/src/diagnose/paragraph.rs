@@ -1,13 +1,14 @@
-//! Running text on a terminal: paragraphs of even width.
+//! Running text on a terminal: paragraphs of constant width.
 
 use std::fmt::Write;
 
 /// Width of running text.
 pub(crate) const WIDTH: usize = 108;
-/// Keeps a number and its unit on one line.
+/// No-break space, which keeps a number and its unit on one line.
 const TIE: char = '\u{a0}';
 
-/// Running text, broken at spaces (not before a per cent sign); lines after the first are set in a little more.
+/// Running text, wrapped at spaces (not before a per cent sign); lines after the first are indented a little
+/// more.
 pub(crate) fn paragraph(out: &mut String, indent: &str, words: &str) {
     let mut line = indent.to_owned();
     let mut is_empty = true;

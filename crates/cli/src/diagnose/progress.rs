@@ -1,4 +1,4 @@
-//! A bar on standard error for whoever waits at a terminal.
+//! A progress bar on standard error, for a user at a terminal.
 
 use bulge_inference::Progress;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -8,11 +8,11 @@ use std::time::Duration;
 /// Steps of the bar.
 const STEPS: u32 = 1000;
 
-/// The bar; it goes away with this value.
+/// The progress bar; it is removed when this value is dropped.
 pub(crate) struct Bar(ProgressBar);
 
 impl Bar {
-    /// A bar, if standard error is a terminal; none beside JSON that goes elsewhere.
+    /// A bar if standard error is a terminal; none if JSON is written to something other than a terminal.
     pub(crate) fn new(json: bool) -> Self {
         if !stderr().is_terminal() || (json && !stdout().is_terminal()) {
             return Self(ProgressBar::hidden());
@@ -26,7 +26,7 @@ impl Bar {
         Self(bar)
     }
 
-    /// What moves the bar.
+    /// The callback that moves the bar.
     pub(crate) fn progress(&self) -> Progress {
         let bar = self.0.clone();
         Progress::to(move |share, what| {
@@ -42,7 +42,7 @@ impl Drop for Bar {
     }
 }
 
-/// Step of a share; what is no share is at the nearer end.
+/// Step of a fraction; values outside \[0, 1\] are at the nearer end.
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 0 and STEPS")]
 fn position(share: f64) -> u64 {
     (f64::from(STEPS) * share.clamp(0.0, 1.0)) as u64

@@ -1,4 +1,4 @@
-//! A diagnosis for people: the verdict first, then what it rests on, in about forty lines.
+//! A diagnosis as text: the verdict first, then its evidence, in about forty lines.
 
 use bulge_inference::{CandidateResult, Diagnosis, LadderStep, Level, Missing, Verdict};
 use bulge_report::diagnosis::{
@@ -12,7 +12,7 @@ use crate::diagnose::untested::reasons;
 use crate::text::{significant, with_interval};
 use bulge_report::Call;
 
-/// Lines of a kind that are shown; JSON has all.
+/// Most lines of a kind; JSON has all.
 const MOST_NUMBERS: usize = 6;
 const MOST_PLACES: usize = 4;
 const MOST_HINTS: usize = 3;
@@ -20,10 +20,10 @@ const MOST_RIVALS: usize = 3;
 const MOST_LIMITS: usize = 5;
 const MOST_WARNINGS: usize = 6;
 const MOST_FINDINGS: usize = 6;
-/// What stands before the effects that could not be looked for.
+/// Words before the effects that could not be tested.
 const UNTESTED: &str = "  could not be looked for ";
 
-/// The diagnosis for people.
+/// The diagnosis as text.
 pub(super) fn text(diagnosis: &Diagnosis, call: &Call) -> String {
     let mut out = String::new();
     measured(&mut out, diagnosis);
@@ -99,7 +99,7 @@ fn found(out: &mut String, missing: &Missing, is_claimed: bool) {
             claims if claims == 0 || !is_claimed => String::new(),
             _ => format!(" (the class holds the right one {} of the time)", chance(missing.simulated.class)),
         };
-        // Where no more is claimed than the class, the line above has its names.
+        // If only the class is claimed, its names are in the line above.
         let told = if is_claimed && missing.level == Level::Class {
             format!("these data cannot tell which{right}; the numbers below are those of {}", missing.effect)
         } else {
@@ -128,7 +128,8 @@ fn found(out: &mut String, missing: &Missing, is_claimed: bool) {
     }
 }
 
-/// Errors from the base to the last effect, as `bulge compare` prints them, and those of effects as the data want them.
+/// Errors from the base to the last effect, as `bulge compare` prints them, and the errors of effects with
+/// form errors.
 pub(crate) fn ladder(out: &mut String, diagnosis: &Diagnosis) {
     let name = |step: &LadderStep| step_name(diagnosis, step);
     let width = diagnosis.ladder.iter().map(|step| name(step).len()).max().unwrap_or(0).max(14);
@@ -171,7 +172,7 @@ pub(crate) fn ladder(out: &mut String, diagnosis: &Diagnosis) {
     }
 }
 
-/// On what the misfit of the base depends, beyond chance.
+/// The variables on which the misfit of the base depends significantly.
 fn places(out: &mut String, diagnosis: &Diagnosis) {
     let found: Vec<_> = diagnosis.r#where.iter().filter(|located| is_significant(located.p)).collect();
     if found.is_empty() {
@@ -179,7 +180,7 @@ fn places(out: &mut String, diagnosis: &Diagnosis) {
         return;
     }
     let of = match diagnosis.verdict {
-        // All that was seen of a misfit that doesn't matter is still all of it.
+        // In an adequate model the whole misfit is the tolerated one.
         Verdict::Adequate => {
             format!("the {} N (RMS) that are judged small enough", three(diagnosis.remaining.misfit_n))
         }
@@ -220,7 +221,7 @@ fn rivals(out: &mut String, diagnosis: &Diagnosis) {
     }
 }
 
-/// What of some effects these data would have shown.
+/// Detection limits of some effects for these data.
 fn limits(out: &mut String, diagnosis: &Diagnosis) {
     let is_absent = |c: &&CandidateResult| c.status == "rejected" && c.detection_limit.is_some();
     let absent: Vec<&CandidateResult> = diagnosis.candidates.iter().filter(is_absent).collect();
@@ -255,7 +256,7 @@ fn limits(out: &mut String, diagnosis: &Diagnosis) {
             &format!("did not converge, so neither found nor rejected: {}", failed.join(", ")),
         );
     }
-    // Those that could be the answer stand beside the verdict.
+    // Effects that could be the answer are listed beside the verdict.
     let mut others = untested(diagnosis);
     others.retain(|(name, _)| diagnosis.not_looked_for.iter().all(|effect| effect.effect != *name));
     for line in reasons(&others, UNTESTED.len()) {
@@ -263,7 +264,7 @@ fn limits(out: &mut String, diagnosis: &Diagnosis) {
     }
 }
 
-/// Effects that could not be looked for, and why.
+/// Effects that could not be tested, with the reason.
 pub(crate) fn untested(diagnosis: &Diagnosis) -> Vec<(&str, Option<&str>)> {
     let untested = diagnosis.candidates.iter().filter(|c| c.status == "not-testable");
     untested.map(|c| (c.effect.as_str(), c.why.as_deref())).collect()
@@ -272,7 +273,7 @@ pub(crate) fn untested(diagnosis: &Diagnosis) -> Vec<(&str, Option<&str>)> {
 fn next(out: &mut String, diagnosis: &Diagnosis) {
     let Some(next) = &diagnosis.next_experiment else { return };
     paragraph(out, "  ", &format!("next experiment: {}", next.says.trim()));
-    // No repeats: there is no such experiment, and the sentence says so.
+    // Without repeats there is no such experiment, and the sentence says so.
     if !next.separates.is_empty() && next.repeats > 0 {
         let times = if next.repeats == 1 { "once" } else { "times" };
         let repeats = if next.repeats == 1 { times.to_owned() } else { format!("{} {times}", next.repeats) };
@@ -285,7 +286,7 @@ fn next(out: &mut String, diagnosis: &Diagnosis) {
     }
 }
 
-/// How to go on with what was found.
+/// How to continue with the effects that were found.
 fn accept(out: &mut String, diagnosis: &Diagnosis, call: &Call) {
     if diagnosis.missing.is_empty() || diagnosis.verdict != Verdict::Missing {
         return;
@@ -417,7 +418,7 @@ mod tests {
         let adequate = lines(&diagnosed::adequate(comparison.clone()));
         place(&adequate, "  adequate: the model explains these data within noise and tolerance");
         place(&adequate, "  the misfit of the base depends on nothing that stands out of the noise");
-        // A share that stands out is one of a misfit that doesn't matter.
+        // The fractions given are those of a tolerated misfit.
         let mut passed = diagnosed::adequate(comparison.clone());
         passed.r#where = diagnosed::missing(comparison.clone()).r#where;
         passed.remaining.misfit_n = 0.25;

@@ -1,4 +1,4 @@
-//! Effects that can't be looked for, in one line for each reason.
+//! Effects that can't be tested, in one line for each reason.
 
 use crate::diagnose::paragraph::WIDTH;
 
@@ -6,11 +6,11 @@ use crate::diagnose::paragraph::WIDTH;
 const MOST: usize = 3;
 /// Most characters of a reason.
 const LONGEST: usize = 64;
-/// Where nothing else is known of it.
+/// Reason if no other is known.
 const NOTHING: &str = "would change nothing here";
 
-/// At most three lines, the reason with most effects first: `(needs a path with a column `time`): creep, viscous-damping and 2 more`. Each line follows a word
-/// of `lead` characters.
+/// At most three lines, the reason with most effects first: `(needs a path with a column `time`): creep,
+/// viscous-damping and 2 more`. Each line follows words of `lead` characters.
 pub(crate) fn reasons(untested: &[(&str, Option<&str>)], lead: usize) -> Vec<String> {
     let mut groups: Vec<(&str, Vec<&str>)> = Vec::new();
     for (name, why) in untested {
@@ -20,7 +20,7 @@ pub(crate) fn reasons(untested: &[(&str, Option<&str>)], lead: usize) -> Vec<Str
             None => groups.push((why, vec![name])),
         }
     }
-    // Equally many: the one that came first.
+    // The sort is stable: of reasons with equally many effects the first one comes first.
     groups.sort_by_key(|(_, names)| std::cmp::Reverse(names.len()));
     if groups.len() > MOST {
         let others = groups.split_off(MOST - 1).into_iter().flat_map(|(_, names)| names).collect();
@@ -29,7 +29,7 @@ pub(crate) fn reasons(untested: &[(&str, Option<&str>)], lead: usize) -> Vec<Str
     groups.iter().map(|(why, names)| line(why, names, WIDTH.saturating_sub(lead))).collect()
 }
 
-/// As many names as find room, one at least.
+/// As many names as fit, at least one.
 fn line(why: &str, names: &[&str], width: usize) -> String {
     let why = if why.chars().count() > LONGEST {
         why.chars().take(LONGEST - 3).chain("...".chars()).collect()

@@ -1,4 +1,4 @@
-//! The command as a user sees it: exit statuses, messages, JSON names, and what is left on the disk.
+//! The command as seen by a user: exit statuses, messages, JSON names, and the files left on the disk.
 
 use crate::support::{Folder, bulge, failure, json};
 use std::path::Path;
@@ -100,7 +100,7 @@ fn what_is_wrong_with_the_input_is_status_1() {
     }
 }
 
-/// Files for every way in: a braid, data, a test's protocol, a sweep, a joint.
+/// Files for every kind of input: a braid, data, a test protocol, a sweep, a joint.
 fn ways_in(folder: &Folder, wall: &str, contraction: &str, pressure: &str) -> Vec<Vec<String>> {
     let braid = format!(
         "name = \"b\"\nkind = \"braided\"\nlength = \"120 mm\"\nradius = \"10 mm\"\nbraid_angle = \"25 deg\"\nwall = \"{wall}\"\n"
@@ -151,7 +151,8 @@ fn ways_in(folder: &Folder, wall: &str, contraction: &str, pressure: &str) -> Ve
     .to_vec()
 }
 
-/// Contractions, walls, pressures and holes beyond what a muscle can have: one message and status 1, whatever the way in, and nothing is written.
+/// Impossible contractions, walls, pressures and holes give one message and status 1 for every kind of input,
+/// and nothing is written.
 #[test]
 fn what_no_muscle_can_have_is_refused_by_every_way_in() {
     let folder = Folder::new("refused");
@@ -242,7 +243,8 @@ fn files_appear_whole_or_not_at_all() {
     assert_eq!(folder.names(), ["a.csv", "a.svg"]);
 }
 
-/// Each curve ends where its own muscle ceases to pull: that of a braid with rubber farther out at a higher pressure.
+/// Each curve ends where its own muscle ceases to pull: a braid with rubber reaches further at a higher
+/// pressure.
 #[test]
 fn each_pressure_has_a_range_of_its_own() {
     let folder = Folder::new("own-ranges");
@@ -261,7 +263,8 @@ fn each_pressure_has_a_range_of_its_own() {
     assert!(limits[1] > limits[0] + 0.02, "{limits:?}");
 }
 
-/// Rubber strained by wide fittings carries all of the pressure before the force vanishes: one limit in `shape`, in its errors and in `curve`, which ends there.
+/// Rubber strained by wide fittings carries all of the pressure before the force vanishes. The limit is the
+/// same in `shape`, in its errors and in `curve`, which ends there.
 #[test]
 fn a_muscle_whose_fibres_slacken_ends_there() {
     let folder = Folder::new("slacken");
@@ -288,13 +291,13 @@ fn a_muscle_whose_fibres_slacken_ends_there() {
     assert!(points[8]["force_n"].as_f64().unwrap() > 1.0, "{curve_json}");
     let text = String::from_utf8(bulge(&curve).stdout).unwrap();
     assert!(text.contains(&format!("{:.3} %, where the fibres slacken", 100.0 * limit)), "{text}");
-    // Farther is left out, with the limit.
+    // Points beyond the limit are left out, and the limit is given.
     let farther = [&curve[..], &["--contraction", "0 %..40 %"]].concat();
     let text = String::from_utf8(bulge(&farther).stdout).unwrap();
     assert!(text.contains("left out") && text.contains(&format!("{:.4} %", 100.0 * limit)), "{text}");
-    // Before, its fibres would have to be longer than they are.
+    // Below, its fibres would have to be longer than they are.
     assert!(text.contains("drawn straight") && !text.contains("converge"), "{text}");
-    // A force beyond all that it reaches is answered by the largest one.
+    // For a force beyond the reach of the muscle the answer gives the largest one.
     let (status, message) = failure(&["shape", &muscle, "--pressure", "2 bar", "--force", "10 MN"]);
     assert!(status == 3 && message.contains("the largest force found is"), "{message}");
 }
@@ -352,7 +355,8 @@ fn a_shipped_muscle_is_a_file_to_start_from() {
     assert_eq!(ask(&file), ask("ppam-2-r16"));
 }
 
-/// Every option that names one file: the same bytes into a file, a link, a FIFO and standard output; a full device is an error and stays a device.
+/// Every option that names one file writes the same bytes into a file, a link, a FIFO and standard output; a
+/// full device is an error and stays a device.
 #[cfg(unix)]
 #[test]
 fn every_writer_writes_into_what_a_name_stands_for() {
@@ -373,7 +377,7 @@ fn every_writer_writes_into_what_a_name_stands_for() {
         vec!["size", "--force", "300 N", "--stroke", "30 mm", "--plot"],
         vec!["fit", &data, "--muscle", "dmsp-20-250", "--with", "force-offset", "--out"],
     ];
-    // As root a device can be made for the test; without being root none can be replaced.
+    // As root a device can be created for the test; other users can't replace one.
     let own = folder.path("full.vtp");
     let is_made =
         Command::new("mknod").args([own.as_str(), "c", "1", "7"]).output().is_ok_and(|o| o.status.success());
@@ -404,7 +408,7 @@ fn every_writer_writes_into_what_a_name_stands_for() {
             assert!(call(&fifo).status.success());
             assert!(reader.join().unwrap() == expected, "{writer:?} into a FIFO");
         }
-        // Pictures for ParaView are named by their ending.
+        // ParaView recognises files by their extension.
         if is_device(full) && (is_made || writer.last() != Some(&"--vtk")) {
             let output = call(full);
             let message = String::from_utf8_lossy(&output.stderr).into_owned();
@@ -415,7 +419,7 @@ fn every_writer_writes_into_what_a_name_stands_for() {
             assert!(is_device(full), "{writer:?} replaced a device");
         }
     }
-    // JSON on a standard output that takes nothing is an error as well.
+    // JSON that can't be written to standard output is an error as well.
     if let Ok(out) = std::fs::File::options().write(true).open("/dev/full") {
         let call = Command::new(env!("CARGO_BIN_EXE_bulge"))
             .args(shape)
@@ -425,7 +429,7 @@ fn every_writer_writes_into_what_a_name_stands_for() {
             .status();
         assert_eq!(call.unwrap().code(), Some(1));
     }
-    // A report goes into a folder, behind a link too, and into nothing else.
+    // A report goes into a folder, also through a link, and into nothing else.
     std::fs::create_dir(folder.path("reports")).unwrap();
     symlink("reports", folder.path("behind")).unwrap();
     let compare = ["compare", &data, "--muscle", "dmsp-20-250", "--out"];
@@ -436,7 +440,7 @@ fn every_writer_writes_into_what_a_name_stands_for() {
     assert!(!folder.names().iter().any(|name| name.starts_with(".unfinished")), "{:?}", folder.names());
 }
 
-/// A link stays, a FIFO is written into, and standard output holds the file and nothing else.
+/// A link stays a link, a FIFO is written into, and standard output holds only the file.
 #[cfg(unix)]
 #[test]
 fn targets_that_are_no_regular_files_are_written_through() {
@@ -467,7 +471,7 @@ fn targets_that_are_no_regular_files_are_written_through() {
     let json = ["curve", "dmsp-20-250", "--pressure", "1 bar", "--points", "5", "--csv", "-", "--json"];
     let (status, message) = failure(&json);
     assert!(status == 1 && message.contains("a file or JSON, not both"), "{message}");
-    // A picture of one shape streams as well; many of them are a folder.
+    // A picture of one shape can be streamed too; a series is a folder.
     let shape =
         ["shape", "dmsp-20-250", "--pressure", "1 bar", "--contraction", "10 %", "--points", "5", "--vtk"];
     let file = folder.path("shape.vtp");
@@ -480,7 +484,7 @@ fn targets_that_are_no_regular_files_are_written_through() {
     assert!(status == 1 && message.contains("a file or JSON, not both"), "{message}");
     let (status, message) = failure(&["curve", "dmsp-20-250", "--pressure", "1 bar", "--vtk", "-"]);
     assert!(status == 1 && message.contains("the name of a folder"), "{message}");
-    // A model on standard output is the file, and nothing besides.
+    // With a picture on standard output there is nothing else.
     let svg = bulge(&["curve", "dmsp-20-250", "--pressure", "1 bar", "--points", "5", "--plot", "-"]).stdout;
     assert!(svg.starts_with(b"<svg"), "{}", String::from_utf8_lossy(&svg[..60]));
 }

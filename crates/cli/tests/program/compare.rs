@@ -1,4 +1,5 @@
-//! `compare` and `fit` as a user sees them: ladders on data with a known truth, files that lead on, and messages for bad input.
+//! `compare` and `fit` as seen by a user: ladders on data with a known truth, output files as further input,
+//! and messages for bad input.
 
 use crate::support::{Folder, bulge, failure, json};
 use bulge_effects::{Catalogue, Moment};
@@ -11,7 +12,7 @@ use std::path::Path;
 const MUSCLE: &str =
     "name = \"trial\"\nkind = \"pleated\"\nlength = \"110 mm\"\nradius = \"16 mm\"\nfibres = 40\n";
 
-/// Loops at five pressures of a muscle with stretching fibres and friction, read without noise to 0.01 N.
+/// Loops at five pressures of a muscle with elastic fibres and friction, read without noise to 0.01 N.
 fn loops(truth: &[(&str, &[f64])]) -> String {
     let muscle = from_toml(MUSCLE, "muscle").unwrap();
     let catalogue = Catalogue::builtin();
@@ -71,7 +72,7 @@ fn the_error_falls_as_the_right_effects_are_added() {
     for (number, truth) in
         found["ladder"][2]["fit"]["parameters"].as_array().unwrap().iter().zip([250.0, 12.0])
     {
-        // The stretch is shown with its stiffness beside it.
+        // The compliance is shown together with its stiffness.
         let value = number["also"][1].as_f64().or(number["value"].as_f64()).unwrap();
         assert!((value / truth - 1.0).abs() < 1e-3, "{number}");
         assert_eq!(number["plausible"], true);
@@ -108,11 +109,11 @@ fn what_was_learnt_is_used() {
     assert_eq!(fit["written"], serde_json::json!(["fibre-stretch", "coulomb-friction"]));
     let text = std::fs::read_to_string(&learnt).unwrap();
     assert!(text.contains("[effects.coulomb-friction]") && text.starts_with("# Fitted to"), "{text}");
-    // The next comparison starts where this fit ended.
+    // The next comparison starts with the result of this fit.
     let next = json(&["compare", &data, "--muscle", &learnt, "--json"]);
     let [fitted, start] = [fit["rmse_n"].as_f64().unwrap(), rmse(&next, 0)];
     assert!((start / fitted - 1.0).abs() < 1e-3, "{start} after {fitted}");
-    // The shape is that of stretching fibres; friction has no direction at rest.
+    // The shape is that of elastic fibres; friction has no direction at rest.
     let shape = |file: &str| {
         json(&["shape", file, "--pressure", "3 bar", "--contraction", "10 %", "--json"])["force_n"]
             .as_f64()
@@ -123,7 +124,7 @@ fn what_was_learnt_is_used() {
     assert!((shape(&learnt) / shape(&muscle) - 1.0).abs() > 1e-3);
     let curve = bulge(&["curve", &learnt, "--pressure", "3 bar", "--points", "5"]);
     assert!(curve.status.success());
-    // On standard output the file itself.
+    // Standard output is the file itself.
     let piped = bulge(&["fit", &data, "--muscle", &muscle, "--with", with]);
     assert_eq!(String::from_utf8(piped.stdout).unwrap(), text);
 }
@@ -217,7 +218,7 @@ fn bad_input_gets_one_clear_message() {
     assert_eq!(folder.names(), ["data.csv", "muscle.toml"]);
 }
 
-/// A number that is held, bounded or tied is so in every answer, and in the learnt file.
+/// A parameter that is fixed, bounded or tied is so in every answer, and in the fitted muscle file.
 #[test]
 fn numbers_are_held_bounded_and_tied() {
     let folder = Folder::new("held");
@@ -234,7 +235,7 @@ fn numbers_are_held_bounded_and_tied() {
         (&last["held"][0]["how"], last["held"][0]["value"].as_f64()),
         (&serde_json::json!("held"), Some(10.0))
     );
-    // Of 12 N of friction 2 N are left, in both directions.
+    // Of 12 N of friction 2 N remain, in both directions.
     assert!((rmse(&held, 2) - 2.0).abs() < 0.02, "{}", rmse(&held, 2));
     let bounded = compared(&["--bound", "coulomb-friction=1..11 N"]);
     assert!((rmse(&bounded, 2) - 1.0).abs() < 0.02, "{}", rmse(&bounded, 2));
@@ -286,7 +287,8 @@ fn numbers_are_held_bounded_and_tied() {
     assert!(failure(&call).1.contains("is held and bounded"));
 }
 
-/// Every row goes into a file, with what the ladder's ends say of it, and Bulge reads that file as it read the first.
+/// Every row is written with the forces of the first and the last rung, and Bulge reads that file as it read
+/// the first.
 #[test]
 fn rows_are_written_and_read_again() {
     let folder = Folder::new("rows");
@@ -330,7 +332,7 @@ fn rows_are_written_and_read_again() {
     assert!(status == 1 && message.contains("the data file, which is read"), "{message}");
 }
 
-/// What was learnt from one test predicts another, with or without a force in it.
+/// A muscle fitted to one test predicts another, with or without a measured force.
 #[test]
 fn a_learnt_muscle_predicts_new_rows() {
     let folder = Folder::new("predict");
@@ -367,7 +369,8 @@ fn a_learnt_muscle_predicts_new_rows() {
     assert!(status == 1 && message.contains("the muscle file, which is read"), "{message}");
 }
 
-/// A base is there to be wrong: a muscle that would push where this one pulls is compared all the same, and that is said.
+/// The base may be wrong: a muscle that would push where this one pulls is compared all the same, with a
+/// warning.
 #[test]
 fn a_base_that_would_push_is_shown_with_a_warning() {
     let folder = Folder::new("pushes");
@@ -384,7 +387,8 @@ fn a_base_that_would_push_is_shown_with_a_warning() {
     );
 }
 
-/// A file as a laboratory writes it, with a row that can't be used and one without pressure, from standard input too; what was guessed is told.
+/// A file as written by a laboratory, with an unusable row and one without pressure, also from standard
+/// input; guesses are reported.
 #[test]
 fn a_laboratory_file_goes_in_as_it_is() {
     let folder = Folder::new("laboratory");
@@ -414,7 +418,7 @@ fn a_laboratory_file_goes_in_as_it_is() {
     for part in ["taken for", "Kraft_N", "ignored: Notiz", "decimal commas", "set apart 2 rows", "line 15"] {
         assert!(said.contains(part), "{part} is not in {said}");
     }
-    // The mapping of the muscle file, and standard input.
+    // The mapping from the muscle file, and standard input.
     let odd = text.replace("Kraft_N", "ch4").replace("Druck (bar)", "ch2");
     let mapped = folder.write(
         "mapped.toml",
@@ -437,7 +441,8 @@ fn a_laboratory_file_goes_in_as_it_is() {
     assert!(status == 1 && message.contains("there is no column `ch9 [N]`"), "{message}");
 }
 
-/// A file without any unit is the same test, and what was guessed is told with the reason; the sheet of units that two could have is asked for.
+/// A file without any unit gives the same result, and the guesses are reported with their reason; a unit that
+/// is ambiguous is asked for.
 #[test]
 fn units_that_are_not_written_are_guessed_or_asked_for() {
     let folder = Folder::new("no-units");
@@ -451,7 +456,7 @@ fn units_that_are_not_written_are_guessed_or_asked_for() {
     assert_eq!([2, 3].map(|i| found["data"]["columns"][i]["unit"].clone()), ["bar", "%"]);
     let said = String::from_utf8(bulge(&["compare", &file, "--muscle", &muscle]).stdout).unwrap();
     assert!(said.contains("no unit is written: the forces are"), "{said}");
-    // Pounds as newtons: then it could be psi.
+    // With pounds for newtons the pressure could be in psi.
     let in_pounds = |line: &str| {
         let (rest, force) = line.rsplit_once(',').unwrap();
         force.parse::<f64>().map_or_else(|_| line.to_owned(), |force| format!("{rest},{}", force / 4.448_222))
@@ -465,7 +470,8 @@ fn units_that_are_not_written_are_guessed_or_asked_for() {
     assert!((rmse(&json(&obeyed), 0) / rmse(&exact, 0) - 1.0).abs() < 1e-3);
 }
 
-/// A specimen without rows, a stated direction against the motion, a held length that drifts: each is said, with what to do.
+/// A specimen without rows, a stated direction opposite to the motion, a held length that drifts: each is
+/// reported with its remedy.
 #[test]
 fn what_contradicts_the_rows_is_said() {
     let folder = Folder::new("contradicts");
@@ -474,7 +480,7 @@ fn what_contradicts_the_rows_is_said() {
     let data = folder.write("data.csv", &loops(TRUTH));
     let (status, message) = failure(&["compare", &data, "--muscle", &stated]);
     assert!(status == 1 && message.contains("no row of the data is of the specimen `short`"), "{message}");
-    // The other way round than the motion.
+    // Labelled opposite to the motion.
     let labelled = |line: &str| match line.split(',').next().and_then(|text| text.parse::<usize>().ok()) {
         Some(row) => format!("{line},{},shrot", if row % 40 < 20 { "down" } else { "up" }),
         None => format!("{line},direction,specimen"),
@@ -495,7 +501,7 @@ fn what_contradicts_the_rows_is_said() {
     assert!(said.contains("at held length, whose length changes by up to"), "{said}");
 }
 
-/// What `curve` writes goes into `compare`, and is met.
+/// The output of `curve` can be read by `compare`, and has no error.
 #[test]
 fn a_curve_is_data() {
     let folder = Folder::new("curve-is-data");
@@ -512,7 +518,8 @@ fn a_curve_is_data() {
     );
 }
 
-/// Simulated tests as laboratories write them (`validation/real-tests/cases`): every file is read as it is, and compared.
+/// Simulated tests in the formats of laboratories (`validation/real-tests/cases`): every file is read
+/// unchanged, and compared.
 #[test]
 fn files_of_real_tests_are_answered_as_they_are() {
     let cases = concat!(env!("CARGO_MANIFEST_DIR"), "/../../validation/real-tests/cases");
@@ -529,7 +536,7 @@ fn files_of_real_tests_are_answered_as_they_are() {
             ["compare", "--json"].into_iter().chain(words.iter().map(String::as_str)).collect();
         let found = json(&arguments);
         let base = &found["ladder"][0];
-        // A muscle with friction is off by some per cent of full scale; one that was misread by far more.
+        // A muscle with friction has an error of some per cent of full scale; a misread one has far more.
         assert!(base["rmse_percent"].as_f64().unwrap() < 8.0, "{}: {base}", case.display());
         kinds.extend(found["data"]["sweep_kinds"].as_array().unwrap().iter().cloned());
     }
@@ -538,7 +545,7 @@ fn files_of_real_tests_are_answered_as_they_are() {
     }
 }
 
-/// A sweep is left out by its lines: the rows that count are those of the others.
+/// A sweep is excluded by its lines: the rows that count are those of the other sweeps.
 #[test]
 fn rows_are_left_out_by_their_lines() {
     let folder = Folder::new("exclude");
@@ -555,11 +562,11 @@ fn rows_are_left_out_by_their_lines() {
         let (status, message) = failure(&["compare", &data, "--muscle", &muscle, "--exclude", lines]);
         assert!(status == 1 && message.contains(part), "{message}");
     }
-    // What a diagnosis proposes takes it over.
+    // The command proposed by a diagnosis contains the exclusion.
     let command = ["diagnose", &data, "--muscle", &muscle, "--with", "fibre-stretch", "--exclude", "2-41"];
     let said = String::from_utf8(bulge(&command).stdout).unwrap();
     assert!(said.contains("--exclude 2-41") && said.contains("coulomb-friction"), "{said}");
-    // A prediction has all rows, and its errors are those of the others.
+    // A prediction has all rows; its errors are those of the other rows.
     let predicted = json(&["predict", &data, "--muscle", &muscle, "--exclude", "2-41", "--json"]);
     assert_eq!([&predicted["rows"], &predicted["against"]["rows"]].map(|n| n.as_u64().unwrap()), [200, 160]);
     assert_eq!(predicted["columns"]["force_n"].as_array().unwrap().len(), 200);

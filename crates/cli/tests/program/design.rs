@@ -1,4 +1,4 @@
-//! `bulge air`, `bulge sense` and `bulge heat` as a user sees them.
+//! `bulge air`, `bulge sense` and `bulge heat` as seen by a user.
 
 use crate::support::{Folder, bulge, failure, json};
 use serde_json::Value;
@@ -7,7 +7,7 @@ fn number(value: &Value) -> f64 {
     value.as_f64().unwrap()
 }
 
-/// The resistance rises as the muscle bulges; the table, the CSV and the JSON are one curve.
+/// The resistance rises as the muscle bulges; the table, the CSV and the JSON contain the same curve.
 #[test]
 fn a_channel_tells_the_contraction() {
     let folder = Folder::new("sense");
@@ -22,7 +22,7 @@ fn a_channel_tells_the_contraction() {
     let length = ((20.0 * std::f64::consts::TAU * 0.0165).powi(2) + 0.044_f64.powi(2)).sqrt();
     let rest = 29.4e-8 * length / (0.25 * std::f64::consts::PI * 0.25e-3 * 0.25e-3);
     assert!((number(&document["curve"]["reference_resistance_ohm"]) / rest - 1.0).abs() < 1e-9);
-    // 1 mohm over the slope of the last two points.
+    // 1 mohm divided by the slope of the last two points.
     let slope = (resistances[100] - resistances[99]) / 0.0025;
     assert!((number(&document["resolution"]["worst"]) * slope / 1e-3 - 1.0).abs() < 0.01);
     let written = std::fs::read_to_string(csv).unwrap();
@@ -47,7 +47,8 @@ fn a_channel_tells_the_contraction() {
     );
 }
 
-/// As S3 reports: the end without a pipe is hottest; a longer pipe cools the end and warms the inlet, a wider one the other way.
+/// The trends of S3: the end without a pipe is hottest; a longer pipe cools the end and warms the inlet, a
+/// wider one does the opposite.
 #[test]
 fn pipes_cool_the_closed_end() {
     let folder = Folder::new("heat");
@@ -73,7 +74,7 @@ fn pipes_cool_the_closed_end() {
     );
 }
 
-/// Shut, filled and used: the same air in all three.
+/// Shut, filled and used: the amounts of air agree.
 #[test]
 fn air_is_kept_counted_and_spent() {
     let folder = Folder::new("air");
@@ -106,7 +107,7 @@ fn air_is_kept_counted_and_spent() {
         assert!((number(&stiffness["total_n_per_m"]) / sum - 1.0).abs() < 1e-12);
     }
     assert!((number(&shut["under_force"]["force_n"]) - 500.0).abs() < 1e-5);
-    // Held where it was shut: as much air, less what was in it before.
+    // Held at the same contraction: the same amount of air, less the initial one.
     let fill = [
         "air",
         "fill",
@@ -156,7 +157,8 @@ fn air_is_kept_counted_and_spent() {
     assert!((spent / cycle("exergy_j") - 1.0).abs() < 1e-9 && cycle("efficiency") < 0.2);
 }
 
-/// Fibres of 5 N balloon: there is no equilibrium, and the answer says how far from one the muscle is.
+/// A muscle with fibres of 5 N balloons: there is no equilibrium, and the answer says how far the muscle is
+/// from one.
 #[test]
 fn fibres_that_are_too_soft_are_named() {
     let folder = Folder::new("design-soft");
@@ -173,7 +175,7 @@ fn fibres_that_are_too_soft_are_named() {
 #[test]
 fn mistakes_are_named() {
     let folder = Folder::new("design-mistakes");
-    // Along fibres that don't stretch nothing is felt.
+    // Along rigid fibres the channel doesn't change.
     let rigid =
         "name = \"rigid\"\nkind = \"pleated\"\nlength = \"110 mm\"\nradius = \"16 mm\"\nfibres = 40\n";
     let rigid = folder.write("rigid.toml", rigid);

@@ -1,4 +1,5 @@
-//! `diagnose` as a user sees it: hidden effects are named, documents and reports are whole, messages for bad input.
+//! `diagnose` as seen by a user: hidden effects are named, documents and reports are complete, messages for
+//! bad input.
 
 use crate::support::{Folder, bulge, failure, json};
 use serde_json::Value;
@@ -73,7 +74,7 @@ fn a_hidden_effect_is_named_and_the_document_has_all_keys() {
     has(&found["where"][0], &["variable", "share", "p", "says"]);
     assert_eq!(found["where"][0]["variable"], "contraction");
     has(&found["remaining"], &["structured", "misfit_n", "hints"]);
-    // The report holds the same.
+    // The report contains the same.
     let read = |name: &str| fs::read_to_string(Path::new(&out).join(name)).unwrap();
     assert_eq!(serde_json::from_str::<Value>(&read("diagnosis.json")).unwrap(), found);
     let page = read("report.html");
@@ -107,7 +108,7 @@ fn people_read_the_verdict_first_and_how_to_go_on() {
     assert!(place("+ bladder-elasticity") < place("noise floor"));
     let accept = format!("bulge diagnose {data} --muscle {muscle} --with bladder-elasticity");
     assert!(place("noise: a single reading") < place(&accept));
-    // What is accepted is not found again.
+    // An effect that was added isn't found again.
     let next = json(&["diagnose", &data, "--muscle", &muscle, "--with", "bladder-elasticity", "--json"]);
     assert_eq!(next["verdict"], "adequate", "{}", next["says"]);
     assert_eq!(next["missing"].as_array().unwrap().len(), 0);
@@ -179,7 +180,8 @@ fn a_report_that_has_no_place_is_refused_and_nothing_is_written() {
     assert_eq!(fs::read_dir(folder.0.join("out")).unwrap().count(), 1);
 }
 
-/// Loops at four pressures of the textbook cylinder, each sweep off by so much \[N\], and each reading changed.
+/// Loops of the textbook cylinder at four pressures, with an offset of each sweep \[N\] and a change of each
+/// reading.
 fn loops(off: [f64; 4], change: impl Fn(usize, f64) -> f64) -> String {
     let mut text = String::from("sweep,time [s],pressure [bar],contraction [%],force [N]\n");
     let angle = 25.0_f64.to_radians();
@@ -239,7 +241,7 @@ impl Answer {
         self.list(key).iter().map(|missing| missing["effect"].as_str().unwrap()).collect()
     }
 
-    /// What a reader takes from one place holds in the others.
+    /// The text, the JSON and the page agree.
     fn agrees(&self) {
         let (text, json) = (&self.text, &self.json);
         let says = |part: &str| assert!(text.contains(part), "no {part:?} in {text}");
@@ -253,11 +255,11 @@ impl Answer {
         for part in ["structure of 0 N", "structure of 0.00", "NaN", "inf "] {
             never(part);
         }
-        // A percentage that nobody simulated says so.
+        // A percentage that wasn't simulated says so.
         for missing in self.list("missing") {
             let name = missing["effect"].as_str().unwrap();
             let claims = missing["simulated"]["claims"].as_u64().unwrap();
-            // A name that is likelier wrong than right is one of several.
+            // A name that is more likely wrong than right is given as one of several.
             let begins = match missing["level"].as_str().unwrap() {
                 "form" | "family" => format!("missing: {name} ("),
                 "mechanism" => format!("likeliest {name} ("),
@@ -270,7 +272,7 @@ impl Answer {
         for nearest in self.names("nearest") {
             says(&format!("nearest: {nearest} ("));
         }
-        // Each rung lowers something; only the last can be enough.
+        // Each rung reduces the error; only the last one can be sufficient.
         let ladder = self.list("ladder");
         for pair in ladder.windows(2) {
             let [before, after] = [&pair[0], &pair[1]].map(|rung| rung["rmse_n"].as_f64().unwrap());
@@ -299,7 +301,7 @@ impl Answer {
             }
         }
         assert_eq!(text.contains("to accept this step"), self.verdict() == "missing", "{text}");
-        // What the data check found stands everywhere.
+        // The findings of the quality gate are in all of them.
         let quality = json["data"]["quality"].as_array().unwrap();
         for finding in quality.iter().take(6) {
             says(finding["says"].as_str().unwrap());
@@ -313,7 +315,7 @@ impl Answer {
         }
     }
 
-    /// A tolerance takes claims away, and makes none.
+    /// A tolerance removes claims and adds none.
     fn is_no_stronger_than(&self, other: &Self) {
         let pair = [other.verdict(), self.verdict()];
         let allowed = [["missing", "adequate"], ["unknown", "adequate"], ["adequate", "cannot-tell"]];
@@ -348,7 +350,7 @@ fn sentences_of_a_diagnosis_agree_with_each_other_and_a_tolerance_only_weakens_t
     };
     let muscle = folder.write("c.toml", CYLINDER);
     let off = folder.write("off.csv", &loops([90.0, -80.0, 110.0, -60.0], |_, force| force));
-    // Friction and a spike.
+    // Friction and an outlier.
     let disturbed = |row: usize, force: f64| match row {
         30 => force + 900.0,
         _ => force - if row % 40 < 20 { 8.0 } else { -8.0 },
@@ -383,7 +385,8 @@ fn sentences_of_a_diagnosis_agree_with_each_other_and_a_tolerance_only_weakens_t
     assert!(found > 0);
 }
 
-/// Friction of a form that the catalogue lacks: it grows with the square root of the pressure, and with the contraction.
+/// Friction of a form that the catalogue lacks: it grows with the square root of the pressure, and with the
+/// contraction.
 const OWN_FRICTION: &str = "\
 [effects.own-friction]
 title = \"Friction of its own\"
@@ -409,7 +412,8 @@ fn a_form_that_the_data_want_becomes_an_effect_of_ones_own() {
     assert_eq!(form["written"], "coulomb-friction-bent", "{form}");
     let (exact, wanted) = (drawn["rmse_n"].as_f64().unwrap(), drawn["bent_rmse_n"].as_f64().unwrap());
     assert!(wanted < 0.5 * exact, "{exact} {wanted}");
-    // The drawing has the hidden form within its intervals, and the file explains the data as the bent fit does.
+    // The drawn form contains the hidden one within its intervals, and the file explains the data as well as
+    // the fit with form error.
     let curves = form["form_error"]["curves"].as_array().unwrap();
     assert!(!curves.is_empty());
     for curve in curves {
@@ -420,7 +424,7 @@ fn a_form_that_the_data_want_becomes_an_effect_of_ones_own() {
         let strength = -number("direction") * 40.0 * (number("pressure_pa") / 3e5).sqrt();
         for ((eps, drawn), sd) in list("contraction").iter().zip(list("bent_n")).zip(list("sd_n")) {
             let hidden = strength * (0.55 + 5.0 * eps);
-            // Means of a few rows each; a bin may hold a reading at a turn.
+            // Each is a mean of a few rows; a bin may contain a reading at a turn.
             assert!((drawn - hidden).abs() < 5.0 * sd + 0.01 * hidden.abs(), "{eps} {drawn} {hidden} {sd}");
         }
     }
@@ -432,7 +436,7 @@ fn a_form_that_the_data_want_becomes_an_effect_of_ones_own() {
     assert!(after < 0.2 * before && (after / wanted - 1.0).abs() < 0.1, "{before} {exact} {after} {wanted}");
     let size = &rungs[rungs.len() - 1]["fit"]["parameters"][0];
     assert_eq!(size["effect"], "coulomb-friction-bent");
-    // A formula that holds is not written.
+    // A formula without form error is not written.
     let none = folder.path("none.toml");
     let radius = json(&[&["fit"], &about[..], &["--with", "radius-error", "--form-error", &none]].concat());
     let says = radius["drawn"]["forms"][0]["says"].as_str().unwrap();
@@ -440,7 +444,7 @@ fn a_form_that_the_data_want_becomes_an_effect_of_ones_own() {
     assert!(!Path::new(&none).exists());
 }
 
-/// A hum, and one that grows: functions of the time alone.
+/// A hum, and one with growing amplitude: functions of time alone.
 const HUMS: &str = "\
 [effects.hum]
 title = \"A hum\"
@@ -528,7 +532,7 @@ fn what_a_fit_writes_is_kept_apart_from_what_it_reads() {
         assert_eq!(read(), before, "{more:?}");
         assert_eq!(folder.names(), listed, "{more:?}");
     }
-    // Neither is one of two files written where the other can't be.
+    // If one of two files can't be written, neither is.
     let nowhere = folder.path("nowhere/learnt.toml");
     let call =
         ["fit", &data, "--muscle", &muscle, "--with", "creep", "--form-error", &new, "--out", &nowhere];
@@ -546,7 +550,7 @@ fn a_learnt_muscle_may_take_the_place_of_the_one_that_was_read() {
     assert!(fs::read_to_string(&muscle).unwrap().contains("[effects.coulomb-friction]"));
 }
 
-/// Rubber of another form than the catalogue's, by Gent (1996).
+/// Rubber of another form than that of the catalogue, by Gent (1996).
 const GENT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/data/gent-liner.toml");
 
 fn gent(folder: &Folder, name: &str, numbers: &str) -> [String; 2] {
@@ -563,14 +567,14 @@ fn the_page_on_drawn_forms_says_what_the_commands_say() {
     let page = include_str!("../../../../docs/drawn-form.md");
     let folder = Folder::new("drawn-form");
     let [data, muscle] = gent(&folder, "gent", "150 N,1");
-    // They are what the tour ships.
+    // They are the files shipped with the tour.
     let shipped = concat!(env!("CARGO_MANIFEST_DIR"), "/data/own-form/data.csv");
     assert_eq!(fs::read_to_string(&data).unwrap(), fs::read_to_string(shipped).unwrap());
     let about = [&data[..], "--muscle", &muscle, "--json"];
     let first = json(&[&["diagnose"], &about[..]].concat());
     let named = &first["missing"][0];
     assert_eq!((&named["mechanism"], &named["fitted"]), (&"rubber".into(), &"bladder-axial".into()));
-    // The ladder has the same errors of the formula and of the form.
+    // The ladder has the same errors for the formula and for the form.
     let ladder: Vec<String> = first["ladder"]
         .as_array()
         .unwrap()
@@ -598,7 +602,8 @@ fn the_page_on_drawn_forms_says_what_the_commands_say() {
     }
     let again = json(&[&["diagnose"], &about[..], &with].concat());
     assert_eq!(again["verdict"], "adequate");
-    // A relaxation that takes longer than any sweep is a spring: it doesn't take the place of rubber whose chains are shorter.
+    // A relaxation slower than any sweep acts as a spring: it must not replace rubber with limited chain
+    // extensibility.
     for numbers in ["150 N,0.3", "150 N,0.6"] {
         let [data, muscle] = gent(&folder, "shorter", numbers);
         let found = json(&["diagnose", &data, "--muscle", &muscle, "--json"]);

@@ -1,4 +1,4 @@
-//! `bulge joint` as a user sees it: rest, outside torque, pressures, shut valves, and mistakes.
+//! `bulge joint` as seen by a user: equilibrium, external torque, pressures, shut valves, and mistakes.
 
 use crate::support::{Folder, bulge, failure, json};
 use serde_json::Value;
@@ -10,7 +10,8 @@ fn number(document: &Value, keys: &[&str]) -> f64 {
     keys.iter().fold(document, |value, key| &value[*key]).as_f64().unwrap()
 }
 
-/// 4.569 deg under 3 N m; held there from outside by just these; and its stiffness asks for its pressures.
+/// The answers are consistent: 4.569 deg under 3 N m; the same external torque holds it there; its stiffness
+/// gives back its pressures.
 #[test]
 fn the_questions_answer_each_other() {
     let folder = Folder::new("joint-questions");
@@ -33,7 +34,7 @@ fn the_questions_answer_each_other() {
         "--json",
     ]);
     assert!((number(&held, &["outside", "torque_nm"]) - 3.0).abs() < 1e-6);
-    // Two muscles of 10 N each on 40 mm, and what the pressures add.
+    // Two muscles of 10 N each on 40 mm, and the contribution of the pressures.
     let [pressures, angles, forces] =
         [0, 1, 2].map(|i: usize| held["outside"]["from_nm"][i].as_f64().unwrap());
     assert!((forces - 0.4 * 2_f64.sqrt()).abs() < 1e-9 && angles.abs() < 1e-12 && pressures > 0.1);
@@ -74,7 +75,7 @@ fn its_range_and_a_picture() {
     let map = json(&["joint", &knee, "--json"]);
     let map = map["map"].as_array().unwrap();
     assert_eq!((map.len(), folder.names().len()), (25, 2));
-    // Equal pressures rest in the middle, and are stiffer the higher they are.
+    // With equal pressures it rests in the middle, and its stiffness increases with them.
     let even: Vec<f64> = [0, 6, 12, 18, 24]
         .map(|i: usize| {
             assert!(number(&map[i], &["angle_rad"]).abs() < 1e-9);

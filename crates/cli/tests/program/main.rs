@@ -1,4 +1,4 @@
-//! The command as a user sees it: one program of tests, one module for each part of it.
+//! The command as seen by a user: one test program, one module for each part.
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 

@@ -1,11 +1,11 @@
-//! `bulge membrane` as a user sees it: result, files, and what it says of mistaken cases.
+//! `bulge membrane` as seen by a user: result, files, and messages for wrong cases.
 
 use crate::support::{Folder, bulge, failure, json};
 use bulge_membrane::case::{Case, Row};
 
 const TUBE: &str = include_str!("../../../../meshes/tube.toml");
 
-/// Cloth of 50 kN/m that is 270 mm round: its last fold is gone at a radius of 43 mm.
+/// Cloth of 50 kN/m with a circumference of 270 mm: its last fold vanishes at a radius of 43 mm.
 const PLEATED: &str = "[mesher]\nkind = \"pleated\"\nmuscle = \"ppam-2-r16\"\ncircumference = \"270 mm\"\ncells = [4, 12]\n\
     [[material]]\nname = \"cloth\"\nlaw = \"st-venant\"\nthickness = \"0.1 mm\"\nyoung = \"500 MPa\"\npoisson = 0.3\n\
     [[part]]\ngroup = \"cloth\"\nkind = \"membrane\"\nmaterial = \"cloth\"\n\
@@ -40,7 +40,7 @@ fn the_cloth_becomes_an_effect_of_the_muscle() {
     let effect = &document["effect"];
     let [after, before] = ["rmse_n", "before_rmse_n"].map(|name| effect[name].as_f64().unwrap());
     assert!(after < 0.3 * before, "{after} {before}");
-    // The file is a muscle like any other, and gives the elements' force where the cloth is taut.
+    // The file is an ordinary muscle, and gives the force of the elements where the cloth is taut.
     let states = document["states"].as_array().unwrap();
     let state =
         states.iter().find(|state| (state["contraction"].as_f64().unwrap() - 0.2).abs() < 1e-9).unwrap();
@@ -60,11 +60,11 @@ fn the_cloth_becomes_an_effect_of_the_muscle() {
     assert!((radius.parse::<f64>().unwrap() / 42.97 - 1.0).abs() < 0.15, "{text}");
 }
 
-/// Of the cases in `meshes/` what their README says, from other methods than elements.
+/// The cases in `meshes/` give the values of their README, which come from other methods than elements.
 #[test]
 fn the_ready_cases_give_their_numbers() {
     let force = |row: &Row| row.force.unwrap();
-    // A case, a state counted from 1, and how far off it is.
+    // A case, a state counted from 1, and its deviation.
     let rows = |name: &str| {
         let case = Case::read(format!("{}/../../meshes/{name}.toml", env!("CARGO_MANIFEST_DIR"))).unwrap();
         let mut rows = Vec::new();
@@ -93,7 +93,7 @@ fn the_ready_cases_give_their_numbers() {
     near("braid: volume at 20 %", braid[3].volume, 34.085_971_6e-6, 1e-7);
 }
 
-/// Cloth in plenty never comes taut: what lobes cost mustn't be called limited unfolding.
+/// Abundant cloth never becomes taut: the force lost to lobes must not be called limited unfolding.
 #[test]
 fn a_wrong_effect_is_not_written() {
     let folder = Folder::new("membrane-wrong-effect");
@@ -123,20 +123,20 @@ fn a_pressure_beyond_the_limit_is_said_with_the_last_state() {
     for part in ["state 2", "prescribe the volume", "3.43", "states.csv"] {
         assert!(message.contains(part), "no `{part}` in {message}");
     }
-    // The state that was reached, and the one nearest to the limit.
+    // The last state reached, and the one nearest to the limit.
     assert!(message.contains("the last equilibrium on the way to state 2: 0.3434 bar"), "{message}");
     let states = std::fs::read_to_string(format!("{out}/states.csv")).unwrap();
     assert_eq!(states.lines().count(), 3);
     let pressure: f64 = states.lines().last().unwrap().split(',').nth(2).unwrap().parse().unwrap();
     assert!((pressure / 34_342.062 - 1.0).abs() < 1e-3, "{pressure}");
-    // It goes on by its volume.
+    // Prescribing the volume leads beyond it.
     let text = TUBE.replace("pressure = \"30 kPa\"", "volume = \"68.3118838 ml\"");
     let case = folder.write("volume.toml", &text);
     let document = json(&["membrane", &case, "--out", &out, "--json"]);
     assert!((document["states"][0]["pressure_pa"].as_f64().unwrap() / 32_353.062 - 1.0).abs() < 1e-4);
 }
 
-/// What an earlier run left doesn't pass for this one's result, nor teach it anything.
+/// Files of an earlier run are neither taken for results of this one nor fitted.
 #[test]
 fn an_earlier_run_is_cleared_away() {
     let folder = Folder::new("membrane-again");
@@ -154,7 +154,7 @@ fn an_earlier_run_is_cleared_away() {
     };
     assert!(names().len() == 8 && names().contains(&"membrane-whole.vtu".to_owned()), "{:?}", names());
     std::fs::write(format!("{out}/notes.txt"), "mine").unwrap();
-    // Without pressure there is no force to learn from, and there was one before.
+    // Without pressure there is no force to fit, although there was one in the earlier run.
     let steps = short.find("[[step]]").unwrap();
     let slack = short[..steps].to_owned() + "[[step]]\npressure = \"0 bar\"\ncontraction = \"0 %\"\n";
     let case = folder.write("case.toml", &slack);
@@ -165,7 +165,7 @@ fn an_earlier_run_is_cleared_away() {
         ["membrane-whole.vtu", "membrane.pvd", "membrane_0000.vtu", "notes.txt", "states.csv"]
     );
     assert!(!std::path::Path::new(&model).exists());
-    // A model that could not be written is refused before the run.
+    // An output file that can't be written is rejected before the run.
     let nowhere = folder.path("nowhere/model.toml");
     let (status, message) = failure(&["membrane", &case, "--out", &out, "--as-effect", &nowhere]);
     assert!(status == 1 && message.contains("there is no folder"), "{message}");
@@ -218,7 +218,7 @@ fn mistaken_cases_are_refused_with_their_cure() {
         assert!(status == 1 && message.contains(cure) && message.contains("case.toml"), "{to}: {message}");
     }
     assert_eq!(folder.names(), ["case.toml"], "a refused case leaves nothing behind");
-    // A plane of symmetry that doesn't close the volume, and supports that contradict each other.
+    // A plane of symmetry that doesn't close the volume, and contradictory supports.
     for (more, cure) in [
         (
             "[[support]]\ngroup = \"last\"\nkind = \"plane\"\nnormal = [1, 0, 1]\n",
@@ -258,15 +258,15 @@ fn meshes_come_from_gmsh() {
     assert!((document["states"][0]["contraction"].as_f64().unwrap() - 0.05).abs() < 1e-12);
     let volume = document["states"][0]["volume_m3"].as_f64().unwrap();
     assert!(volume > 2e-5 && volume < 3e-5, "{volume}");
-    // The same mesh in metres is a thousand times too large for its length, but a mesh all the same; without a unit it is none.
+    // The same mesh in metres is a thousand times too large, but still valid; without a unit it is rejected.
     let no_unit = folder.write("no-unit.toml", &FROM_FILE.replace("unit = \"mm\"\n", ""));
     let (status, message) = failure(&["membrane", &no_unit, "--out", &out]);
     assert!(status == 1 && message.contains("`unit`"), "{message}");
-    // Cut in the middle.
+    // Truncated in the middle.
     folder.write("tube.msh", &mesh[..mesh.len() / 2]);
     let (status, message) = failure(&["membrane", &case, "--out", &out]);
     assert!(status == 1 && message.contains("tube.msh"), "{message}");
-    // A hole: the edge that nothing holds.
+    // A hole: a free edge without support.
     folder.write("tube.msh", &mesh);
     let support = "[[support]]\ngroup = \"right\"\nkind = \"plane\"\nnormal = [1, 0, 0]\n";
     let hole = folder.write("hole.toml", &FROM_FILE.replace(support, ""));
@@ -277,7 +277,7 @@ fn meshes_come_from_gmsh() {
 const BLADDER: &str = "name = \"braid\"\nkind = \"braided\"\nlength = \"60 mm\"\nradius = \"10 mm\"\nbraid_angle = \"25 deg\"\nwall = \"1 mm\"\n\
     fibres = 100\nfibre = { stiffness = \"2 kN\" }\n[effects.bladder-elasticity]\nc10 = \"0.2 MPa\"\n";
 
-/// Two methods that share nothing: shooting on the meridian, and elements on the energy.
+/// Two methods without common parts: shooting on the meridian, and elements on the energy.
 #[test]
 fn a_shape_by_elements_is_that_of_the_meridian() {
     let folder = Folder::new("membrane-shape");
@@ -317,7 +317,8 @@ fn a_shape_by_elements_is_that_of_the_meridian() {
             }
         }
     }
-    // Where the meridian has no equilibrium, elements give none either: a surface in elements may fold past its limit.
+    // Where the meridian has no equilibrium, elements must give none either, although a surface of elements
+    // may fold past its limit.
     for (muscle, contraction) in [("ppam-2-r16", "90 %"), ("ppam-2-r16", "-5 %"), ("dmsp-20-250", "45 %")] {
         let given = format!("--contraction={contraction}");
         let command =

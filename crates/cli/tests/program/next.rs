@@ -1,4 +1,5 @@
-//! `next` as a user sees it: what is open, the experiment that decides it (and does), the honest answers where none does.
+//! `next` as seen by a user: the open question, the experiment that decides it (and does), and the honest
+//! answer if none does.
 
 use crate::support::{Folder, bulge, failure, json};
 use serde_json::Value;
@@ -11,7 +12,7 @@ const LOOP: &str =
     "[[block]]\npressures = [\"3 bar\"]\ncontraction = \"1 %..20 %\"\nperiod = \"50 s\"\nrows = 50\n";
 const NOISE: &str = "[noise]\nforce = \"2 N\"\npressure = \"100 Pa\"\n";
 
-/// Simulated measurements in a folder of that name: data file and muscle file.
+/// Simulated measurements in a folder of the given name: data file and muscle file.
 fn simulated(folder: &Folder, name: &str, protocol: &str, hidden: &str, seed: &str) -> [String; 2] {
     let out = folder.path(name);
     let output =
@@ -68,7 +69,7 @@ fn where_no_test_of_force_separates_that_is_said() {
     assert!(!text.contains("and then, with both"), "{text}");
 }
 
-/// What a proposal says, as a protocol between 2 and 5 bar.
+/// The proposed test as a protocol between 2 and 5 bar.
 fn proposed(says: &str) -> String {
     let block = |pressures: &str, more: &str| {
         format!(
@@ -99,7 +100,7 @@ fn proposed(says: &str) -> String {
 fn what_is_proposed_decides_what_was_open() {
     let folder = Folder::new("next-friction");
     let one = folder.write("one.toml", &format!("{LOOP}{NOISE}"));
-    // At one pressure, friction that goes with the pressure is as good as friction that doesn't.
+    // At one pressure, friction proportional to the pressure can't be distinguished from constant friction.
     let [data, muscle] = simulated(&folder, "one", &one, "coulomb-friction=14 N", "2");
     let arguments = ["next", &data, "--muscle", &muscle, "--pressure", "2 bar..5 bar"];
     let found = json(&[&arguments[..], &["--json"]].concat());
@@ -127,7 +128,7 @@ fn what_is_proposed_decides_what_was_open() {
 #[test]
 fn rivals_that_differ_by_their_rate_alone_are_measured_slower_and_faster() {
     let folder = Folder::new("next-rate");
-    // At one speed drag is dry friction.
+    // At one speed drag is indistinguishable from dry friction.
     let [data, muscle] = simulated(&folder, "one", PROTOCOL, "viscous-damping", "7");
     let found = json(&["next", &data, "--muscle", &muscle, "--json"]);
     let class = class(&found);
@@ -191,7 +192,7 @@ fn where_nothing_is_open_the_largest_limit_is_named() {
     assert_eq!(again(), again());
 }
 
-/// Data with a bump of 25 N over the contraction, which no effect has.
+/// Data with a bump of 25 N over the contraction, which no effect produces.
 fn with_a_bump(csv: &str) -> String {
     let is_row = |line: &str| line.starts_with(|c: char| c.is_ascii_digit());
     let columns: Vec<&str> = csv.lines().find(|line| line.starts_with("time")).unwrap().split(',').collect();

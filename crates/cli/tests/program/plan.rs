@@ -1,4 +1,4 @@
-//! `plan` as a user sees it: detection limits by hand, twins by name, one message for bad input.
+//! `plan` as seen by a user: detection limits by hand, twins by name, one message for bad input.
 
 use crate::support::{Folder, bulge, failure, json};
 use serde_json::Value;
@@ -9,7 +9,7 @@ const PROTOCOL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/data/protocol.toml"
 /// A static map with white noise of 2 N.
 const MAP: &str = "[[block]]\nshape = \"static\"\npressures = \"2,3,4 bar\"\ncontraction = \"1 %..20 %\"\nrows = 20\n\n[noise]\nforce = \"2 N\"\n";
 
-/// The shipped braid without data sheets: nothing but the noise of the protocol limits what is seen.
+/// The shipped braid without data sheets: only the noise of the protocol limits detection.
 fn bare(folder: &Folder) -> String {
     let text = fs::read_to_string(MUSCLE).unwrap();
     folder.write("bare.toml", text.split("[instruments]").next().unwrap())
@@ -33,12 +33,12 @@ fn limits_are_those_of_an_estimate_by_hand() {
     assert!((number(offset, "detection_limit") / expected - 1.0).abs() < 1e-9, "{offset}");
     // The usual offset is 10 N.
     assert!((number(offset, "usual_sigma") - 3.3 * 10.0 / expected).abs() < 1e-6, "{offset}");
-    // Of any effect that nothing compensates, the RMS change of the force at the limit is the same.
+    // For every effect without compensation the RMS change of the force at the limit is the same.
     let effects = plan["effects"].as_array().unwrap();
     let free = effects.iter().filter(|e| e["detection_limit_n"].is_f64() && number(e, "compensation") < 1e-9);
     let limits: Vec<f64> = free.map(|e| number(e, "detection_limit_n")).collect();
     assert!(limits.len() > 10 && limits.iter().all(|n| (n / expected - 1.0).abs() < 1e-6), "{limits:?}");
-    // Half the noise, half the limit; a quarter of the rows, twice.
+    // Half the noise halves the limit; a quarter of the rows doubles it.
     for (change, factor) in [(("\"2 N\"", "\"1 N\""), 0.5), (("rows = 20", "rows = 5"), 2.0)] {
         let other = folder.write("other.toml", &MAP.replace(change.0, change.1));
         let plan = json(&["plan", "--muscle", &muscle, "--protocol", &other, "--json"]);
@@ -58,12 +58,12 @@ fn a_test_like_the_one_that_was_made_is_written_as_a_protocol() {
     let again = json(&["plan", "--muscle", MUSCLE, "--protocol", &out, "--json"]);
     assert!(again == plan, "what is written is another test");
     let written = fs::read_to_string(&out).unwrap();
-    // At a higher pressure the muscle went farther.
+    // At a higher pressure the muscle moved further.
     let block = "pressures = [\"5 bar\"]\ncontraction = \"1 %..20 %\"\nwave = \"sine\"\ncycles = 3\nperiod = \"50 s\"\nrows = 50\n";
     assert!(written.contains(block) && written.matches("[[block]]").count() == 5, "{written}");
     let (_, says) = failure(&["plan", "--muscle", MUSCLE, "--like", data, "--out", data]);
     assert!(says.contains("the data file, which is read"), "{says}");
-    // Headings that say nothing, and a row that can't be read.
+    // Meaningless headings, and an unreadable row.
     let text =
         fs::read_to_string(data).unwrap().replace("force [N]", "channel 3").replace("\n30,1,", "\n30,1,x");
     let other = folder.write("other.csv", &text);

@@ -1,15 +1,16 @@
-//! The part of JSON Schema 2020-12 that `docs/schemas` uses: type, properties, required, items, additionalProperties, const, enum.
+//! The subset of JSON Schema 2020-12 that `docs/schemas` uses: type, properties, required, items,
+//! additionalProperties, const, enum.
 
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
-/// Where the schemas lie, seen from a crate.
+/// Path of the schemas, relative to a crate.
 pub(crate) fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/schemas")
 }
 
-/// Holds a document against the schema that it names, `bulge.shape/1` against `shape.json`, and once more without each field that is required. Returns the
-/// name, and the number of these fields.
+/// Checks a document against the schema that it names, `bulge.shape/1` against `shape.json`, and that it
+/// fails without any of the required fields. Returns the name, and the number of these fields.
 pub(crate) fn holds(document: &Value) -> (String, usize) {
     let name = document["schema"].as_str().unwrap();
     let kind = name.strip_prefix("bulge.").unwrap().strip_suffix("/1").unwrap().to_owned();
@@ -23,10 +24,10 @@ pub(crate) fn holds(document: &Value) -> (String, usize) {
     (kind, fields.len())
 }
 
-/// Keywords that say nothing about a value.
+/// Keywords without effect on validity.
 const WORDS: [&str; 4] = ["$schema", "$id", "title", "description"];
 
-/// What is wrong with a value by a schema: places and reasons. A keyword that isn't known here is wrong as well.
+/// Violations of a schema by a value: paths and reasons. An unknown keyword is a violation too.
 fn complaints(schema: &Value, value: &Value) -> Vec<String> {
     let mut found = Vec::new();
     check(schema, value, "", &mut found);
@@ -91,7 +92,8 @@ fn check(schema: &Value, value: &Value, at: &str, found: &mut Vec<String>) {
     }
 }
 
-/// Every document that lacks one of the fields which its schema requires, of objects in lists the first, with the place of the field.
+/// For each field that the schema requires, the document without it (in lists only in the first object), with
+/// the path of the field.
 fn without_one(schema: &Value, document: &Value) -> Vec<(String, Value)> {
     let mut places = Vec::new();
     required(schema, document, "", &mut places);

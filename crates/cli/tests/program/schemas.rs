@@ -1,4 +1,4 @@
-//! The documents of `--json` against `docs/schemas`: what a schema names is there, and what isn't there is noticed.
+//! The documents of `--json` against `docs/schemas`: required fields are there, and a missing one is noticed.
 
 use crate::schema::{self, holds};
 use crate::support::{Folder, json};
@@ -6,8 +6,8 @@ use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::Path;
 
-/// Kinds whose documents take long to make, or are no documents of the command: they are held against their schemas beside what makes them, in `src/demo.rs`,
-/// `src/validate.rs`, and the tests of the workbench.
+/// Kinds of documents that take long to create or are no documents of the command. They are checked next to
+/// the code that creates them, in `src/demo.rs`, `src/validate.rs`, and the tests of the workbench.
 const ELSEWHERE: [&str; 5] = ["demo", "validation", "session", "session-file", "surface"];
 
 const KNEE: &str = "name = \"knee\"\nmuscle = \"ppam-2-r16\"\nkind = \"pulley\"\nradius = \"40 mm\"\ncontraction = \"20 %\"\n\
@@ -17,7 +17,7 @@ const SWEEP: &str = "muscle = \"ppam-2-r16\"\npressure = \"1 bar\"\noutputs = [\
 const TABLE: &str = "[table]\ntolerance = 1e-2\ngradient = 1e-1\nchecks = 100000\n";
 const TUBE: &str = include_str!("../../../../meshes/tube.toml");
 
-/// Documents of the program, of each kind that has a schema.
+/// Documents of the program, one of each kind with a schema.
 fn documents(folder: &Folder) -> Vec<Value> {
     let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("data");
     let [rows, braid, protocol] =
@@ -78,7 +78,7 @@ fn documents(folder: &Folder) -> Vec<Value> {
     all
 }
 
-/// A joint: where it rests, what holds it, its pressures, its map, and with shut valves.
+/// A joint: its equilibrium, the torque that holds it, its pressures, its map, and shut valves.
 fn joints(folder: &Folder) -> Vec<Value> {
     let knee = folder.write("knee.toml", KNEE);
     let of = |more: &[&str]| json(&[&["joint", &knee, "--json"], more].concat());
@@ -92,7 +92,7 @@ fn joints(folder: &Folder) -> Vec<Value> {
     ]
 }
 
-/// Sweeps with and without a table, and what the table says.
+/// Sweeps with and without a table, and the documents of the table.
 fn tables(folder: &Folder) -> Vec<Value> {
     let (points, both) =
         (folder.write("points.toml", SWEEP), folder.write("both.toml", &(SWEEP.to_owned() + TABLE)));

@@ -1,4 +1,5 @@
-//! `simulate` as a user sees it: files that `compare` and `fit` go on with, the same bytes for a seed, one message for bad input.
+//! `simulate` as seen by a user: files that `compare` and `fit` can read, the same bytes for the same seed,
+//! one message for bad input.
 
 use crate::support::{Folder, bulge, failure, json};
 use serde_json::Value;
@@ -28,7 +29,7 @@ fn what_is_hidden_is_found_again() {
     assert_eq!(names, ["end-taper", "bladder-elasticity", "coulomb-friction"]);
     assert_eq!(truth["effects"][1]["numbers"][0]["unit"], "MPa");
     assert!(csv.contains("time [s],sweep,pressure [bar],contraction [%],force [N]\n"), "{csv:.200}");
-    // The muscle knows nothing of it.
+    // The muscle file contains nothing of the effects.
     assert!(muscle.contains("noise = \"2.236 N\"") && !muscle.contains("effects"), "{muscle}");
     assert_eq!(csv.lines().count(), 2 + 600);
     let (data, stated) = (folder.path("trial/data.csv"), folder.path("trial/muscle.toml"));
@@ -61,7 +62,7 @@ fn what_is_hidden_is_found_again() {
         "--json",
     ]);
     assert!(fitted["rmse_n"].as_f64().unwrap() < 2.6);
-    // What the fit has written can be simulated in turn, and is then known.
+    // The fitted muscle can be simulated in turn, and its effects are then known.
     let again = json(&["simulate", &model, "--protocol", PROTOCOL, "--out", &folder.path("again"), "--json"]);
     assert_eq!(again["effects"], serde_json::json!([]));
     assert!(folder.names().contains(&"again".to_owned()));
@@ -93,7 +94,7 @@ fn numbers_are_stated_in_many_ways() {
     assert_eq!(values("coulomb-friction=0.009 kN"), [9.0]);
     let usual = values("presliding-hysteresis");
     assert!(usual.len() > 1, "{usual:?}");
-    // In their order, and by name.
+    // Values in order, and by name.
     let (truth, _) = simulated(&folder, "keys", &["--with", "presliding-hysteresis"]);
     let numbers = truth["effects"][0]["numbers"].as_array().unwrap().clone();
     let stated = |n: &Value| {
@@ -109,7 +110,7 @@ fn numbers_are_stated_in_many_ways() {
         .map(|n| format!("presliding-hysteresis.{}={}", n["key"].as_str().unwrap(), stated(n)))
         .collect();
     assert!(close(values(&by_name.join(","))));
-    // An effect whose usual value does nothing takes the size of the literature: 10 N.
+    // An effect whose usual value is zero takes the size given in the literature: 10 N.
     assert_eq!(values("force-offset"), [10.0]);
 }
 
@@ -166,7 +167,7 @@ fn people_read_what_was_done() {
             && help.contains("--with \"coulomb-friction=14 N"),
         "{help}"
     );
-    // The protocol of the help is one.
+    // The protocol in the help is valid.
     let shown = help.split("every key:\n").nth(1).unwrap();
     let protocol = folder.write("help.toml", &shown.replace("\"drawn\"", "\"none\""));
     assert!(bulge(&["simulate", MUSCLE, "--protocol", &protocol, "--out", &out]).status.success());
@@ -220,7 +221,7 @@ fn bad_input_is_answered_with_one_message() {
         }
         assert!(!folder.names().contains(&"out".to_owned()), "{with}: a failed call wrote something");
     }
-    // Nothing of the user's is written over.
+    // No file of the user is overwritten.
     let muscle = folder.write("muscle.toml", &fs::read_to_string(MUSCLE).unwrap());
     let own = folder.0.display().to_string();
     let (status, message) = failure(&["simulate", &muscle, "--protocol", PROTOCOL, "--out", &own]);

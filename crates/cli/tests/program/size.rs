@@ -1,4 +1,4 @@
-//! `bulge size` as a user sees it: S4's example, and what it says of mistaken loads.
+//! `bulge size` as seen by a user: the example of S4, and messages for wrong loads.
 
 use crate::support::{Folder, bulge, failure, json};
 
@@ -8,7 +8,7 @@ fn with<'a>(more: &[&'a str]) -> Vec<&'a str> {
     LIFT.iter().copied().chain(more.iter().copied()).collect()
 }
 
-/// S4: 500 N after 50 mm ask for 345 mm at 4.5 bar.
+/// S4: 500 N after 50 mm need 345 mm at 4.5 bar.
 #[test]
 fn the_example_of_s4_with_its_picture() {
     let folder = Folder::new("size-s4");
@@ -18,7 +18,7 @@ fn the_example_of_s4_with_its_picture() {
     assert_eq!(document["schema"], "bulge.size/1");
     let choices = document["choices"].as_array().unwrap();
     let number = |i: usize, key: &str| choices[i][key].as_f64().unwrap();
-    // The kinder one first.
+    // The choice with the lower strain comes first.
     assert!((number(0, "pressure_pa") - 4e5).abs() < 1e-9 && (number(1, "pressure_pa") - 4.5e5).abs() < 1e-9);
     assert!((number(1, "length_m") - 0.345).abs() < 0.0015, "{}", number(1, "length_m"));
     assert!((choices[1]["contraction"][1].as_f64().unwrap() - 0.145).abs() < 0.001);
@@ -47,7 +47,7 @@ fn all_muscles_are_looked_through() {
     let choices = found["choices"].as_array().unwrap();
     let of = |name: &str| choices.iter().filter(|choice| choice["family"] == name).count();
     assert!(of("ppam-2-r16") > 2 && of("dmsp-20") > 3 && of("dmsp-40") > 5 && of("dmsp-10") == 0);
-    // Lengths end at ten strokes unless it is said otherwise.
+    // Lengths are limited to ten strokes by default.
     assert!(choices.iter().all(|choice| choice["length_m"].as_f64().unwrap() <= 0.5 + 1e-9));
     let kilograms = json(&[
         "size", "--force", "50 kg", "--stroke", "50 mm", "--length", "400 mm", "--muscle", "dmsp-20",
@@ -57,7 +57,7 @@ fn all_muscles_are_looked_through() {
     assert!((kilograms["choices"][0]["pressure_pa"].as_f64().unwrap() - 4e5).abs() < 2e3);
 }
 
-/// A muscle file with what was learnt of it, and a law of the papers, size as well.
+/// Fitted muscle files and force laws of the literature can be sized too.
 #[test]
 fn learnt_muscles_and_laws() {
     let folder = Folder::new("size-learnt");
@@ -73,7 +73,7 @@ fn learnt_muscles_and_laws() {
         found["choices"][0]["pressure_pa"].as_f64().unwrap()
     };
     assert!(pressure(&rubber) > 1.05 * pressure(&plain), "rubber takes pressure");
-    // Friction holds back a muscle that lifts: it must pull 60 N more than the load.
+    // Friction opposes a muscle that lifts: it must pull 60 N more than the load.
     let friction =
         std::fs::read_to_string(&plain).unwrap() + "[effects.coulomb-friction]\nforce = \"60 N\"\n";
     let friction = folder.write("friction.toml", &friction);
@@ -94,7 +94,7 @@ fn learnt_muscles_and_laws() {
     assert!(law["choices"][0]["basis"].as_str().unwrap().starts_with("sarosi-5-branch"));
 }
 
-/// Who asks for JSON reads that there is nothing, and why; the status and the message are those of a failure.
+/// With JSON the answer is that there is nothing, and why; status and message are those of a failure.
 #[test]
 fn none_is_an_answer_as_well() {
     let none = with(&["--pressure", "1 bar", "--muscle", "dmsp-20", "--json"]);

@@ -1,4 +1,4 @@
-//! What the tests of the command share: folders of their own, calls, and their answers.
+//! Helpers of the command's tests: temporary folders, calls, and their answers.
 
 use std::path::PathBuf;
 use std::process::{Command, Output};
@@ -6,15 +6,15 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use serde_json::Value;
 
-/// Folders that were made.
+/// Number of folders created.
 static NUMBER: AtomicUsize = AtomicUsize::new(0);
 
-/// A folder of its own for each test, removed at the end.
+/// A folder for one test, removed at the end.
 pub(crate) struct Folder(pub(crate) PathBuf);
 
 impl Folder {
     pub(crate) fn new(name: &str) -> Self {
-        // Two tests may call theirs by the same name.
+        // Two tests may use the same name.
         let number = NUMBER.fetch_add(1, Ordering::Relaxed);
         let path = std::env::temp_dir().join(format!("bulge-cli-{name}-{}-{number}", std::process::id()));
         let _ = std::fs::remove_dir_all(&path);
@@ -57,7 +57,7 @@ pub(crate) fn json(arguments: &[&str]) -> Value {
     serde_json::from_slice(&output.stdout).unwrap()
 }
 
-/// Exit status and message of a failing call, which says nothing on standard output.
+/// Exit status and message of a failing call, which prints nothing on standard output.
 pub(crate) fn failure(arguments: &[&str]) -> (i32, String) {
     let output = bulge(arguments);
     assert!(output.stdout.is_empty(), "{arguments:?} printed {}", String::from_utf8_lossy(&output.stdout));

@@ -1,4 +1,5 @@
-//! `bulge sweep` and `bulge table` as a user sees them: exit statuses, messages, JSON names, and nothing lost or doubled when a run is killed.
+//! `bulge sweep` and `bulge table` as seen by a user: exit statuses, messages, JSON names, and nothing lost
+//! or doubled when a run is killed.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -14,7 +15,7 @@ const SWEEP: &str = "name = \"small family\"\nmuscle = \"ppam-2-r16\"\npressure 
 const TABLE: &str = "name = \"small table\"\nmuscle = \"ppam-2-r16\"\n[axes.contraction]\nrange = \"2 %..limit\"\n\
     [axes.slenderness]\nrange = \"6..8\"\n[table]\ntolerance = 1e-3\ngradient = 1e-2\nchecks = 100000\n";
 
-/// Every file below a folder, by its path in it.
+/// Every file below a folder, by its relative path.
 fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     let mut found = BTreeMap::new();
     let mut folders = vec![folder.to_owned()];
@@ -51,7 +52,7 @@ fn a_sweep_says_what_it_did() {
     assert_eq!((points["points"].as_u64(), points["chunks"].as_u64()), (Some(220), Some(5)));
     assert_eq!((points["computed"].as_u64(), points["is_complete"].as_bool()), (Some(5), Some(true)));
     assert_eq!(points["damaged"], Value::Array(vec![]));
-    // 45 % is beyond the limit of each of them.
+    // 45 % is beyond the limit of each muscle.
     let infeasible = points["infeasible"].as_u64().unwrap();
     assert!((5..110).contains(&infeasible), "{infeasible}");
     let names: Vec<String> = files(Path::new(&out)).keys().map(|path| path.display().to_string()).collect();
@@ -156,7 +157,7 @@ fn a_folder_that_cannot_be_written_is_named() {
         let (status, message) = failure(&["sweep", &sweep, "--out", &out]);
         assert!(status == 1 && message.contains(&out) && message.contains("--resume"), "{message}");
     }
-    // A folder where a file has to be.
+    // A folder in the place of a file.
     let out = folder.path("out");
     assert!(bulge(&["sweep", &sweep, "--out", &out, "--chunks", "0..1"]).status.success());
     std::fs::create_dir_all(Path::new(&out).join("points/000002.parquet")).unwrap();
@@ -248,7 +249,7 @@ fn a_table_is_built_and_asked() {
         assert!(found.0 == status && found.1.contains(says), "{at}: {found:?}");
     }
 
-    // The table is there: it isn't built again, unless it is another one or damaged.
+    // An existing table isn't built again, unless it differs or is damaged.
     let bytes = std::fs::read(&table).unwrap();
     let when = || std::fs::metadata(&table).unwrap().modified().unwrap();
     let before = when();
@@ -279,7 +280,7 @@ fn a_table_is_built_and_asked() {
     std::fs::write(&table, &damaged).unwrap();
     assert_eq!(json(&["sweep", &sweep, "--out", &out, "--json"]), built);
     assert!(std::fs::read(&table).unwrap() == bytes);
-    // Other outputs are another table.
+    // Other outputs require another table.
     let other =
         folder.write("other.toml", &TABLE.replace("[table]\n", "[table]\noutputs = [\"volume_v\"]\n"));
     let (status, message) = failure(&["sweep", &other, "--out", &out]);
@@ -304,7 +305,7 @@ fn a_table_that_does_not_fit_or_exist_is_refused() {
     let text = bulge(&["sweep", &small, "--out", &out]);
     let text = String::from_utf8(text.stdout).unwrap();
     assert!(text.contains("the size limit came first: the tolerance is not met"), "{text}");
-    // There are no such short muscles.
+    // Such short muscles don't exist.
     let far = folder.write("far.toml", &TABLE.replace("6..8", "0.1..8"));
     let (status, message) = failure(&["sweep", &far, "--out", &folder.path("far")]);
     assert!(status == 3 && message.contains("leave the region out"), "{status} {message}");
@@ -318,7 +319,7 @@ fn several_processes_share_a_folder() {
     let sweep = folder.write("sweep.toml", &text);
     let [out, whole] = ["out", "whole"].map(|name| folder.path(name));
     assert!(bulge(&["sweep", &sweep, "--out", &whole]).status.success());
-    // 44 chunks; some by two of them.
+    // 44 chunks; some are computed by two of the processes.
     let parts = ["0..16", "14..30", "20..40"];
     let mut running: Vec<Child> =
         parts.iter().map(|part| start(&["sweep", &sweep, "--out", &out, "--chunks", part])).collect();
@@ -332,7 +333,7 @@ fn several_processes_share_a_folder() {
     assert!(files(Path::new(&out)) == files(Path::new(&whole)));
 }
 
-/// SplitMix64: the moments of the kills are the same in each run of the test.
+/// SplitMix64: the times of the kills are the same in each run of the test.
 fn next(state: &mut u64) -> f64 {
     *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
     let mut z = *state;
@@ -357,21 +358,22 @@ fn fifty_kills_lose_nothing() {
     let resumed = ["sweep", &sweep, "--out", &out, "--resume"];
     let mut at_last = Duration::ZERO;
     while killed < KILLS {
-        // From the start when all is done: kills in the first chunk, between chunks and in the manifest.
+        // Starts again once everything is done: kills hit the first chunk, the gaps between chunks, and the
+        // manifest.
         if Path::new(&out).join("manifest.json").exists() {
             assert!(files(Path::new(&out)) == expected, "after {killed} kills");
             std::fs::remove_dir_all(&out).unwrap();
             rounds += 1;
         }
         let mut child = start(&resumed);
-        // Five kills or so in each round.
+        // About five kills per round.
         let moment = duration.mul_f64(0.4 * next(&mut state));
         let started = Instant::now();
         sleep(moment);
         child.kill().unwrap();
         killed += u32::from(!child.wait().unwrap().success());
         at_last = at_last.max(started.elapsed());
-        // What counts as done is whole, at any moment.
+        // Finished chunks are complete at any time.
         if killed.is_multiple_of(5) && Path::new(&out).join("chunks").exists() {
             for (path, bytes) in files(Path::new(&out)) {
                 let is_unfinished = path.to_string_lossy().contains(".unfinished-");
@@ -387,7 +389,7 @@ fn fifty_kills_lose_nothing() {
     );
     assert_eq!(done["points"]["damaged"], Value::Array(vec![]));
     assert!(files(Path::new(&out)) == expected);
-    // Nothing is doubled: the chunks of the manifest follow one another.
+    // Nothing is doubled: the chunks in the manifest are consecutive.
     let manifest: Value = serde_json::from_slice(&expected[Path::new("manifest.json")]).unwrap();
     let mut first = 0;
     for (number, chunk) in manifest["chunks"].as_array().unwrap().iter().enumerate() {

@@ -1,11 +1,11 @@
-//! Which numbers the heat model takes.
+//! Checks of the inputs of the heat model.
 
 use super::{HeatError, HeatProblem};
 
-/// A number, what it is, whether it is good, and what it must be.
+/// Name of a number, its value, whether it is valid, and its required range.
 type Row = (&'static str, f64, bool, &'static str);
 
-/// Refuses what has no physical sense.
+/// Rejects values without physical sense.
 pub(super) fn check(problem: &HeatProblem) -> Result<(), HeatError> {
     let rows = tube(problem).into_iter().chain(pipe(problem)).chain(drive(problem)).chain(rest(problem));
     for (what, value, good, range) in rows {

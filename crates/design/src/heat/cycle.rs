@@ -1,4 +1,4 @@
-//! One cycle of charging and discharging, and what is counted in it.
+//! One cycle of charging and discharging, and its balances.
 
 use super::gas::{GAMMA, R};
 use super::mesh::{Conductances, Instant, Mesh};
@@ -9,7 +9,7 @@ use super::{HeatError, HeatProblem, HeatProfile};
 /// Molar gas constant \[J/(mol K)\], exact in the SI.
 const MOLAR: f64 = 8.314_462_618;
 
-/// Means and maxima over a cycle of a chain.
+/// Means and maxima over a cycle, for the cells of the muscle or of the pipe.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Figures {
     pub wall_mean: Vec<f64>,
@@ -41,7 +41,7 @@ impl Figures {
         }
     }
 
-    /// As handed out.
+    /// Converts the figures into the public profile.
     pub(super) fn profile(self, x: &[f64]) -> HeatProfile {
         HeatProfile {
             x_m: x[..self.wall_mean.len()].to_vec(),
@@ -54,12 +54,13 @@ impl Figures {
     }
 }
 
-/// What is counted in a cycle.
+/// Totals of a cycle.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Tally {
     pub muscle: Figures,
     pub pipe: Figures,
-    /// Mean conductance to the gas over the capacity, times the period, by cell of the muscle's and the pipe's wall.
+    /// For each cell of the muscle's and of the pipe's wall: the mean conductance to the gas times the
+    /// period, divided by the capacity.
     pub exchange: [Vec<f64>; 2],
     pub mass: f64,
     pub enthalpy: f64,
@@ -81,7 +82,7 @@ pub(super) struct Runner<'a> {
 }
 
 impl<'a> Runner<'a> {
-    /// Everything at the ambient temperature.
+    /// Starts with everything at the ambient temperature.
     pub(super) fn new(problem: &'a HeatProblem) -> Self {
         let mesh = Mesh::new(problem);
         let ambient = problem.surroundings.ambient_k;
@@ -96,7 +97,7 @@ impl<'a> Runner<'a> {
         }
     }
 
-    /// One cycle on from the state.
+    /// Advances the state by one cycle.
     pub(super) fn cycle(&mut self) -> Result<Tally, HeatError> {
         let (problem, mesh, c) = (self.problem, &self.mesh, &mut self.conductances);
         let (ambient, supply) = (problem.surroundings.ambient_k, problem.surroundings.supply_k);
@@ -144,7 +145,7 @@ impl<'a> Runner<'a> {
         [&muscle.gas, &muscle.wall, &pipe.gas, &pipe.wall].into_iter().flatten().copied().collect()
     }
 
-    /// Sets them, at the start of a cycle.
+    /// Sets these temperatures at the start of a cycle.
     pub(super) fn set_temperatures(&mut self, values: &[f64]) {
         let (start, n) = (self.problem.instant(0.0), self.mesh.x.len());
         let State { muscle, pipe } = &mut self.state;
@@ -174,7 +175,7 @@ impl Tally {
     }
 }
 
-/// Mach number in the pipe, at both its ends, or in the port.
+/// Largest Mach number at both ends of the pipe, or in the port.
 pub(super) fn mach(mesh: &Mesh, state: &State, now: Instant, supply: f64) -> f64 {
     let chain = if mesh.pipe_cells > 0 { &state.pipe } else { &state.muscle };
     let at =

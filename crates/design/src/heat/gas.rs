@@ -1,4 +1,4 @@
-//! Air, and the closures of the heat model: Nusselt numbers, stirring by the jet, axial mixing.
+//! Properties of air, and the closures of the heat model: Nusselt numbers, stirring by the jet, axial mixing.
 
 pub(super) use crate::gas::{CP_AIR as CP, CV_AIR as CV, GAMMA, R_AIR as R};
 
@@ -25,20 +25,20 @@ pub(super) fn conductivity(temperature: f64) -> f64 {
     viscosity(temperature) * CP / PRANDTL
 }
 
-/// Gnielinski 1976 with the friction factor of a smooth tube after Konakov.
+/// Correlation of Gnielinski 1976 with the friction factor of a smooth tube after Konakov.
 fn gnielinski(reynolds: f64) -> f64 {
     let friction = (1.8 * reynolds.log10() - 1.5).powi(-2);
     let root = (friction / 8.0).sqrt();
     friction / 8.0 * (reynolds - 1000.0) * PRANDTL / (1.0 + 12.7 * root * (PRANDTL.powf(2.0 / 3.0) - 1.0))
 }
 
-/// How turbulent a flow is: 0 below the transition, 1 above, linear between.
+/// Degree of turbulence: 0 below the transition, 1 above, linear between.
 pub(super) fn turbulence(reynolds: f64) -> f64 {
     ((reynolds - TRANSITION[0]) / (TRANSITION[1] - TRANSITION[0])).clamp(0.0, 1.0)
 }
 
-/// Nusselt number at a Reynolds and a Rayleigh number: 3.66, then linear from 2300 to Gnielinski at 4000, then Gnielinski;
-/// never below that of gas at rest, which is the floor or `c_n Ra^(1/4)`.
+/// Nusselt number at a Reynolds and a Rayleigh number: 3.66 up to 2300, then linear to Gnielinski's value at
+/// 4000, then Gnielinski. It is never below the value of gas at rest, which is the floor or `c_n Ra^(1/4)`.
 pub(super) fn nusselt(reynolds: f64, rayleigh: f64, closures: &Closures) -> f64 {
     let part = turbulence(reynolds);
     let flow = if part == 0.0 {
@@ -53,7 +53,7 @@ pub(super) fn nusselt(reynolds: f64, rayleigh: f64, closures: &Closures) -> f64 
 /// A jet into the muscle.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Jet {
-    /// Where its nozzle is \[m\].
+    /// Position of its nozzle \[m\].
     pub position: f64,
     /// Its speed u0 \[m/s\]; 0 when air flows out.
     pub speed: f64,
@@ -62,7 +62,7 @@ pub(super) struct Jet {
 }
 
 impl Jet {
-    /// Stirring velocity w \[m/s\] at x \[m\] in a muscle of a diameter \[m\].
+    /// Stirring velocity w \[m/s\] at x \[m\] in a muscle of diameter `diameter` \[m\].
     pub(super) fn stirring(&self, x: f64, diameter: f64, closures: &Closures) -> f64 {
         let ahead = x - self.position;
         let reach = if ahead >= 0.0 { closures.jet_reach } else { closures.jet_back };
@@ -70,7 +70,7 @@ impl Jet {
     }
 }
 
-/// What a flow does: heat transfer coefficient \[W/(m2 K)\] and axial diffusivity \[m2/s\].
+/// Effect of a flow: heat transfer coefficient \[W/(m2 K)\] and axial diffusivity \[m2/s\].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Convection {
     pub transfer: f64,
@@ -86,7 +86,7 @@ pub(super) struct Passage {
     pub speed: f64,
     /// Density of the gas \[kg/m3\].
     pub density: f64,
-    /// Its temperature \[K\].
+    /// Temperature of the gas \[K\].
     pub gas: f64,
     /// Temperature of the wall \[K\].
     pub wall: f64,
@@ -100,7 +100,7 @@ impl Passage {
             / (self.gas * kinematic * kinematic)
     }
 
-    /// Its heat transfer and mixing.
+    /// Its heat transfer coefficient and axial diffusivity.
     pub(super) fn convection(&self, closures: &Closures) -> Convection {
         let (mu, k) = (viscosity(self.gas), conductivity(self.gas));
         let reynolds = self.density * self.speed * self.hydraulic / mu;

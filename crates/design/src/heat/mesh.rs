@@ -5,7 +5,7 @@ use super::gas::{CP, Convection, Jet, Passage, R};
 use super::state::State;
 use std::f64::consts::PI;
 
-/// Wall of a tube for a length of 1 m, its temperature in the middle of the thickness.
+/// Wall of a tube of 1 m length; its temperature is that at mid-thickness.
 #[derive(Debug, Clone, Copy)]
 struct Shell {
     inner: f64,
@@ -28,13 +28,13 @@ impl Shell {
         }
     }
 
-    /// Conductance \[W/(m K)\] from air at a transfer coefficient inside to the middle.
+    /// Conductance \[W/(m K)\] from the air inside to mid-thickness, with a film coefficient `transfer`.
     fn inside(&self, transfer: f64) -> f64 {
         let film = transfer * 2.0 * PI * self.inner;
         film / (1.0 + film * self.to_middle[0])
     }
 
-    /// The same from air outside.
+    /// Conductance \[W/(m K)\] from the air outside to mid-thickness.
     fn outside(&self, transfer: f64) -> f64 {
         let film = transfer * 2.0 * PI * self.outer;
         film / (1.0 + film * self.to_middle[1])
@@ -50,41 +50,41 @@ pub(super) struct Conductances {
     pub pipe_inner: Vec<f64>,
     /// Gas of the muscle to the pipe's wall, by cell of the pipe.
     pub pipe_outer: Vec<f64>,
-    /// Mixing between cells i-1 and i of the muscle; the first is 0.
+    /// Axial mixing between cells i-1 and i of the muscle; the first is 0.
     pub mixing: Vec<f64>,
 }
 
-/// Pressure and swelling at a time.
+/// Pressure and section at a time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Instant {
     /// Absolute pressure \[Pa\].
     pub pressure: f64,
-    /// Section of the muscle over that at rest.
+    /// Section of the muscle relative to the section at rest.
     pub section: f64,
 }
 
-/// The cells.
+/// The mesh: cells along the muscle and the pipe.
 #[derive(Debug, Clone)]
 pub(super) struct Mesh {
     /// Centres \[m\].
     pub x: Vec<f64>,
     /// Lengths \[m\].
     pub dx: Vec<f64>,
-    /// How many of them the pipe passes; 0 without pipe.
+    /// Number of cells that the pipe passes; 0 without a pipe.
     pub pipe_cells: usize,
     /// Heat capacity of the muscle's wall \[J/K\].
     pub wall_capacity: Vec<f64>,
-    /// Muscle's wall to the ambient \[W/K\].
+    /// Conductance from the muscle's wall to the ambient \[W/K\].
     pub wall_outer: Vec<f64>,
-    /// Along the muscle's wall, between cells i-1 and i \[W/K\].
+    /// Axial conductance of the muscle's wall between cells i-1 and i \[W/K\].
     pub wall_axial: Vec<f64>,
     /// Heat capacity of the pipe's wall \[J/K\].
     pub pipe_capacity: Vec<f64>,
-    /// Along the pipe's wall \[W/K\].
+    /// Axial conductance of the pipe's wall between cells i-1 and i \[W/K\].
     pub pipe_axial: Vec<f64>,
-    /// Volume in the pipe by cell \[m3\].
+    /// Volume inside the pipe, by cell \[m3\].
     pub pipe_volume: Vec<f64>,
-    /// Section through which air enters \[m2\]: the pipe's, or the port's.
+    /// Section through which air enters \[m2\]: that of the pipe or of the port.
     pub nozzle_section: f64,
     section: f64,
     pipe_outer_section: f64,
@@ -99,6 +99,7 @@ impl Mesh {
         let (tube, n) = (&problem.tube, problem.numerics.cells);
         let (length, mouth) = (tube.length_m, problem.pipe.map_or(0.0, |pipe| pipe.length_m));
         let pipe_cells = problem.pipe.map_or(0, |_| nearest(n as f64 * mouth / length).clamp(1, n - 1));
+        // The mouth of the pipe lies on a face, so cells before and behind it differ in length.
         let before = if pipe_cells > 0 { mouth / pipe_cells as f64 } else { 0.0 };
         let beyond = (length - mouth) / (n - pipe_cells) as f64;
         let dx: Vec<f64> = (0..n).map(|i| if i < pipe_cells { before } else { beyond }).collect();
@@ -162,7 +163,7 @@ impl Mesh {
         flow * R * temperature / (pressure * self.nozzle_section)
     }
 
-    /// The closures at the flow of a state.
+    /// Conductances from the closures, for the flow of a state.
     pub(super) fn conductances(
         &self,
         problem: &HeatProblem,
@@ -181,7 +182,7 @@ impl Mesh {
             list.resize(cells, 0.0);
         }
         let jet = self.jet(problem, state, now);
-        // rho D A of the cell before.
+        // rho D A of the previous cell.
         let mut before = 0.0;
         for i in 0..n {
             let (t, section) = (state.muscle.gas[i], self.free_section(i, now.section));

@@ -1,8 +1,8 @@
-//! What the heat model answers, or why it doesn't.
+//! Results and errors of the heat model.
 
 use serde::Serialize;
 
-/// Temperatures along the muscle, or along its pipe, in a cycle of the periodic state. Lists by cell.
+/// Temperatures along the muscle or along its pipe over a cycle of the periodic state, by cell.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct HeatProfile {
     /// Centres of the cells, from the inlet \[m\].
@@ -22,52 +22,53 @@ pub struct HeatProfile {
 /// The periodic steady state.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct HeatSolution {
-    /// Along the muscle.
+    /// Temperatures along the muscle.
     pub muscle: HeatProfile,
-    /// Along the pipe; without pipe its lists are empty.
+    /// Temperatures along the pipe; the lists are empty without a pipe.
     pub pipe: HeatProfile,
     /// Mean wall temperature of the last cell, above the ambient \[K\].
     pub end_rise_k: f64,
-    /// The same of the first cell \[K\].
+    /// Mean wall temperature of the first cell, above the ambient \[K\].
     pub inlet_rise_k: f64,
     /// Largest mean wall temperature above the ambient \[K\].
     pub hottest_rise_k: f64,
-    /// Where \[m\].
+    /// Position of that largest temperature \[m\].
     pub hottest_x_m: f64,
-    /// Time until the wall there has made 90 % of its rise \[s\]; 0 if it doesn't rise.
+    /// Time until the wall at that position has reached 90 % of its rise \[s\]; 0 if it doesn't rise.
     pub time_to_90_s: f64,
-    /// Ageing of the rubber at its worst place relative to that at the ambient temperature: a ratio of rates, not a life.
+    /// Ageing of the rubber at its hottest place relative to ageing at the ambient temperature: a ratio of
+    /// rates, not a service life.
     pub ageing_factor: f64,
     /// Heat to the ambient in a cycle \[J\].
     pub heat_out_j: f64,
-    /// Enthalpy in less enthalpy out through the inlet in a cycle \[J\]: the work that the supply puts in.
+    /// Enthalpy in minus enthalpy out through the inlet in a cycle \[J\]: the work done by the supply.
     pub enthalpy_in_j: f64,
-    /// Work P dV of the gas on the wall in a cycle \[J\]; 0 as the section follows the pressure.
+    /// Work P dV of the gas on the wall in a cycle \[J\]; 0, since the section follows the pressure.
     pub wall_work_j: f64,
-    /// Air in less air out in a cycle \[kg\].
+    /// Air in minus air out in a cycle \[kg\].
     pub mass_in_kg: f64,
     /// Largest Mach number in the pipe or port.
     pub peak_mach: f64,
-    /// Cycles computed, those of the transient included.
+    /// Cycles computed, including those of the transient.
     pub cycles: usize,
     /// Estimated distance from the periodic state \[K\].
     pub residual_k: f64,
 }
 
-/// Why there is no temperature.
+/// Why there is no solution.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum HeatError {
     /// A number out of range.
     #[error("{what} is {value}; it must be {range}")]
     Invalid {
-        /// Which.
+        /// The number.
         what: &'static str,
         /// Its value.
         value: f64,
-        /// What it must be.
+        /// Its required range.
         range: &'static str,
     },
-    /// The pressure can't rise as asked.
+    /// The inlet chokes, so the pressure can't follow.
     #[error(
         "the air would enter or leave at Mach {mach:.2}, where the pipe or port chokes and the pressure can't follow; take a wider pipe or port, or a longer ramp"
     )]
@@ -75,7 +76,7 @@ pub enum HeatError {
         /// Largest Mach number.
         mach: f64,
     },
-    /// A time step has no solution.
+    /// A time step doesn't converge.
     #[error(
         "the step of the gas at {time_s} s in the cycle doesn't converge with {steps} steps in a cycle; take more"
     )]

@@ -1,21 +1,22 @@
-//! The periodic steady state, and the time to it.
+//! The periodic steady state, and the time to reach it.
 
 use super::HeatError;
 use super::cycle::{Runner, Tally};
 use super::state::State;
 
-/// Earlier cycles that an extrapolation looks at.
+/// Earlier cycles used by an extrapolation.
 const WINDOW: usize = 8;
 /// Largest change of a temperature by one extrapolation \[K\].
 const LARGEST: f64 = 40.0;
-/// How much worse than the best a cycle may be.
+/// A cycle whose residual exceeds the best one by this factor is rejected.
 const WORSE: f64 = 4.0;
-/// Damping below which nothing is extrapolated any more.
+/// Damping below which extrapolation is abandoned.
 const SMALLEST: f64 = 0.01;
-/// Largest part of the way to the steady state that a jump of the transient covers.
+/// Largest fraction of the way to the steady state that a jump of the transient covers.
 const JUMP: f64 = 0.25;
 
-/// The best cycle so far: how the muscle was at its start, its temperatures x, their way f, and the largest of f.
+/// The best cycle so far: the state at its start, its temperatures x with their estimated distances f to the
+/// limit, and the largest |f|.
 #[derive(Debug, Clone)]
 struct Best {
     state: State,
@@ -23,12 +24,14 @@ struct Best {
     residual: f64,
 }
 
-/// Cycles until one ends as it began, to the tolerance. Gives the last, and the estimated distance from the limit \[K\].
+/// Computes cycles until one ends as it began, within the tolerance. Returns the last cycle, and the
+/// estimated distance from the limit \[K\].
 ///
-/// A cycle maps temperatures x to G(x). The walls change by a small part of their way in a cycle, so their change is
-/// divided by 1 - exp(-rate period) first, with the rate of a wall at which the gas barely holds. Anderson's method then
-/// extrapolates from the last cycles. Where that leads away, it starts anew from the best cycle, with half the steps; when
-/// they have become tiny, the cycles are followed one by one.
+/// A cycle maps temperatures x to G(x). In one cycle the walls cover only a small fraction of their way to
+/// the limit. So their change is first divided by 1 - exp(-rate period), with the rate of a wall to which the
+/// gas is weakly coupled. Anderson's method then extrapolates from the last cycles. If that diverges, it
+/// restarts from the best cycle with half the damping factor. Once the factor is tiny, the cycles are
+/// computed one by one without extrapolation.
 pub(super) fn steady(runner: &mut Runner) -> Result<(Tally, f64), HeatError> {
     let numerics = runner.problem.numerics;
     let (mut history, mut damping) = (Vec::new(), 1.0);
@@ -54,7 +57,7 @@ pub(super) fn steady(runner: &mut Runner) -> Result<(Tally, f64), HeatError> {
                     best = Some(Best { state, pair, residual });
                 }
             }
-            // An extrapolated state may be beyond what a muscle can have.
+            // An extrapolated state may be physically impossible.
             (Err(HeatError::Step { .. } | HeatError::Choked { .. }), Some(_)) if extrapolates => {}
             (Err(error), _) => return Err(error),
         }
@@ -83,16 +86,18 @@ pub(super) fn steady(runner: &mut Runner) -> Result<(Tally, f64), HeatError> {
     }
 }
 
-/// Changes in a cycle that began at x, as the estimated ways to the limit.
+/// Change over a cycle that began at x, scaled to the estimated distance from the limit.
 fn ways(runner: &Runner, tally: &Tally, x: &[f64]) -> Vec<f64> {
     let (after, scale) = (runner.temperatures(), scales(runner, tally));
     x.iter().zip(&after).zip(&scale).map(|((x, g), s)| (g - x) * s).collect()
 }
 
-/// Time \[s\] at which the mean wall temperature of a cell has made 90 % of its way from the ambient to the steady state.
+/// Time \[s\] at which the mean wall temperature of a cell has covered 90 % of its way from the ambient to
+/// the steady state.
 ///
-/// With acceleration, every few cycles are followed by a jump over many, in which each temperature T goes on to its
-/// steady value T* at the rate seen in the last cycle, so that `T* - T` falls exponentially.
+/// With acceleration, every few cycles are followed by a jump over many cycles. In a jump each temperature T
+/// approaches its steady value T* at the rate observed in the last cycle, so that `T* - T` decays
+/// exponentially.
 pub(super) fn time_to_90(
     runner: &mut Runner,
     cell: usize,
@@ -113,7 +118,7 @@ pub(super) fn time_to_90(
         passed += 1.0;
         let now = (passed - 0.5, (tally.muscle.wall_mean[cell] - ambient) / way);
         if now.1 >= 0.9 {
-            // What is left falls exponentially between two cycles.
+            // The remaining distance decays exponentially between two cycles.
             let left = |part: f64| (1.0 - part).max(1e-12).ln();
             let share = (left(last.1) - 0.1_f64.ln()) / (left(last.1) - left(now.1));
             return Ok((last.0 + share * (now.0 - last.0)) * problem.drive.period_s);
@@ -128,7 +133,7 @@ pub(super) fn time_to_90(
     }
 }
 
-/// Jumps; gives the number of cycles.
+/// Jumps over many cycles; returns their number.
 fn jump(runner: &mut Runner, before: &[f64], steady: &[f64], cell: usize) -> f64 {
     let mut now = runner.temperatures();
     let rate = |i: usize| {
@@ -139,7 +144,7 @@ fn jump(runner: &mut Runner, before: &[f64], steady: &[f64], cell: usize) -> f64
     let n = runner.mesh.x.len();
     let slow = rate(n + cell);
     let cycles = (-(-JUMP).ln_1p() / slow).floor();
-    // A wall that goes away from its limit, as it may at first, tells no rate.
+    // A wall that moves away from its limit, as it may at first, gives no rate.
     if slow <= 0.0 || cycles < 1.0 {
         return 0.0;
     }
@@ -151,12 +156,12 @@ fn jump(runner: &mut Runner, before: &[f64], steady: &[f64], cell: usize) -> f64
     cycles
 }
 
-/// By which the change in a cycle is multiplied to estimate the way that is left.
+/// Factors from the change in a cycle to the estimated distance from the limit.
 fn scales(runner: &Runner, tally: &Tally) -> Vec<f64> {
     let (mesh, period) = (&runner.mesh, runner.problem.drive.period_s);
     let scale = |rate: f64| (-(-rate).exp_m1()).max(1e-9).recip();
     let muscle = tally.exchange[0].iter().enumerate().map(|(i, inner)| {
-        // Gas that is hardly exchanged follows the wall: only a part of its conductance counts.
+        // Gas that is hardly exchanged follows the wall, so only a fraction of its conductance counts.
         scale(0.1 * inner + period * mesh.wall_outer[i] / mesh.wall_capacity[i])
     });
     let pipe = tally.exchange[1].iter().map(|both| scale(*both));
@@ -164,11 +169,13 @@ fn scales(runner: &Runner, tally: &Tally) -> Vec<f64> {
     ones(mesh.x.len()).chain(muscle).chain(ones(mesh.pipe_cells)).chain(pipe).collect()
 }
 
-/// Anderson's extrapolation of pairs (x, f): the combination of differences that makes f least is taken off x + damping f.
+/// Anderson's extrapolation of pairs (x, f): from x + damping f it subtracts the combination of differences
+/// that minimises f.
 fn anderson(history: &[(Vec<f64>, Vec<f64>)], damping: f64) -> Vec<f64> {
     let Some(((x, f), earlier)) = history.split_last() else { return Vec::new() };
     let mut step: Vec<f64> = f.iter().map(|f| damping * f).collect();
-    // Differences of f made orthogonal, newest first; those of x + damping f are combined alike.
+    // Differences of f are orthogonalised, newest first; those of x + damping f are combined with the same
+    // coefficients.
     let mut basis: Vec<(Vec<f64>, Vec<f64>)> = Vec::new();
     let mut after = (x, f);
     for (x0, f0) in earlier.iter().rev() {
@@ -182,7 +189,7 @@ fn anderson(history: &[(Vec<f64>, Vec<f64>)], damping: f64) -> Vec<f64> {
             take_off(&mut dx, share, p);
         }
         let rest = dot(&df, &df).sqrt();
-        // What depends on newer differences would only bring rounding.
+        // A difference that depends linearly on newer ones would only add rounding errors.
         if rest <= 1e-6 * size {
             break;
         }

@@ -1,4 +1,4 @@
-//! What the heat model is asked: muscle, pipe, pressure, surroundings, closures, numerics.
+//! Inputs of the heat model: muscle, pipe, pressure, surroundings, closures, numerics.
 
 use super::mesh::Instant;
 use serde::Serialize;
@@ -14,12 +14,12 @@ pub struct Tube {
     pub wall_thickness_m: f64,
     /// Conductivity of the wall \[W/(m K)\]; rubber 0.13 to 0.25.
     pub wall_conductivity_w_per_m_k: f64,
-    /// Heat capacity of the wall by volume \[J/(m3 K)\]; rubber 1.7e6 to 2.2e6.
+    /// Volumetric heat capacity of the wall \[J/(m3 K)\]; rubber 1.7e6 to 2.2e6.
     pub wall_heat_capacity_j_per_m3_k: f64,
     /// Diameter of the port through which the muscle is charged without a pipe \[m\], at most D.
     pub port_diameter_m: f64,
-    /// Growth of the section from the low to the high pressure, as a part of the section at the low one; 0 is isometric.
-    /// It follows the pressure linearly.
+    /// Increase of the section from the low to the high pressure, as a fraction of the section at the low
+    /// one; 0 is isometric. It is linear in the pressure.
     pub swelling: f64,
 }
 
@@ -46,14 +46,15 @@ pub struct Pipe {
     pub inner_diameter_m: f64,
     /// Thickness of its wall \[m\].
     pub wall_thickness_m: f64,
-    /// Conductivity \[W/(m K)\].
+    /// Thermal conductivity of its wall \[W/(m K)\].
     pub conductivity_w_per_m_k: f64,
-    /// Heat capacity by volume \[J/(m3 K)\].
+    /// Volumetric heat capacity of its wall \[J/(m3 K)\].
     pub heat_capacity_j_per_m3_k: f64,
 }
 
 impl Pipe {
-    /// A nylon pipe: 0.25 W/(m K) (S3), 1.9e6 J/(m3 K), wall 0.75 mm. Length and inner diameter in m.
+    /// A nylon pipe of given length and inner diameter \[m\]: 0.25 W/(m K) (S3), 1.9e6 J/(m3 K), wall 0.75
+    /// mm.
     #[must_use]
     pub const fn nylon(length_m: f64, inner_diameter_m: f64) -> Self {
         Self {
@@ -66,7 +67,7 @@ impl Pipe {
     }
 }
 
-/// Charging and discharging.
+/// The pressure cycle of charging and discharging.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Drive {
     /// Gauge pressure when discharged \[Pa\], >= 0.
@@ -75,7 +76,7 @@ pub struct Drive {
     pub high_pa: f64,
     /// Duration of a cycle \[s\].
     pub period_s: f64,
-    /// Part of the period from the start of charging to the start of discharging.
+    /// Fraction of the period from the start of charging to the start of discharging.
     pub duty: f64,
     /// Duration of charging, and of discharging \[s\].
     pub ramp_s: f64,
@@ -87,7 +88,7 @@ impl Default for Drive {
     }
 }
 
-/// What is around the muscle.
+/// Surroundings of the muscle.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Surroundings {
     /// Temperature of the ambient \[K\].
@@ -96,7 +97,7 @@ pub struct Surroundings {
     pub supply_k: f64,
     /// Pressure of the ambient \[Pa\].
     pub pressure_pa: f64,
-    /// Heat transfer coefficient outside, radiation included \[W/(m2 K)\]; still air 5 to 15.
+    /// Outer heat transfer coefficient including radiation \[W/(m2 K)\]; still air 5 to 15.
     pub outer_transfer_w_per_m2_k: f64,
 }
 
@@ -106,22 +107,22 @@ impl Default for Surroundings {
     }
 }
 
-/// Constants of the closures: assumptions, see the module.
+/// Constants of the closures. They are assumptions, described in the module.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Closures {
-    /// Least Nusselt number, that of conduction in gas at rest; 3.66 to 5.78.
+    /// Smallest Nusselt number, for conduction in gas at rest; 3.66 to 5.78.
     pub nusselt_floor: f64,
-    /// Natural convection c_n; 0.3 to 0.7, or 0 for none.
+    /// Coefficient c_n of natural convection; 0.3 to 0.7, or 0 for none.
     pub natural_convection: f64,
-    /// Multiplies every Nusselt number; 1, or 0 for adiabatic walls.
+    /// Factor of every Nusselt number; 1, or 0 for adiabatic walls.
     pub nusselt_factor: f64,
-    /// Axial mixing c_m in turbulent flow; 0.05 to 1.
+    /// Coefficient c_m of axial mixing in turbulent flow; 0.05 to 1.
     pub mixing: f64,
     /// Strength c_j of the stirring by the jet; 0.3 to 2.
     pub jet_strength: f64,
-    /// Distance in diameters D over which the stirring falls to 1/e ahead of the jet; 2 to 8.
+    /// Distance in diameters D over which the stirring decays to 1/e ahead of the jet; 2 to 8.
     pub jet_reach: f64,
-    /// The same behind its nozzle; 0.5 to 2.
+    /// The same distance behind the nozzle; 0.5 to 2.
     pub jet_back: f64,
 }
 
@@ -139,18 +140,18 @@ impl Default for Closures {
     }
 }
 
-/// How finely, and how far.
+/// Resolution, tolerance and limits.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct HeatNumerics {
     /// Cells along the muscle, 4 to 2000.
     pub cells: usize,
     /// Time steps in a cycle, 20 to 100 000.
     pub steps_per_cycle: usize,
-    /// Largest distance of a temperature from its periodic value, estimated \[K\].
+    /// Largest estimated distance of a temperature from its periodic value \[K\].
     pub tolerance_k: f64,
-    /// Cycles after which the search ends without result.
+    /// Cycles after which the search fails.
     pub max_cycles: usize,
-    /// Whether cycles are extrapolated; otherwise every one is computed.
+    /// Whether cycles are extrapolated; otherwise every cycle is computed.
     pub accelerate: bool,
 }
 
@@ -160,7 +161,7 @@ impl Default for HeatNumerics {
     }
 }
 
-/// A muscle that is charged and discharged over and over.
+/// A muscle under repeated charging and discharging.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct HeatProblem {
     /// The muscle.
@@ -194,7 +195,7 @@ impl Default for HeatProblem {
 }
 
 impl HeatProblem {
-    /// Pressure and section at a part of the period.
+    /// Pressure and section at a fraction of the period.
     pub(super) fn instant(&self, part: f64) -> Instant {
         let level = self.drive.level(part);
         Instant {
@@ -207,7 +208,8 @@ impl HeatProblem {
 }
 
 impl Drive {
-    /// How far the pressure is from low to high, 0 to 1, at a part of the period: ramps 10 s^3 - 15 s^4 + 6 s^5.
+    /// Pressure level from 0 (low) to 1 (high) at a fraction of the period, with ramps 10 s^3 - 15 s^4 + 6
+    /// s^5.
     fn level(&self, part: f64) -> f64 {
         let ramp = |since: f64| {
             let s = (since * self.period_s / self.ramp_s).clamp(0.0, 1.0);

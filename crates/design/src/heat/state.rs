@@ -1,4 +1,4 @@
-//! Gas and walls at a time, and what passed the borders in a step.
+//! Gas and walls at a time, and the exchange with the surroundings in a step.
 
 use super::gas::R;
 use super::mesh::{Instant, Mesh};
@@ -6,13 +6,14 @@ use super::mesh::{Instant, Mesh};
 /// Gas and wall of the muscle, or of the pipe.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct Chain {
-    /// Gas by cell \[kg\].
+    /// Mass of the gas, by cell \[kg\].
     pub mass: Vec<f64>,
-    /// Its temperature \[K\].
+    /// Temperature of the gas \[K\].
     pub gas: Vec<f64>,
     /// Wall temperature \[K\].
     pub wall: Vec<f64>,
-    /// Flow through the faces, towards the end of the muscle \[kg/s\]; one more than cells, none without cells.
+    /// Mass flow through the faces, towards the end of the muscle \[kg/s\]; one face more than cells, none
+    /// without cells.
     pub flow: Vec<f64>,
 }
 
@@ -42,20 +43,20 @@ impl State {
     }
 }
 
-/// What passed the borders in a step.
+/// Exchange with the surroundings in a step.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(super) struct Exchange {
-    /// Air in through the inlet \[kg\].
+    /// Air that entered through the inlet \[kg\].
     pub mass: f64,
-    /// Enthalpy that it brought, from 0 K \[J\].
+    /// Its enthalpy, relative to 0 K \[J\].
     pub enthalpy: f64,
-    /// Heat to the ambient \[J\].
+    /// Heat lost to the ambient \[J\].
     pub heat: f64,
     /// Work of the gas on the wall, P dV \[J\].
     pub work: f64,
 }
 
-/// What surrounds the muscle: ambient and supply temperature \[K\].
+/// Ambient and supply temperature \[K\].
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Outside {
     pub ambient: f64,

@@ -1,15 +1,16 @@
-//! One time step: walls and gas implicitly, with mass and energy conserved to rounding.
+//! One time step: walls and gas are implicit, and mass and energy are conserved to rounding.
 
 use super::gas::{CP, CV, R};
 use super::mesh::{Conductances, Instant, Mesh};
 use super::state::{Exchange, Outside, State};
 use super::tridiagonal::Tridiagonal;
 
-/// Change of a gas temperature \[K\] at which the iteration of a step ends. What it leaves costs no energy: see [`Stepper::step`].
+/// Change of a gas temperature \[K\] at which the iteration of a step ends. The remaining error doesn't
+/// violate the energy balance: see [`Stepper::step`].
 const TOLERANCE: f64 = 1e-8;
 const ITERATIONS: usize = 60;
 
-/// A step to take.
+/// Inputs of a time step.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Step<'a> {
     pub mesh: &'a Mesh,
@@ -22,13 +23,13 @@ pub(super) struct Step<'a> {
 }
 
 impl Step<'_> {
-    /// Rate \[W\] at which gas in a volume stores energy and does work.
+    /// Rate \[W\] at which the gas in a volume stores energy and does work.
     fn stored(&self, before: f64, after: f64) -> f64 {
         let work = f64::midpoint(self.from.pressure, self.to.pressure) * (after - before);
         (CV / R * (self.to.pressure * after - self.from.pressure * before) + work) / self.dt
     }
 
-    /// Enthalpy \[W\] that the gas in a cell of the muscle takes in beyond its heat.
+    /// Net enthalpy inflow \[W\] of a cell of the muscle: stored energy and work minus the heat.
     fn intake(&self, state: &State, i: usize) -> f64 {
         let (mesh, c) = (self.mesh, self.conductances);
         let (muscle, pipe) = (&state.muscle, &state.pipe);
@@ -46,18 +47,18 @@ impl Step<'_> {
         self.stored(mesh.volume(i, self.from.section), mesh.volume(i, self.to.section)) - heat
     }
 
-    /// The same in the pipe.
+    /// Net enthalpy inflow \[W\] of a cell of the pipe.
     fn pipe_intake(&self, state: &State, i: usize) -> f64 {
         let (volume, pipe) = (self.mesh.pipe_volume[i], &state.pipe);
         self.stored(volume, volume) - self.conductances.pipe_inner[i] * (pipe.wall[i] - pipe.gas[i])
     }
 
-    /// Volume of a cell at the end of the step, of the muscle or of the pipe.
+    /// Volume of a cell of the muscle or of the pipe at the end of the step.
     fn volume(&self, in_pipe: bool, i: usize) -> f64 {
         if in_pipe { self.mesh.pipe_volume[i] } else { self.mesh.volume(i, self.to.section) }
     }
 
-    /// Mean volume of a cell.
+    /// Volume of a cell, mean of start and end of the step.
     fn middle_volume(&self, in_pipe: bool, i: usize) -> f64 {
         if in_pipe {
             self.mesh.pipe_volume[i]
@@ -74,7 +75,7 @@ impl Step<'_> {
     }
 }
 
-/// Takes steps; keeps its memory.
+/// Takes steps and reuses its memory.
 #[derive(Debug, Default)]
 pub(super) struct Stepper {
     rows: Tridiagonal,
@@ -82,15 +83,16 @@ pub(super) struct Stepper {
     next: Vec<f64>,
     /// Enthalpy flow through the faces \[W\], in the muscle and in the pipe.
     enthalpy: [Vec<f64>; 2],
-    /// The same through the mouth of the pipe.
+    /// Enthalpy flow through the mouth of the pipe \[W\].
     mouth: f64,
 }
 
-/// The iteration of a step doesn't end.
+/// The iteration of a step didn't converge.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Diverged;
 
-/// What enters a chain of cells carries: at its first and last face, and from the mouth of the pipe (which cell).
+/// Values carried by the air that enters a chain of cells: at its first and last face, and from the mouth of
+/// the pipe (with the cell there).
 #[derive(Debug, Clone, Copy)]
 struct Borders {
     first: f64,
@@ -105,12 +107,14 @@ impl Borders {
 }
 
 impl Stepper {
-    /// Takes a state on. Within the step, T of gas and walls are found by alternate implicit solves. The gas's internal
-    /// energy is cv P V/R, whatever its temperatures: the heats found fix every enthalpy flow, so energy is kept exactly,
-    /// and a last linear solve for 1/T moves the mass by just these flows.
+    /// Advances a state by one step. The temperatures of gas and walls are found by alternating implicit
+    /// solves. The internal energy of the gas is cv P V/R whatever its temperatures: the heats found fix
+    /// every enthalpy flow, so energy is conserved exactly. A last linear solve for 1/T moves the mass with
+    /// exactly these flows.
     pub(super) fn step(&mut self, step: Step, state: &mut State) -> Result<Exchange, Diverged> {
         let Step { mesh, outside, dt, .. } = step;
         self.old.clone_from(state);
+        // The iteration starts from adiabatic compression.
         let rise = (step.to.pressure / step.from.pressure).powf(1.0 - CV / CP);
         for gas in state.muscle.gas.iter_mut().chain(&mut state.pipe.gas) {
             *gas *= rise;
@@ -126,6 +130,7 @@ impl Stepper {
                 return Err(Diverged);
             }
         }
+        // Repeated with the final gas temperatures, from which the enthalpy flows must follow exactly.
         self.walls(step, state);
         self.enthalpies(step, state);
         self.advect(step, state);
@@ -140,7 +145,7 @@ impl Stepper {
         })
     }
 
-    /// Both walls from the gas temperatures: backward Euler.
+    /// Solves both walls for given gas temperatures by backward Euler.
     fn walls(&mut self, step: Step, state: &mut State) {
         let Step { mesh, conductances: c, outside, dt, .. } = step;
         let (rows, n) = (&mut self.rows, mesh.x.len());
@@ -194,18 +199,19 @@ impl Stepper {
         }
     }
 
-    /// Pipe or muscle first: what leaves the mouth is known before the cells that it reaches.
+    /// Whether pipe or muscle is solved first: what leaves the mouth must be known before the cells it
+    /// enters.
     fn order(&self, state: &State) -> impl Iterator<Item = bool> + use<> {
         let order = if self.mouth > 0.0 { [true, false] } else { [false, true] };
         let has_pipe = !state.pipe.gas.is_empty();
         order.into_iter().filter(move |in_pipe| has_pipe || !in_pipe)
     }
 
-    /// Gas temperatures from the walls and flows; gives the largest change \[K\].
+    /// Solves for the gas temperatures with given walls and flows; returns the largest change \[K\].
     /// ```text
     /// cp M_old (T - T_old)/dt = V dP/dt + sum_in m' cp (T_up - T) + sum U (T_wall - T) + mixing
     /// ```
-    /// This is the energy balance less cp T times the mass balance.
+    /// This is the energy balance minus cp T times the mass balance.
     fn gas(&mut self, step: Step, state: &mut State) -> f64 {
         let mut change = 0.0_f64;
         for in_pipe in self.order(state) {
@@ -215,7 +221,7 @@ impl Stepper {
             self.next.resize(now.gas.len(), 0.0);
             self.rows.solve(&mut self.next);
             for (gas, next) in now.gas.iter_mut().zip(&self.next) {
-                // A NaN must not be lost, as max would.
+                // `max` would drop a NaN.
                 let moved = (next - *gas).abs();
                 change = if moved.is_finite() && *next > 0.0 { change.max(moved) } else { f64::INFINITY };
                 *gas = *next;
@@ -224,7 +230,7 @@ impl Stepper {
         change
     }
 
-    /// What each cell stores, and its heat.
+    /// Adds the stored energy and the heat of each cell to the equations.
     fn gas_rows(&mut self, step: Step, state: &State, in_pipe: bool) {
         let (c, np) = (step.conductances, step.mesh.pipe_cells);
         let old = if in_pipe { &self.old.pipe } else { &self.old.muscle };
@@ -236,7 +242,8 @@ impl Stepper {
             let store = CP * old.mass[i] / step.dt;
             rows.diagonal[i] += store;
             rows.right[i] += store * old.gas[i] + step.middle_volume(in_pipe, i) * pressing;
-            // A wall will follow this pass by a part of the change of the gas: with it few passes are enough.
+            // After this pass the wall will follow a fraction of the gas's change; anticipating that makes
+            // few passes suffice.
             let mut heat = |conductance: f64, wall: f64, total: f64| {
                 let kept = conductance * (1.0 - conductance / total);
                 rows.diagonal[i] += kept;
@@ -259,7 +266,7 @@ impl Stepper {
         }
     }
 
-    /// What the flows bring; from m' cp T to m' cp at the temperatures of the last pass.
+    /// Adds the flows to the equations. The enthalpy flow m' cp T divided by T of the last pass gives m' cp.
     fn gas_flows(&mut self, state: &State, supply: f64, in_pipe: bool) {
         let borders = borders(in_pipe, state, supply, |gas| gas);
         let now = if in_pipe { &state.pipe.gas } else { &state.muscle.gas };
@@ -283,7 +290,7 @@ impl Stepper {
         }
     }
 
-    /// Moves the mass by the enthalpy flows H. With y = 1/T, M = P V y/R and m' = H y_up/cp:
+    /// Moves the mass with the enthalpy flows H. With y = 1/T, M = P V y/R and m' = H y_up/cp:
     /// ```text
     /// (P V/R + dt sum_out H/cp) y - dt sum_in H/cp y_up = M_old
     /// ```
@@ -335,7 +342,7 @@ impl Stepper {
     }
 }
 
-/// What enters a chain; `of` turns a temperature into what is carried.
+/// Values of the air that enters a chain; `of` maps a temperature to the value carried.
 fn borders(in_pipe: bool, state: &State, supply: f64, of: impl Fn(f64) -> f64) -> Borders {
     let (np, first) = (state.pipe.gas.len(), of(supply));
     if in_pipe {
@@ -346,7 +353,7 @@ fn borders(in_pipe: bool, state: &State, supply: f64, of: impl Fn(f64) -> f64) -
     }
 }
 
-/// Cells before and behind a face of n cells, in the direction of the flow.
+/// Cells upstream and downstream of a face between n cells.
 fn upwind(face: usize, flow: f64, n: usize) -> (Option<usize>, Option<usize>) {
     let (left, right) = (face.checked_sub(1), (face < n).then_some(face));
     if flow > 0.0 { (left, right) } else { (right, left) }

@@ -1,4 +1,4 @@
-//! Heat in a muscle: conservation to rounding, closed forms, orders of convergence, and what S3 reports.
+//! Heat in a muscle: conservation to rounding, closed forms, orders of convergence, and the trends of S3.
 
 mod closed_forms;
 mod mistakes;
@@ -16,7 +16,7 @@ use std::f64::consts::PI;
 
 const AMBIENT: f64 = 293.15;
 
-/// Coarse, for many solves.
+/// A coarse problem, for many solves.
 fn coarse() -> HeatProblem {
     let mut problem = HeatProblem::default();
     problem.numerics.cells = 20;

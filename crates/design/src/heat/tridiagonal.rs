@@ -10,7 +10,7 @@ pub(super) struct Tridiagonal {
 }
 
 impl Tridiagonal {
-    /// All rows zero, for n unknowns; keeps the memory.
+    /// Sets all rows to zero, for n unknowns; reuses the memory.
     pub(super) fn reset(&mut self, n: usize) {
         for row in [&mut self.low, &mut self.diagonal, &mut self.high, &mut self.right] {
             row.clear();
@@ -18,7 +18,7 @@ impl Tridiagonal {
         }
     }
 
-    /// A conductance between x\[i-1\] and x\[i\], added to both rows.
+    /// Adds a conductance between x\[i-1\] and x\[i\] to both rows.
     pub(super) fn couple(&mut self, i: usize, conductance: f64) {
         self.diagonal[i - 1] += conductance;
         self.diagonal[i] += conductance;
@@ -26,7 +26,8 @@ impl Tridiagonal {
         self.low[i] -= conductance;
     }
 
-    /// Solves by Thomas' algorithm; without pivots, as the rows or the columns are dominated by the diagonal.
+    /// Solves by Thomas' algorithm. It needs no pivoting, since the rows or the columns are diagonally
+    /// dominant.
     pub(super) fn solve(&mut self, x: &mut [f64]) {
         let n = x.len();
         for i in 1..n {

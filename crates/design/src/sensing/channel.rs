@@ -1,4 +1,4 @@
-//! The channel on a surface: length, stretch, section, resistance.
+//! The channel on a surface: length, stretch, section and resistance.
 
 use bulge_numerics::gauss;
 use serde::Serialize;
@@ -8,12 +8,12 @@ use super::SensingError;
 use super::surface::{Element, Surface};
 use super::winding::{Layer, Winding};
 
-/// Newton steps for the thickness of a layer; four are usual.
+/// Most Newton steps for the thickness of a layer; four are usual.
 const MOST_STEPS: usize = 60;
-/// Relative size of the last of them.
+/// Relative size of the last Newton step.
 const LAST_STEP: f64 = 1e-14;
 
-/// What a winding is at one contraction.
+/// A winding at one contraction.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Reading {
     /// Gauge pressure \[Pa\].
@@ -26,17 +26,17 @@ pub struct Reading {
     pub channel_length_m: f64,
     /// Resistance R \[ohm\].
     pub resistance_ohm: f64,
-    /// R/R0 - 1 \[-\], R0 that in the reference.
+    /// R/R0 - 1 \[-\], with R0 in the reference.
     pub relative_change: f64,
-    /// R0 (L/L0)^2 \[ohm\]: what it would be if the stretch were the same all along.
+    /// R0 (L/L0)^2 \[ohm\]: the resistance if the stretch were uniform along the channel.
     pub uniform_resistance_ohm: f64,
     /// L/L0 \[-\].
     pub mean_stretch: f64,
     /// Largest strain lambda - 1 along the channel \[-\], at the points of the meridian and of the quadrature.
     pub largest_strain: f64,
-    /// Where it is, as a fraction of the fibre length.
+    /// Position of the largest strain, as a fraction of the fibre length.
     pub largest_strain_at: f64,
-    /// Smallest strain \[-\]; negative where the channel is compressed.
+    /// Smallest strain \[-\]; negative if the channel is compressed.
     pub smallest_strain: f64,
     /// Smallest section A0/lambda \[m^2\].
     pub smallest_section_m2: f64,
@@ -73,7 +73,7 @@ pub(super) struct Totals {
     pub(super) unstretched: f64,
     /// Meridian of the zone in the reference \[m\].
     pub(super) meridian_0: f64,
-    /// Largest stretch and its place.
+    /// Largest stretch and its position.
     pub(super) largest: [f64; 2],
     pub(super) smallest: f64,
 }
@@ -88,7 +88,8 @@ pub(super) struct Channel<'a> {
     pub(super) fibre: f64,
 }
 
-/// The channel at one place: radius, meridian and length per unstretched fibre length, on the surface and in the reference.
+/// The channel at one position: radius, meridian and length per unstretched fibre length, on the surface and
+/// in the reference.
 #[derive(Debug, Clone, Copy)]
 struct Local {
     rho: f64,
@@ -120,7 +121,7 @@ impl Channel<'_> {
         Ok(Local { rho, length, meridian_0, length_0, thickness, psi: now.psi, x: now.x })
     }
 
-    /// Integrals by six Gauss points on each piece on which the surface is one polynomial.
+    /// Integrals by six Gauss points on each piece on which the surface is a single polynomial.
     pub(super) fn totals(&self) -> Result<Totals, SensingError> {
         let edges = self.surface.pieces(self.winding.start, self.winding.end);
         let mut sums = [0.0; 5];
@@ -180,14 +181,16 @@ impl Channel<'_> {
     }
 }
 
-/// Radius and meridian per unstretched fibre length at a distance outside the fibres; none if the parallel surface folds.
+/// Radius and meridian per unstretched fibre length at a distance outside the fibres; `None` if the parallel
+/// surface folds.
 fn lifted(element: &Element, distance: f64) -> Option<[f64; 2]> {
     let rho = element.r + distance * element.psi.cos();
     let meridian = element.sigma - distance * element.bend;
     (rho > 0.0 && meridian > 0.0).then_some([rho, meridian])
 }
 
-/// Volume of the layer up to a distance, per angle about the axis and unstretched fibre length, and its derivative by the distance.
+/// Volume of the layer up to a distance, per angle about the axis and per unstretched fibre length, and its
+/// derivative by the distance.
 fn layer_volume(element: &Element, distance: f64) -> [f64; 2] {
     let Element { r, psi, sigma, bend, .. } = *element;
     let (cos, t) = (psi.cos(), distance);
@@ -195,17 +198,19 @@ fn layer_volume(element: &Element, distance: f64) -> [f64; 2] {
     [volume, (r + t * cos) * (sigma - t * bend)]
 }
 
-/// The distance at which the layer has the volume that it has in the reference; none if there is no room for it.
+/// The distance at which the layer has the same volume as in the reference; `None` if there is no room for
+/// it.
 fn thinned(now: &Element, then: &Element, offset: f64) -> Option<f64> {
     if offset == 0.0 {
         return Some(0.0);
     }
     let [wanted, _] = layer_volume(then, offset);
+    // Start: a thin layer thins in inverse proportion to the area of the surface.
     let mut t = offset * then.r * then.sigma / (now.r * now.sigma);
     for _ in 0..MOST_STEPS {
         let [volume, slope] = layer_volume(now, t);
         let step = (wanted - volume) / slope;
-        // Beyond a fold the volume falls again.
+        // Beyond a fold the volume decreases again.
         if !step.is_finite() || slope <= 0.0 {
             return None;
         }

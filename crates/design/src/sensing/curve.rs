@@ -1,4 +1,5 @@
-//! Resistance over contraction: sensitivity, linearity, resolution, and back from the resistance to the contraction.
+//! Resistance over contraction: sensitivity, linearity, resolution, and the inverse from resistance to
+//! contraction.
 
 use bulge_numerics::root::{RootError, newton_bracketed};
 use rayon::prelude::*;
@@ -11,7 +12,8 @@ use super::{Linearity, Reading, SensingError};
 
 /// Fewest and most points of a curve.
 const POINTS: [usize; 2] = [11, 10_001];
-/// Newton step in the contraction at which the inverse ends; the slope is that of a chord, so the error is a part of it.
+/// Newton step in the contraction at which the inverse ends. The slope is that of a chord, so the error is a
+/// fraction of this step.
 const LAST_STEP: f64 = 1e-12;
 
 /// Equally spaced contractions.
@@ -21,7 +23,8 @@ pub struct Range {
     pub from: f64,
     /// Last contraction, greater.
     pub to: f64,
-    /// How many, 11 to 10001; the slopes are as exact as a polynomial of degree 5 through six of them.
+    /// Number of contractions, 11 to 10001; the slopes are as accurate as a polynomial of degree 5 through
+    /// six of them.
     pub points: usize,
 }
 
@@ -29,7 +32,8 @@ impl Range {
     /// The contractions.
     ///
     /// # Errors
-    /// [`SensingError::Number`] if the ends are not finite and in order, or the number is out of its range.
+    /// [`SensingError::Number`] if the ends are not finite or not in order, or the number is out of its
+    /// range.
     pub fn contractions(&self) -> Result<Vec<f64>, SensingError> {
         let Self { from, to, points } = *self;
         number("first contraction of the range", from, "a finite number below 1", |e| {
@@ -60,24 +64,24 @@ pub struct Curve {
     pub muscle_length_m: f64,
     /// The readings, in order of the contraction.
     pub readings: Vec<Reading>,
-    /// Gauge factor dR/(R0 de) at each of them \[-\].
+    /// Gauge factor dR/(R0 de) at each reading \[-\].
     pub sensitivity: Vec<f64>,
-    /// How straight it is; none for a winding that feels nothing.
+    /// Its linearity; `None` for a winding whose resistance doesn't change.
     pub linearity: Option<Linearity>,
 }
 
-/// What a noise of the resistance makes of the contraction.
+/// Effect of noise of the resistance on the contraction.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Resolution {
     /// Noise of the resistance \[ohm\].
     pub noise_ohm: f64,
     /// noise/|dR/de| at each reading \[-\].
     pub contraction: Vec<f64>,
-    /// The largest of them \[-\].
+    /// Largest of these values \[-\].
     pub worst: f64,
-    /// Contraction at which it is.
+    /// Contraction at the largest value.
     pub worst_at: f64,
-    /// The largest as a length of the muscle \[m\].
+    /// The largest value as a length of the muscle \[m\].
     pub worst_m: f64,
 }
 
@@ -96,10 +100,11 @@ impl Curve {
         Self { reference_resistance_ohm: reference_ohm, muscle_length_m, readings, sensitivity, linearity }
     }
 
-    /// Checks that the resistance rises all the way, or falls all the way.
+    /// Checks that the resistance is strictly monotone.
     ///
     /// # Errors
-    /// [`SensingError::NoChange`] or [`SensingError::NotMonotone`] with the first contractions between which it turns.
+    /// [`SensingError::NoChange`], or [`SensingError::NotMonotone`] with the first contractions between which
+    /// it turns.
     pub fn check_monotone(&self) -> Result<(), SensingError> {
         let linearity = self.linearity.ok_or(SensingError::NoChange)?;
         let sign = linearity.slope_ohm.signum();
@@ -109,10 +114,10 @@ impl Curve {
         turn.map_or(Ok(()), |between| Err(SensingError::NotMonotone { between }))
     }
 
-    /// What a noise of the resistance \[ohm\] makes of the contraction.
+    /// Effect of noise of the resistance \[ohm\] on the contraction.
     ///
     /// # Errors
-    /// [`SensingError::Number`] if the noise isn't greater than 0; [`Curve::check_monotone`].
+    /// [`SensingError::Number`] if the noise isn't greater than 0; as [`Curve::check_monotone`].
     pub fn resolution(&self, noise_ohm: f64) -> Result<Resolution, SensingError> {
         number("noise of the resistance", noise_ohm, "a finite number of ohm greater than 0", is_positive)?;
         self.check_monotone()?;
@@ -126,7 +131,7 @@ impl Curve {
                     if *size > best.0 { (*size, reading.contraction) } else { best }
                 },
             );
-        // A slope of 0 between points that rise: nothing finite can be said there.
+        // The slope may be 0 even though the readings increase: the resolution isn't finite there.
         if !worst.is_finite() {
             return Err(SensingError::NotMonotone { between: [worst_at; 2] });
         }
@@ -135,10 +140,11 @@ impl Curve {
 }
 
 impl Sensor {
-    /// The characteristic over a range, on all cores.
+    /// The characteristic over a range, computed in parallel.
     ///
     /// # Errors
-    /// [`SensingError::Number`] for a range that is none; as [`Sensor::reading`], for the smallest contraction at which it fails.
+    /// [`SensingError::Number`] for an invalid range; as [`Sensor::reading`], for the smallest contraction at
+    /// which it fails.
     pub fn curve(&self, range: Range) -> Result<Curve, SensingError> {
         let found: Vec<Result<Reading, SensingError>> =
             range.contractions()?.par_iter().map(|contraction| self.reading(*contraction)).collect();
@@ -146,17 +152,19 @@ impl Sensor {
         Ok(Curve::of_readings(readings, self.reference_resistance_ohm(), self.muscle_length_m()))
     }
 
-    /// Poses over a range, on all cores.
+    /// Poses over a range, computed in parallel.
     pub(super) fn poses(&self, range: Range) -> Result<Vec<Pose>, SensingError> {
         let found: Vec<Result<Pose, SensingError>> =
             range.contractions()?.par_iter().map(|contraction| self.pose(*contraction)).collect();
         found.into_iter().collect()
     }
 
-    /// The contraction at which the winding has a resistance \[ohm\]: between two points of a curve of this sensor, on the model itself.
+    /// The contraction at which the winding has a resistance \[ohm\]. A curve of this sensor brackets it
+    /// between two points; it is then found on the model itself.
     ///
     /// # Errors
-    /// [`Curve::check_monotone`]; [`SensingError::OutsideCurve`]; [`SensingError::OtherCurve`]; as [`Sensor::reading`].
+    /// As [`Curve::check_monotone`]; [`SensingError::OutsideCurve`]; [`SensingError::OtherCurve`]; as
+    /// [`Sensor::reading`].
     pub fn contraction(&self, curve: &Curve, resistance_ohm: f64) -> Result<f64, SensingError> {
         curve.check_monotone()?;
         let own = [self.reference_resistance_ohm(), self.pressure_pa()].map(f64::to_bits);
@@ -181,7 +189,8 @@ impl Sensor {
         }
         let width = right.contraction - left.contraction;
         let rise = right.resistance_ohm - left.resistance_ohm;
-        // Positive at the left end and negative at the right one, whether the resistance rises or falls.
+        // Makes the function positive at the left end and negative at the right one, for rising and falling
+        // resistance.
         let sign = rise.signum();
         let value = |contraction: f64| {
             let reading = self.reading(contraction)?;

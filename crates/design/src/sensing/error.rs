@@ -1,21 +1,21 @@
-//! Why a winding has no resistance, no contraction or no best place.
+//! Why a winding has no resistance, no contraction or no best zone.
 
 use bulge_fibre::FibreError;
 
-/// What is wrong, where, and what to do instead.
+/// What is wrong, where, and how to correct it.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum SensingError {
     /// A number outside its range.
     #[error("the {what} is {value}: it must be {needs}")]
     Number {
-        /// Which number.
+        /// The number.
         what: &'static str,
-        /// Its value in SI.
+        /// Its value in SI units.
         value: f64,
-        /// What it must be.
+        /// Its required range.
         needs: &'static str,
     },
-    /// A winding zone that is none.
+    /// An invalid winding zone.
     #[error(
         "the winding zone from {start} to {end} of the fibre length is none: it must lie in 0..1, with its end at least 1e-6 beyond its start"
     )]
@@ -25,7 +25,7 @@ pub enum SensingError {
         /// End.
         end: f64,
     },
-    /// Neighbouring turns would run into each other.
+    /// Neighbouring turns would overlap.
     #[error(
         "the turns of the channel are {:.4} mm apart, but it is {:.4} mm wide: take fewer turns, a wider zone or a smaller section", 1e3 * pitch_m, 1e3 * diameter_m
     )]
@@ -35,32 +35,32 @@ pub enum SensingError {
         /// Diameter of a round channel of this section \[m\].
         diameter_m: f64,
     },
-    /// The offset surface folds over itself, or nothing of the layer is left.
+    /// The offset surface folds, or nothing of the layer is left.
     #[error(
         "a channel {:.4} mm outside the fibres has no place at {:.2} % of the fibre length: the muscle is too sharply waisted there; take a thinner layer", 1e3 * offset_m, 100.0 * at
     )]
     Folded {
         /// Offset in the reference \[m\].
         offset_m: f64,
-        /// Place as a fraction of the fibre length.
+        /// Position as a fraction of the fibre length.
         at: f64,
     },
-    /// The muscle has no equilibrium there.
+    /// The muscle has no equilibrium in this state.
     #[error("the winding has no resistance at {pressure_pa} Pa and contraction {:.4} %: {error}", 100.0 * contraction)]
     Equilibrium {
         /// Gauge pressure \[Pa\].
         pressure_pa: f64,
         /// Contraction.
         contraction: f64,
-        /// What the solver says.
+        /// Error of the solver.
         error: Box<FibreError>,
     },
-    /// A meridian that isn't that of the muscle of the winding, or has too few points.
+    /// The meridian isn't one of the winding's muscle, or has too few points.
     #[error(
         "this meridian doesn't fit the winding: {why}; give a shape of the same muscle with at least 7 points"
     )]
     Meridian {
-        /// What doesn't fit.
+        /// The reason.
         why: &'static str,
     },
     /// The elastomer would tear.
@@ -74,12 +74,12 @@ pub enum SensingError {
         contraction: f64,
         /// Largest strain along the channel.
         strain: f64,
-        /// Where, as a fraction of the fibre length.
+        /// Its position, as a fraction of the fibre length.
         at: f64,
         /// Largest strain allowed.
         allowed: f64,
     },
-    /// A winding that doesn't feel the contraction.
+    /// The resistance doesn't change with the contraction.
     #[error(
         "the resistance changes by less than 1e-9 of itself over this range: this winding feels nothing; give it turns where the radius changes"
     )]
@@ -93,26 +93,26 @@ pub enum SensingError {
         /// Contractions between which it turns.
         between: [f64; 2],
     },
-    /// A resistance that the range doesn't have.
+    /// The resistance is outside the range of the curve.
     #[error("the resistance {resistance_ohm} ohm lies outside those of the curve, {} ohm to {} ohm: measure within it, or compute a wider curve", range_ohm[0], range_ohm[1])]
     OutsideCurve {
-        /// Asked resistance \[ohm\].
+        /// Given resistance \[ohm\].
         resistance_ohm: f64,
-        /// Smallest and largest of the curve \[ohm\].
+        /// Smallest and largest resistance of the curve \[ohm\].
         range_ohm: [f64; 2],
     },
-    /// A curve that another sensor gave.
+    /// The curve belongs to another sensor.
     #[error("this curve is not one of this winding: compute it with the same sensor")]
     OtherCurve,
     /// The root search ended without a root.
     #[error("no contraction was found to the resistance {resistance_ohm} ohm near {:.4} %: compute the curve with more points", 100.0 * near)]
     NoContraction {
-        /// Asked resistance \[ohm\].
+        /// Given resistance \[ohm\].
         resistance_ohm: f64,
         /// Last contraction tried.
         near: f64,
     },
-    /// No zone does what is wanted.
+    /// No zone meets the requirements.
     #[error(
         "none of the {scanned} zones is good enough: the largest mean sensitivity of a monotone one is {largest:.6} per contraction, {wanted:.6} is wanted, \
          and {overstrained} zones strain the elastomer too much; ask for less, or allow other widths or a shorter range"
@@ -120,11 +120,11 @@ pub enum SensingError {
     NoPlace {
         /// Zones tried.
         scanned: usize,
-        /// Largest sensitivity |dR/de|/R0 among monotone zones within the strain; 0 if there is none.
+        /// Largest sensitivity |dR/de|/R0 among monotone zones within the strain limit; 0 if there is none.
         largest: f64,
-        /// Least sensitivity wanted.
+        /// Smallest sensitivity required.
         wanted: f64,
-        /// Zones that strain the elastomer too much.
+        /// Number of zones that strain the elastomer too much.
         overstrained: usize,
     },
 }

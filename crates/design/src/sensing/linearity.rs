@@ -1,11 +1,11 @@
-//! How straight a curve of resistance over contraction is.
+//! Linearity of a curve of resistance over contraction.
 
 use serde::Serialize;
 
-/// Change of the resistance, relative to that in the reference, below which it is none.
+/// Change of the resistance, relative to R0, below which it counts as none.
 const NOTHING: f64 = 1e-9;
 
-/// Straight lines through a curve, and how far it departs from them.
+/// Straight lines through a curve, and its deviation from them.
 ///
 /// ```text
 /// best fit    least squares over the points of the curve, all of one weight
@@ -24,17 +24,18 @@ pub struct Linearity {
     pub full_scale_ohm: f64,
     /// Largest departure from the best fit \[% of full scale\].
     pub best_fit_percent: f64,
-    /// Contraction at which it is.
+    /// Contraction at this departure.
     pub best_fit_at: f64,
     /// Largest departure from the line through both ends \[% of full scale\].
     pub terminal_percent: f64,
-    /// Contraction at which it is.
+    /// Contraction at this departure.
     pub terminal_at: f64,
 }
 
 impl Linearity {
-    /// Of resistances \[ohm\] at contractions, with the resistance R0 in the reference. None if there are fewer than two points, if the contractions
-    /// are all the same, if a number isn't finite, or if the resistance changes by less than 1e-9 R0.
+    /// Linearity of resistances \[ohm\] at contractions, with the resistance R0 in the reference. `None` if
+    /// there are fewer than two points, if all contractions are the same, if a number isn't finite, or if the
+    /// resistance changes by less than 1e-9 R0.
     #[must_use]
     pub fn of(contractions: &[f64], resistances_ohm: &[f64], reference_ohm: f64) -> Option<Self> {
         let count = contractions.len();

@@ -1,8 +1,10 @@
-//! Where to wind: the zone with the straightest characteristic, or with the most sensitive one.
+//! Where to wind: the zone with the most linear characteristic, or with the most sensitive one.
 //!
-//! Zones of given widths w are scanned over their centres c from w/2 to 1/2 (muscles are symmetric: a zone at 1 - c does the same), each over the whole range of
-//! contractions. For each width the best centre is refined by golden section between its neighbours in the scan; then the best width, each time with its
-//! best centre. A golden section finds the best of one hill; the scan is what finds the hill. The muscle's shapes are computed once, for all zones.
+//! Zones of given widths w are scanned over their centres c from w/2 to 1/2 (muscles are symmetric: a zone at
+//! 1 - c is equivalent), each over the whole range of contractions. For each width the best centre is refined
+//! by golden section between its neighbours in the scan. Then the best width is refined, each time with its
+//! best centre. A golden section finds the optimum of a unimodal function; the scan brackets it. The shapes
+//! of the muscle are computed once, for all zones.
 
 use rayon::prelude::*;
 use serde::Serialize;
@@ -15,63 +17,64 @@ use super::{Curve, Range, Reading, SensingError, Winding};
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 /// Width of the bracket, as a fraction of the fibre length, at which a golden section ends.
 const ENOUGH: f64 = 1e-5;
-/// Centres that are tried for each width between those of the scan.
+/// Centres tried for each width between those of the scan.
 const CENTRES: usize = 7;
 /// Most centres and widths of a scan.
 const MOST: usize = 1001;
 
-/// What is best.
+/// What the search optimises.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Goal {
-    /// The smallest departure from the least-squares line, in % of full scale.
+    /// The smallest deviation from the least-squares line, in % of full scale.
     MostLinear {
-        /// Least |slope of the line|/R0 that is enough, 0 or more.
+        /// Smallest |slope of the line|/R0 that suffices, 0 or more.
         least_sensitivity: f64,
     },
     /// The largest |slope of the least-squares line|/R0.
     MostSensitive,
 }
 
-/// What is searched through.
+/// Space of the search.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Search {
     /// Contractions to measure.
     pub range: Range,
-    /// Smallest and largest width of the zone, as fractions of the fibre length; the same for a given width. The number of turns stays.
+    /// Smallest and largest width of the zone, as fractions of the fibre length; equal for a given width. The
+    /// number of turns is constant.
     pub widths: [f64; 2],
-    /// Widths in the scan, 1 to 1001; 1 where both ends are the same.
+    /// Widths in the scan, 1 to 1001; 1 if both ends are equal.
     pub width_steps: usize,
     /// Centres in the scan for each width, 3 to 1001.
     pub centres: usize,
-    /// What is best.
+    /// What the search optimises.
     pub goal: Goal,
 }
 
-/// What came of a zone.
+/// Assessment of a zone.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
-    /// It can be taken.
+    /// It is acceptable.
     Good,
-    /// Its mean sensitivity is less than wanted.
+    /// Its mean sensitivity is below the requirement.
     Insensitive,
-    /// The resistance doesn't rise or fall all the way, or doesn't change.
+    /// The resistance isn't monotone, or doesn't change.
     NotMonotone,
     /// The channel is strained more than the elastomer bears.
     Overstrained,
-    /// The winding itself can't be: its turns run into each other, or its layer has no room.
+    /// The winding itself is impossible: its turns overlap, or its layer has no room.
     Impossible,
 }
 
-/// One zone and what it does.
+/// One zone and its characteristics.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Place {
     /// Centre, as a fraction of the fibre length.
     pub centre: f64,
     /// Width, as a fraction of the fibre length.
     pub width: f64,
-    /// |slope of the least-squares line|/R0 \[-\]; none where the resistance doesn't change, or for an impossible winding.
+    /// |slope of the least-squares line|/R0 \[-\]; `None` if the resistance doesn't change, or for an impossible winding.
     pub sensitivity: Option<f64>,
     /// Largest departure from that line \[% of full scale\].
     pub best_fit_percent: Option<f64>,
@@ -79,7 +82,7 @@ pub struct Place {
     pub terminal_percent: Option<f64>,
     /// Largest strain along the channel over the range \[-\].
     pub largest_strain: Option<f64>,
-    /// What came of it.
+    /// Assessment of the zone.
     pub verdict: Verdict,
 }
 
@@ -88,7 +91,7 @@ pub struct Place {
 pub struct Placement {
     /// The best zone, refined.
     pub best: Place,
-    /// The winding there.
+    /// The winding in that zone.
     pub winding: Winding,
     /// Its characteristic.
     pub curve: Curve,
@@ -124,14 +127,14 @@ impl Search {
             (0..self.width_steps).map(|i| between(self.widths[0], self.widths[1], i, self.width_steps));
         widths
             .flat_map(|width| {
-                // A zone of the whole length has one place only.
+                // A zone over the whole length has only one position.
                 let centres = if width < 1.0 { self.centres } else { 1 };
                 (0..centres).map(move |i| [between(0.5 * width, 0.5, i, centres), width])
             })
             .collect()
     }
 
-    /// What is to be made small; infinite for a zone that can't be taken.
+    /// The objective to be minimised; infinite for an unacceptable zone.
     fn cost(&self, place: &Place) -> f64 {
         let wanted = match self.goal {
             Goal::MostLinear { .. } => place.best_fit_percent,
@@ -146,11 +149,11 @@ impl Search {
 }
 
 impl Sensor {
-    /// The best zone for this winding, whose own zone takes no part; its turns, section and layer stay.
+    /// The best zone for this winding. Its own zone is ignored; its turns, section and layer are kept.
     ///
     /// # Errors
-    /// [`SensingError::Number`] for a search that is none, [`SensingError::Equilibrium`] over the range, [`SensingError::NoPlace`] if no zone can be
-    /// taken.
+    /// [`SensingError::Number`] for an invalid search, [`SensingError::Equilibrium`] over the range,
+    /// [`SensingError::NoPlace`] if no zone is acceptable.
     pub fn best_place(&self, search: &Search) -> Result<Placement, SensingError> {
         search.check()?;
         let poses = self.poses(search.range)?;
@@ -160,7 +163,8 @@ impl Sensor {
             return Err(no_place(search, &scanned));
         }
         let cost = |place: &Place| search.cost(place);
-        // Each width with its own best centre: what is best on the scan's coarse centres need not be best.
+        // Each width is refined at its own best centre: the best width on the coarse centres of the scan need
+        // not be the best one.
         let refined: Vec<Place> = scanned
             .chunk_by(|a, b| a.width.to_bits() == b.width.to_bits())
             .collect::<Vec<_>>()
@@ -178,7 +182,7 @@ impl Sensor {
         Ok(Placement { best, winding: *sensor.winding(), curve, scanned })
     }
 
-    /// The best width next to that of a place, each with its best centre near that of the place.
+    /// The best width near that of `best`, each with its best centre near that of `best`.
     fn refined_width(&self, search: &Search, poses: &[Pose], best: Place) -> Place {
         let step = (search.widths[1] - search.widths[0]) / (search.width_steps - 1) as f64;
         let reach = 0.5 / (search.centres - 1) as f64 + 0.5 * step;
@@ -229,12 +233,13 @@ impl Sensor {
     }
 }
 
-/// Index of the place that costs least; the first of equals.
+/// Index of the place with the lowest cost; the first of equals.
 fn cheapest(places: &[Place], cost: impl Fn(&Place) -> f64) -> Option<usize> {
     (0..places.len()).min_by(|a, b| cost(&places[*a]).total_cmp(&cost(&places[*b])))
 }
 
-/// The best place between the neighbours of the best one of a row of places of one width, in order of their centres (at least one).
+/// Refines the best of a row of places (at least one) that have the same width and ascending centres, between
+/// its neighbours.
 fn refined_centre(row: &[Place], at: impl Fn(f64) -> Place, cost: impl Fn(&Place) -> f64) -> Place {
     let i = cheapest(row, &cost).unwrap_or(0);
     if cost(&row[i]).is_infinite() {
@@ -244,8 +249,8 @@ fn refined_centre(row: &[Place], at: impl Fn(f64) -> Place, cost: impl Fn(&Place
     golden(row[i], around, |place| place.centre, at, cost)
 }
 
-/// Golden section that starts from a place inside (or at an end of) a bracket and never loses the best one: the longer side of it is divided, and
-/// what is worse becomes the new end.
+/// Golden section that starts from a point inside (or at an end of) a bracket and never loses the best point.
+/// It divides the longer side of the bracket; the worse point becomes the new end.
 fn golden(
     mut best: Place,
     [mut low, mut high]: [f64; 2],

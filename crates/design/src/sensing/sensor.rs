@@ -45,7 +45,7 @@ pub struct Sensor {
     length_0: f64,
 }
 
-/// A muscle at a contraction, whatever is wound around it.
+/// A muscle at a contraction, independent of the winding.
 #[derive(Debug, Clone)]
 pub(super) struct Pose {
     response: Response,
@@ -53,11 +53,13 @@ pub(super) struct Pose {
 }
 
 impl Sensor {
-    /// A winding on a muscle with its effects, at a gauge pressure. A muscle without effects is `MuscleWithEffects::new(&muscle, &[])`.
+    /// A winding on a muscle with its effects, at a gauge pressure. A muscle without effects is
+    /// `MuscleWithEffects::new(&muscle, &[])`.
     ///
     /// # Errors
-    /// [`SensingError::Number`], [`SensingError::Zone`] and [`SensingError::Crowded`] for a winding that can't be, [`SensingError::Equilibrium`] if
-    /// the muscle has none at the reference, [`SensingError::Folded`] for a layer that has no room there.
+    /// [`SensingError::Number`], [`SensingError::Zone`] and [`SensingError::Crowded`] for an impossible
+    /// winding, [`SensingError::Equilibrium`] if the muscle has no equilibrium at the reference,
+    /// [`SensingError::Folded`] if the layer has no room there.
     pub fn new(
         muscle: &MuscleWithEffects,
         pressure: Pressure,
@@ -117,7 +119,7 @@ impl Sensor {
         &self.winding
     }
 
-    /// How it is computed.
+    /// Options of the computation.
     #[must_use]
     pub const fn options(&self) -> &Options {
         &self.options
@@ -155,20 +157,22 @@ impl Sensor {
         self.bearable(self.read(&self.winding, self.length_0, &self.pose(contraction)?)?)
     }
 
-    /// The winding on a meridian that was computed elsewhere, of the same muscle.
+    /// The winding on a meridian of the same muscle that was computed elsewhere.
     ///
     /// # Errors
-    /// [`SensingError::Meridian`] if it isn't of the same muscle or has fewer than 7 points; as [`Sensor::reading`].
+    /// [`SensingError::Meridian`] if the meridian isn't of the same muscle or has fewer than 7 points; as
+    /// [`Sensor::reading`].
     pub fn reading_of(&self, shape: &Shape) -> Result<Reading, SensingError> {
         let surface = Surface::of_shape(shape, self.fibre)?;
         self.bearable(self.read(&self.winding, self.length_0, &Pose { response: shape.response, surface })?)
     }
 
-    /// The channel at a contraction, as points equally spaced in s, with stretch and section; from 2 to 1e6 of them.
+    /// The channel at a contraction as `count` points equally spaced in s, with stretch and section; from 2
+    /// to 1e6 points.
     ///
     /// # Errors
-    /// [`SensingError::Number`] for another count, [`SensingError::Equilibrium`] or [`SensingError::Folded`]. A strain beyond
-    /// [`Options::max_strain`] is no error here: the points show where it is.
+    /// [`SensingError::Number`] for another count, [`SensingError::Equilibrium`] or [`SensingError::Folded`].
+    /// A strain beyond [`Options::max_strain`] is no error here: the points show where it occurs.
     pub fn channel(&self, contraction: f64, count: usize) -> Result<Vec<ChannelPoint>, SensingError> {
         number("number of points of the channel", count as f64, "from 2 to 1e6", |_| {
             (2..=1_000_000).contains(&count)
@@ -198,7 +202,7 @@ impl Sensor {
         Ok(totals)
     }
 
-    /// A winding on a pose, with its length in the reference; whatever the strain.
+    /// Evaluates a winding on a pose, with its length in the reference; the strain isn't limited.
     pub(super) fn read(
         &self,
         winding: &Winding,
@@ -227,7 +231,7 @@ impl Sensor {
         })
     }
 
-    /// An error if the elastomer doesn't bear the strain.
+    /// An error if the strain exceeds what the elastomer can bear.
     pub(super) fn bearable(&self, reading: Reading) -> Result<Reading, SensingError> {
         let Reading { contraction, largest_strain: strain, largest_strain_at: at, .. } = reading;
         let allowed = self.options.max_strain;
@@ -242,12 +246,12 @@ impl Sensor {
     }
 }
 
-/// Resistance \[ohm\] of an integral of lambda dL \[m\].
+/// Resistance \[ohm\] from the integral of lambda dL \[m\].
 fn resistance_of(winding: &Winding, stretched_m: f64) -> f64 {
     winding.resistivity_ohm_m * stretched_m / winding.section_m2
 }
 
-/// The surface at a contraction from the stated length of the muscle.
+/// The surface at a contraction relative to the stated length of the muscle.
 fn pose(
     muscle: &MuscleWithEffects,
     problem: &Problem,

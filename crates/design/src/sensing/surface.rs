@@ -5,7 +5,7 @@ use bulge_fibre::Shape;
 use super::SensingError;
 use super::winding::FEWEST_POINTS;
 
-/// Points of one interpolating polynomial.
+/// Points of each interpolating polynomial.
 const STENCIL: usize = 6;
 /// Indices of the interpolated values.
 const X: usize = 0;
@@ -13,13 +13,13 @@ const R: usize = 1;
 const PSI: usize = 2;
 const SIGMA: usize = 3;
 
-/// Relative difference of fibre lengths at which a meridian is of another muscle.
+/// Relative difference of fibre lengths from which a meridian belongs to another muscle.
 const SAME: f64 = 1e-6;
 
 /// A surface element of the fibre net.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Element {
-    /// Axial place \[m\].
+    /// Axial position \[m\].
     pub(super) x: f64,
     /// Radius of the fibres \[m\].
     pub(super) r: f64,
@@ -34,7 +34,7 @@ pub(super) struct Element {
 /// A muscle at rest or in equilibrium.
 #[derive(Debug, Clone)]
 pub(super) enum Surface {
-    /// A cylinder: radius, meridian per unstretched fibre length, and the whole of that length.
+    /// A cylinder: radius, meridian per unstretched fibre length, and whole unstretched fibre length.
     Cylinder { r: f64, sigma: f64, fibre: f64 },
     /// Points of a meridian: s, the values there, and the whole unstretched fibre length \[m\].
     Meridian { s: Vec<f64>, values: Vec<[f64; 4]>, fibre: f64 },
@@ -51,7 +51,7 @@ impl Surface {
         if (last / fibre - 1.0).abs() > SAME || last.is_nan() {
             return why("its fibres have another length");
         }
-        // Rounding of the last place aside, the fibre ends at 1.
+        // Scaled so that the fibre ends exactly at 1: its length may differ by rounding.
         let s: Vec<f64> = shape.meridian.iter().map(|point| point.fibre_length_m / last).collect();
         let values: Vec<[f64; 4]> = shape
             .meridian
@@ -93,7 +93,7 @@ impl Surface {
         }
     }
 
-    /// Where one polynomial gives way to the next inside a zone, with both ends of the zone.
+    /// Ends of a zone and the borders between polynomials inside it.
     pub(super) fn pieces(&self, start: f64, end: f64) -> Vec<f64> {
         let inner: &[f64] = match self {
             Self::Cylinder { .. } => &[],

@@ -1,4 +1,5 @@
-//! Windings: closed forms on cylinders and rings, polylines in space, order of convergence, inverse, linearity and places.
+//! Windings: closed forms on cylinders and rings, polylines in space, order of convergence, inverse,
+//! linearity and zones.
 
 mod curves;
 mod mistakes;
@@ -40,7 +41,7 @@ fn cylinder() -> MuscleWithEffects {
     ))
 }
 
-/// A thin channel with its centre on the fibres.
+/// A thin channel centred on the fibres.
 fn zone(start: f64, end: f64, turns: f64) -> Winding {
     Winding {
         start,

@@ -1,4 +1,4 @@
-//! What is wound around a muscle: zone, turns, section, layer; and the reference in which it has that section.
+//! The winding around a muscle: zone, turns, section, layer; and the reference in which it has that section.
 
 use bulge_fibre::Approach;
 use bulge_muscles::Pressure;
@@ -19,13 +19,14 @@ const MOST_POINTS: usize = 20_001;
 /// Fewest points of a meridian: six are needed for one polynomial, and their number is odd.
 pub(super) const FEWEST_POINTS: usize = 7;
 
-/// What becomes of the distance t between channel and fibres as the muscle changes its shape.
+/// How the distance t between channel and fibres changes with the shape of the muscle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Layer {
-    /// It stays as it was in the reference (a layer that is kept at its thickness, such as one of many stiff rings).
+    /// It stays as in the reference (a layer of fixed thickness, such as one of many stiff rings).
     Kept,
-    /// The elastomer below the channel is incompressible and bonded to the fibres: its volume per fibre length stays,
+    /// The elastomer below the channel is incompressible and bonded to the fibres: its volume per fibre
+    /// length is constant,
     ///
     /// ```text
     /// sigma (r t + (cos(psi) + r kappa) t^2/2 + kappa cos(psi) t^3/3) = the same in the reference
@@ -35,30 +36,31 @@ pub enum Layer {
     Thinning,
 }
 
-/// A helical channel between two places of the fibre.
+/// A helical channel between two positions along the fibre.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Winding {
-    /// Where it starts, as a fraction of the unstretched fibre length from the left fitting, 0 ..= 1.
+    /// Start, as a fraction of the unstretched fibre length from the left fitting, 0 ..= 1.
     pub start: f64,
-    /// Where it ends, beyond the start, up to 1.
+    /// End, beyond the start, up to 1.
     pub end: f64,
-    /// Turns N about the axis, 0 or more; any fraction.
+    /// Turns N about the axis, 0 or more; not necessarily an integer.
     pub turns: f64,
     /// Section A0 of the channel in the reference \[m^2\].
     pub section_m2: f64,
     /// Distance t of its centre from the fibres in the reference, outwards along the normal \[m\], 0 or more.
     pub offset_m: f64,
-    /// What becomes of that distance.
+    /// How that distance changes.
     pub layer: Layer,
     /// Resistivity of the liquid \[ohm m\], such as [`EGAIN_RESISTIVITY_OHM_M`].
     pub resistivity_ohm_m: f64,
 }
 
 impl Winding {
-    /// The same channel in the zone of a width about a centre, both fractions of the fibre length; with as many turns.
+    /// The same channel with the same number of turns, in a zone of given centre and width, both fractions of
+    /// the fibre length.
     #[must_use]
     pub fn placed(self, centre: f64, width: f64) -> Self {
-        // A zone that reaches a fitting reaches it exactly.
+        // Rounding must not keep a zone from reaching a fitting exactly.
         let [start, end] = [centre - 0.5 * width, centre + 0.5 * width];
         let snap = |s: f64| if s.abs() < 1e-12 { 0.0 } else { s };
         Self { start: snap(start), end: 1.0 - snap(1.0 - end), ..self }
@@ -76,7 +78,7 @@ impl Winding {
         (4.0 * self.section_m2 / PI).sqrt()
     }
 
-    /// Checks every number against a muscle of this rest radius \[m\].
+    /// Checks every number for a muscle of this rest radius \[m\].
     pub(super) fn check(&self, radius_m: f64) -> Result<(), SensingError> {
         let inside = self.start >= 0.0 && self.end <= 1.0 && self.width() >= NARROWEST;
         if !inside {
@@ -98,17 +100,17 @@ impl Winding {
         })
     }
 
-    /// Checks that there is room for the turns on a zone with this meridian \[m\].
+    /// Checks that the turns fit into a zone with this meridian \[m\].
     pub(super) fn check_pitch(&self, meridian_m: f64) -> Result<(), SensingError> {
         let (pitch_m, diameter_m) = (meridian_m / self.turns, self.diameter_m());
         if pitch_m < diameter_m { Err(SensingError::Crowded { pitch_m, diameter_m }) } else { Ok(()) }
     }
 }
 
-/// The state in which the channel has the section A0 everywhere, and in which its strain is 0.
+/// The state in which the channel has the section A0 everywhere and zero strain.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Reference {
-    /// Unpressurised: a cylinder of the muscle's radius, fibres at their rest angle.
+    /// Unpressurised: a cylinder of the muscle's radius with the fibres at their rest angle.
     #[default]
     Rest,
     /// In equilibrium at a pressure and a contraction.
@@ -120,20 +122,21 @@ pub enum Reference {
     },
 }
 
-/// How it is computed, and what the elastomer bears.
+/// Method, resolution, and strain limit of the elastomer.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Options {
     /// Method of the equilibrium.
     pub approach: Approach,
-    /// Points of the meridian, 7 to 20001 (made odd). Long braids, whose ends are short against their length, need more.
+    /// Points of the meridian, 7 to 20001 (made odd). Long braids, whose ends are short relative to their
+    /// length, need more.
     pub points: usize,
-    /// Largest strain along the channel that the elastomer bears, > 0; infinite for no limit.
+    /// Largest strain along the channel that the elastomer can bear, > 0; infinite for no limit.
     pub max_strain: f64,
 }
 
 impl Default for Options {
-    /// 201 points; a strain of 250 %, up to which such channels in silicone rubber worked (Y.-L. Park, B.-R. Chen, R. J. Wood, *IEEE Sensors Journal*
-    /// 12 (2012) 2711).
+    /// 201 points; a strain of 250 %, up to which such channels in silicone rubber have worked (Y.-L. Park,
+    /// B.-R. Chen, R. J. Wood, *IEEE Sensors Journal* 12 (2012) 2711).
     fn default() -> Self {
         Self { approach: Approach::Auto, points: 201, max_strain: 2.5 }
     }
@@ -154,7 +157,7 @@ pub(super) fn is_positive(value: f64) -> bool {
     value.is_finite() && value > 0.0
 }
 
-/// An error if a number isn't what it must be; a comparison with NaN is false.
+/// An error if a number violates its condition; a comparison with NaN is false.
 pub(super) fn number(
     what: &'static str,
     value: f64,

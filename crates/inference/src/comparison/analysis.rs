@@ -1,4 +1,4 @@
-//! A comparison under way: the record, which of its rows count, and the rungs of the ladder one by one.
+//! A comparison in progress: the record, the rows that count, and the rungs of the ladder one by one.
 
 use bulge_effects::Effect;
 use bulge_measurements::{Data, PureError};
@@ -29,47 +29,48 @@ use crate::fit::search::{Task, fit, fit_and_force, some_of_long};
 use crate::fit::states::is_of_rows;
 use crate::fit::weights::Noise;
 
-/// Rows on which held-out errors and contributions are computed.
+/// Rows for held-out errors and contributions.
 pub(crate) const FEWER_ROWS: usize = 4000;
 
-/// One rung with what it predicts.
+/// One rung with its predictions.
 pub(crate) struct Climbed {
     pub(crate) prepared: Prepared,
     pub(crate) theta: Vec<f64>,
     pub(crate) fit: Option<Fit>,
-    /// Of every row of the record \[N\]; NaN in rows without a state.
+    /// Model force of every row of the record \[N\]; NaN in rows without a state.
     pub(crate) force: Vec<f64>,
-    /// Why its numbers couldn't be fitted.
+    /// Why its parameters couldn't be fitted.
     pub(crate) failed: Option<ModelError>,
 }
 
-/// A comparison under way.
+/// A comparison in progress.
 pub(crate) struct Analysis<'a> {
     pub(crate) data: Cow<'a, Data>,
     pub(crate) muscle: &'a Muscle,
     pub(crate) options: Cow<'a, Options>,
-    /// Shared by the comparisons of one diagnosis: of many rows it is the largest thing there is.
+    /// Shared by the comparisons of one diagnosis, because it is the largest object of a long data set.
     pub(crate) record: Arc<Record>,
     pub(crate) used: Used,
     pub(crate) levels: Levels,
     pub(crate) folds: Option<Folds>,
     pub(crate) noise: Noise,
     pub(crate) full_scale: f64,
-    /// What is asked about units, signs and scales.
+    /// Questions about units, signs and scales.
     pub(crate) findings: Vec<Mismatch>,
     /// Scatter between repeats.
     pub(crate) pure_error: Option<PureError>,
-    /// Rows that count less, because their direction is in doubt.
+    /// Rows with a smaller weight because their direction is uncertain.
     pub(crate) doubtful: Vec<usize>,
-    /// Rows in which the muscle as stated is slack, once that was asked.
+    /// Rows in which the muscle as stated is slack, once they have been determined.
     slack: Option<Vec<usize>>,
-    /// The muscle or the law before anything is added: models made from it share the equilibria that they have solved.
+    /// The base model before anything is added. Models made from it share the equilibria that they have
+    /// solved.
     root: Model,
-    /// A model with all effects, and numbers near those of its best fit.
+    /// A model with all effects, and parameters near those of its best fit.
     pub(crate) near: Option<(&'a Model, &'a [f64])>,
 }
 
-/// Until the noise is known: a hundredth of full scale.
+/// Noise of the force before it is estimated: a hundredth of full scale.
 fn unknown_noise(muscle: &Muscle, full_scale: f64) -> Noise {
     Noise::of(muscle, (0.01 * full_scale).max(f64::MIN_POSITIVE))
 }
@@ -122,7 +123,8 @@ impl<'a> Analysis<'a> {
         })
     }
 
-    /// The base with what the muscle file states, but for those of the first `count` effects: they are fitted anew.
+    /// The base model with the effects that the muscle file states. Those among the first `count` requested
+    /// effects are left out, because they are fitted anew.
     pub(crate) fn base(&self, count: usize) -> Result<Model, ModelError> {
         let mut model = self.root.clone().for_specimens(self.record.specimens())?;
         for (effect, values) in &self.options.known {
@@ -134,7 +136,7 @@ impl<'a> Analysis<'a> {
         Ok(model)
     }
 
-    /// The base with all effects that were asked for, without what data sheets leave open.
+    /// The base model with all requested effects, without nuisance parameters.
     pub(crate) fn base_with_effects(&self) -> Result<Model, ModelError> {
         let mut model = self.base(self.options.effects.len())?;
         for effect in &self.options.effects {
@@ -143,7 +145,7 @@ impl<'a> Analysis<'a> {
         Ok(model)
     }
 
-    /// The model with the first `count` effects.
+    /// The model with the first `count` effects and its nuisance parameters.
     pub(crate) fn model(&self, count: usize) -> Result<Prepared, InferenceError> {
         let with_effects = || {
             let mut model = self.base(count)?;
@@ -155,7 +157,7 @@ impl<'a> Analysis<'a> {
         with_effects().map_err(|error| self.about(error))
     }
 
-    /// The rung of the first `count` effects: fitted if there is anything to fit.
+    /// The rung with the first `count` effects, fitted if there are free parameters.
     pub(crate) fn climb(&self, count: usize, below: Option<&Climbed>) -> Result<Climbed, InferenceError> {
         let prepared = self.model(count)?;
         let mut theta = prepared.start();
@@ -183,7 +185,8 @@ impl<'a> Analysis<'a> {
                 Ok((fit, force)) => {
                     return Ok(Climbed { prepared, theta: fit.theta.clone(), fit: Some(fit), force, failed });
                 }
-                // Nothing can be fitted to rows without a state: the rung stands as it starts, and says so.
+                // Without a state at the rows nothing can be fitted: the rung keeps its start and reports the
+                // error.
                 Err(error) if is_of_rows(&error) => {
                     failed = Some(prepared.model.explained(&self.record, &theta, error));
                 }
@@ -192,14 +195,14 @@ impl<'a> Analysis<'a> {
         }
         let found = self.predicted(&prepared, &theta)?;
         if count == 0 && self.with_state(&[&found.prediction.force]).next().is_none() {
-            // Without a single row there is nothing to compare with.
+            // Not a single row has a state, so there is nothing to compare.
             let error = found.error.unwrap_or(ModelError::Values { given: 0, expected: 1 });
             return Err(self.about(prepared.model.explained(&self.record, &theta, error)));
         }
         Ok(Climbed { prepared, theta, fit: None, force: found.prediction.force, failed })
     }
 
-    /// What a model with its numbers says of all rows that count.
+    /// Predictions of a model with parameters `theta` for all rows that count.
     pub(crate) fn predicted(&self, prepared: &Prepared, theta: &[f64]) -> Result<Partly, InferenceError> {
         let counting = Warm::of_rows(&self.used.mask);
         let found = prepared.model.evaluate_partly(&self.record, theta, &Wanted::default(), &counting);
@@ -224,7 +227,7 @@ impl<'a> Analysis<'a> {
         (0..self.record.len()).filter(|row| self.used.mask[*row])
     }
 
-    /// Rows that count, of which each of these predictions says something.
+    /// Rows that count and have a state in each of these predictions.
     pub(crate) fn with_state<'b>(
         &self,
         forces: &'b [&Vec<f64>],
@@ -260,7 +263,8 @@ impl<'a> Analysis<'a> {
         InferenceError::Model { what, source: Box::new(error) }
     }
 
-    /// The same data and muscle with other effects: what was asked is asked, what was solved is solved.
+    /// The same data and muscle with other effects. Questions are not asked again, and solved equilibria are
+    /// shared.
     pub(crate) fn with_options<'b>(
         &'b self,
         options: &'b Options,
@@ -273,7 +277,7 @@ impl<'a> Analysis<'a> {
         Ok(Analysis { noise, near: Some(near), ..self.sharing(Cow::Borrowed(options)) })
     }
 
-    /// The same with other effects, and more that is stated of their numbers: noise, weights and rows stay.
+    /// The same with other effects and further restrictions; noise, weights and rows stay.
     pub(crate) fn with_effects<'b>(
         &'b self,
         effects: &[Arc<dyn Effect>],
@@ -288,7 +292,7 @@ impl<'a> Analysis<'a> {
         Ok(Analysis { root, ..self.sharing(Cow::Owned(options)) })
     }
 
-    /// The same with other options: data, record and solved equilibria are shared.
+    /// The same with other options; data, record and solved equilibria are shared.
     fn sharing<'b>(&'b self, options: Cow<'b, Options>) -> Analysis<'b> {
         Analysis {
             data: Cow::Borrowed(&self.data),
@@ -309,7 +313,8 @@ impl<'a> Analysis<'a> {
         }
     }
 
-    /// Asks about units, signs and scales that can't be true, and leaves out rows in which the muscle as stated is slack; once.
+    /// Checks once for impossible units, signs and scales, and leaves out rows in which the muscle as stated
+    /// is slack.
     pub(crate) fn ask(&mut self) -> Result<(), InferenceError> {
         if self.slack.is_some() {
             return Ok(());
@@ -329,8 +334,8 @@ impl<'a> Analysis<'a> {
         self.slack = Some(rows);
     }
 
-    /// The noise of the force from here on, and the floor for people. What the residuals show to be a disturbed reading doesn't count from here on, and rows whose
-    /// direction is in doubt count by how much that matters.
+    /// Estimates the noise floor and sets the noise of the force. From here on, readings that the residuals
+    /// show to be disturbed don't count, and rows of uncertain direction get larger standard deviations.
     pub(crate) fn measure_noise(&mut self, first: &Climbed) -> Option<NoiseFloor> {
         let floor = self.noise_floor(first);
         let stated = self.muscle.instruments().force.map_or(0.0, |force| force.noise());
@@ -389,7 +394,8 @@ impl<'a> Analysis<'a> {
         }
     }
 
-    /// RMS error on pressures (specimens, sweeps) that took no part in the fit, of the rows that have a state there; none if fewer than half have.
+    /// RMS error on pressures (specimens, sweeps) that took no part in the fit, over the rows that have a
+    /// state there; none if fewer than half have one.
     pub(crate) fn held_out(&self, climbed: &Climbed) -> Option<f64> {
         let folds = self.folds.as_ref()?;
         let (thin, kept) = self.record.thinned(FEWER_ROWS);
@@ -414,7 +420,8 @@ impl<'a> Analysis<'a> {
             } else {
                 climbed.theta.clone()
             };
-            // Predicted are all rows that were held out, with all of their history; of a long record those that a fit takes.
+            // All held-out rows are predicted, with their whole history; of a long record, the rows that a
+            // fit takes.
             let test: Vec<bool> = match &some {
                 Some((_, kept)) => kept.iter().map(|row| self.used.mask[*row] && in_fold(row)).collect(),
                 None => (0..self.record.len()).map(|row| self.used.mask[row] && in_fold(&row)).collect(),
@@ -431,7 +438,7 @@ impl<'a> Analysis<'a> {
         let found: Vec<_> = (0..folds.count).into_par_iter().map(of_fold).collect();
         let mut sums = (0.0, 0_usize);
         for fold in found {
-            // Numbers that suit the other rows may leave these without a state.
+            // Parameters fitted to the other rows may leave the held-out ones without a state.
             let (square, count) = fold.ok().flatten()?;
             sums = (sums.0 + square, sums.1 + count);
         }

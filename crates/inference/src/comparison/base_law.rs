@@ -1,4 +1,4 @@
-//! A force law of the papers as the base of a comparison, by its name.
+//! A published force law as the base of a comparison, by its name.
 
 use bulge_effects::law::{LAWS, Law, LawGeometry};
 use bulge_effects::{Effect, Stage};
@@ -8,11 +8,11 @@ use std::sync::Arc;
 use crate::comparison::options::Options;
 
 impl Options {
-    /// The same with a force law of the papers as the base instead of the equilibrium; its coefficients are fitted, or those printed for this
-    /// muscle where there are any.
+    /// The options with a published force law as the base instead of the equilibrium. Its coefficients are
+    /// fitted; otherwise they are those printed for this muscle, if there are any.
     ///
     /// # Errors
-    /// In a sentence: if there is no such law, or it doesn't suit the muscle or the effects.
+    /// In a sentence: if there is no such law, or if it doesn't suit the muscle or the effects.
     pub fn with_law(mut self, name: &str, muscle: &Muscle, fitted: bool) -> Result<Self, String> {
         let law = suited_law(name, muscle, &self.effects)?;
         let table = law.table_for(muscle.name());
@@ -21,7 +21,7 @@ impl Options {
     }
 }
 
-/// The law of a name, if it suits the muscle and the effects.
+/// The law with this name, if it suits the muscle and the effects.
 fn suited_law(name: &str, muscle: &Muscle, effects: &[Arc<dyn Effect>]) -> Result<&'static Law, String> {
     let law = Law::find(name).ok_or_else(|| no_law(name))?;
     if let Some(kind) = law.kind.filter(|_| !law.suits(muscle.kind())) {
@@ -41,7 +41,7 @@ fn suited_law(name: &str, muscle: &Muscle, effects: &[Arc<dyn Effect>]) -> Resul
     Ok(law)
 }
 
-/// Names of force laws that are near a mistaken one.
+/// The error for an unknown law, with similar names.
 fn no_law(name: &str) -> String {
     let plain = |text: &str| text.to_lowercase().replace(['_', ' ', '-'], "");
     let near: Vec<String> = LAWS

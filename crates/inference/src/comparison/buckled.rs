@@ -1,20 +1,23 @@
-//! Rows at pressures too low for the rubber of the muscle: its fibres are slack there, it buckles, and what it carries says nothing of how it pulls.
+//! Rows at pressures too low for the muscle's rubber. The fibres are slack there and the muscle buckles, so
+//! that the force carries no information about how it pulls.
 
 use bulge_model::{Model, Record, Wanted, Warm};
 
 use crate::comparison::rows::full_scale;
 
-/// A measured force below this part of full scale is none.
+/// Measured forces below this fraction of full scale count as none.
 const WEAK: f64 = 0.03;
-/// Rows of the same sweep within this contraction of a buckled one,
+/// Rows of the same sweep may buckle too if their contraction is this close to that of a buckled row
 const NEAR: f64 = 0.01;
-/// and below this many times its pressure, may buckle too: the muscle is not quite the one that is stated, and equilibria near their end decide nothing.
+/// and their pressure is below its pressure times this factor: the muscle isn't exactly the stated one, and
+/// equilibria near the limit aren't reliable.
 const MARGIN: f64 = 1.3;
-/// Most rows that may be left out, as a part of those that count: of a muscle that is mostly slack something else is wrong.
+/// Largest fraction of the counting rows that may be left out. If a muscle is slack in more of them,
+/// something else is wrong.
 const MOST: f64 = 0.5;
 
-/// Rows that count at which the measured muscle hardly pulled, and the model has no state or, while its length is held and the pressure moves, would push; and those
-/// next to them.
+/// Rows that count, at which the measured muscle hardly pulled and the model has no state or, while its
+/// length is held and the pressure moves, would push; and the rows next to them.
 pub(crate) fn buckled(model: &Model, record: &Record, used: &[bool]) -> Vec<usize> {
     let Ok(found) = model.evaluate_partly(record, &model.start(), &Wanted::default(), &Warm::of_rows(used))
     else {
@@ -29,7 +32,7 @@ pub(crate) fn buckled(model: &Model, record: &Record, used: &[bool]) -> Vec<usiz
     let ends: Vec<usize> = (0..record.len()).filter(is_weak).filter(is_slack).collect();
     let mut rows = Vec::new();
     for sweep in record.sweeps() {
-        // Those at the highest pressures decide; most of the others lie below one of them.
+        // The rows at the highest pressures decide first; most others lie below one of them.
         let mut highest: Vec<usize> = ends.iter().copied().filter(|row| sweep.contains(row)).collect();
         highest.sort_by(|a, b| moments[*b].pressure.total_cmp(&moments[*a].pressure));
         let mut deciding: Vec<usize> = Vec::new();
@@ -61,7 +64,7 @@ mod tests {
     const HOSE: &str = "name = \"hose\"\nkind = \"braided\"\nlength = \"130 mm\"\nradius = \"7.5 mm\"\nbraid_angle = \"26 deg\"\nends = \"clamped\"\n\
                         wall = \"1.2 mm\"\n[effects.bladder-elasticity]\nc10 = \"0.25 MPa\"\n";
 
-    /// Filled from 0.05 to 5 bar at 12 %, and vented; the muscle pulls where `pulls` says so.
+    /// Filled from 0.05 to 5 bar at 12 % and vented again; the muscle pulls where `pulls` is true.
     fn filled(held: bool, pulls: impl Fn(f64) -> bool) -> Record {
         let moment = |i: u32| {
             let bar = 0.05 * f64::from(if i < 100 { i + 1 } else { 200 - i });
@@ -84,7 +87,8 @@ mod tests {
         let begins = 1.3e5;
         let record = filled(true, |pressure| pressure > begins);
         let rows = buckled(&model, &record, &[true; 200]);
-        // The model begins to pull at the pressure at which its force vanishes; a margin above it is left out, too.
+        // The model pulls from the pressure at which its force vanishes; a margin above it is left out as
+        // well.
         let at = |row: usize| record.moments()[row].pressure;
         let pulls = (1..=100)
             .map(|i| 5e3 * f64::from(i))
@@ -93,7 +97,7 @@ mod tests {
         let highest = rows.iter().map(|row| at(*row)).fold(0.0, f64::max);
         assert!(highest >= 1.2 * (first - 5e3) && highest <= 1.3 * first, "{highest} {first}");
         assert_eq!(rows.len(), (0..200).filter(|row| at(*row) <= highest).count());
-        // A muscle that does pull there has something to say.
+        // Rows in which the measured muscle does pull are kept.
         assert!(buckled(&model, &record.clone().with_force(vec![200.0; 200]), &[true; 200]).is_empty());
         assert!(buckled(&model, &filled(true, |_| false), &[true; 200]).len() < 100);
     }

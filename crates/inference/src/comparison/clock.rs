@@ -1,4 +1,5 @@
-//! Times in milliseconds that were read as seconds: a test of hours whose branches have hundreds of readings each.
+//! Detects times in milliseconds that were read as seconds: the test seems to take hours, with hundreds of
+//! readings in each branch.
 
 use bulge_measurements::Data;
 use bulge_model::Record;
@@ -6,24 +7,25 @@ use bulge_muscles::units::significant;
 
 use crate::comparison::document::Mismatch;
 
-/// The kind of the question.
+/// Kind of the question.
 pub(crate) const TIME_UNIT: &str = "time-unit";
-/// Fewer branches are no cycle.
+/// With fewer branches there is no cycle.
 const BRANCHES: usize = 2;
-/// A slow test has few readings on the way from one reversal to the next, a fast one takes no minutes: the median branch has so many rows, and lasts so
-/// long \[s\].
+/// Slow tests have few readings from one reversal to the next, fast ones don't take minutes. The question is
+/// asked if the median branch has at least so many rows and lasts at least so long \[s\],
 const ROWS: usize = 200;
 const LONG: f64 = 300.0;
-/// And the whole of it so long \[s\].
+/// and the whole test at least so long \[s\],
 const WHOLE: f64 = 3600.0;
-/// Or the median branch has few readings and lasts for a good part of a day \[s\].
+/// or if the median branch has few readings and lasts for a good part of a day \[s\].
 const FEW_ROWS: usize = 10;
 const ENDLESS: f64 = 10_800.0;
 
-/// Asks about the unit of the time; `rmse_n` is the error of the muscle as stated, which doesn't depend on it.
+/// Asks about the unit of the time. `rmse_n` is the error of the muscle as stated, which doesn't depend on
+/// it.
 pub(crate) fn question(data: &Data, record: &Record, rmse_n: f64) -> Option<Mismatch> {
     let time = data.time()?;
-    // A clock's seconds are its own; milliseconds are counted in whole numbers.
+    // Clock times have their seconds written; milliseconds are whole numbers.
     let is_clock = |column: &&bulge_measurements::ColumnUse| {
         column.quantity.as_deref() == Some("time")
             && (column.unit.as_deref() != Some("s") || column.first.iter().any(|text| text.contains(':')))
@@ -76,7 +78,7 @@ mod tests {
     use super::*;
     use std::fmt::Write as _;
 
-    /// Triangles of a muscle of 300 mm, `rows` a branch and a row each `step` \[s\].
+    /// Triangles of a muscle of 300 mm, with `rows` per branch and one row per `step` \[s\].
     fn asked(rows: usize, step: f64, heading: &str) -> Option<Mismatch> {
         let mut text = format!("{heading},pressure [bar],length [mm],force [N]\n");
         for row in 0..6 * rows {
@@ -99,7 +101,8 @@ mod tests {
         }
         assert!(asked(300, 10.0, "time [s]").is_some() && asked(700, 1.0, "time").is_some());
         assert!(asked(25, 1000.0, "time [s]").is_some());
-        // Slow tests with few readings, fast ones, sampling by parts of a second, and what is said to be milliseconds.
+        // Slow tests with few readings, fast ones, sampling at fractions of a second, and a header that says
+        // milliseconds.
         for (rows, step, heading) in [
             (100, 20.0, "time [s]"),
             (625, 0.5, "time [s]"),

@@ -18,16 +18,17 @@ use crate::error::InferenceError;
 use crate::fit::document::{Convergence, Fit};
 use crate::fit::held::{HeldNumber, held};
 
-/// Compares.
+/// Compares a muscle with data.
 ///
 /// # Errors
-/// See [`InferenceError`]: too few rows, a muscle that doesn't match, an effect that doesn't fit the muscle or the data.
+/// See [`InferenceError`]: too few rows, a muscle that doesn't match, an effect that doesn't suit the muscle
+/// or the data.
 pub fn compare(data: &Data, muscle: &Muscle, options: &Options) -> Result<Comparison, InferenceError> {
-    // On a thread of the pool: small evaluations aren't handed over to it one by one.
+    // On a thread of the pool, so that small evaluations aren't handed over to it one by one.
     rayon::scope(|_| Comparing::of(Analysis::new(data, muscle, options)?)?.asked())
 }
 
-/// The same with its rows and the force of each rung, which a report draws.
+/// The comparison with its rows and the force of each rung, as a report draws them.
 ///
 /// # Errors
 /// As [`compare`].
@@ -39,7 +40,8 @@ pub fn compare_with_rows(
     rayon::scope(|_| Comparing::of(Analysis::new(data, muscle, options)?)?.asked_with_rows())
 }
 
-/// The same with the numbers of the last rung about known, of a model with the same effects, and the record that another analysis has.
+/// The comparison for a model with the same effects whose parameters are approximately known; it shares the
+/// record of another analysis.
 pub(crate) fn compare_near(
     other: &Analysis<'_>,
     options: &Options,
@@ -48,29 +50,30 @@ pub(crate) fn compare_near(
     Comparing::of(other.with_options(options, near)?)?.asked_with_rows()
 }
 
-/// A comparison that is asked again with other effects and other restrictions of their numbers: what the base says is computed once, and each rung of the
-/// ladder once.
+/// A comparison that is repeated with other effects and other restrictions. The base and each rung of the
+/// ladder are computed once.
 ///
-/// An answer is the one of [`compare`] with these effects and restrictions: it doesn't depend on what was asked before.
+/// An answer equals that of [`compare`] with these effects and restrictions and doesn't depend on earlier
+/// questions.
 pub struct Comparing<'a> {
     analysis: Analysis<'a>,
     floor: Option<NoiseFloor>,
     quality: Vec<Finding>,
     base: Arc<Step>,
-    /// By the effects up to each, in their order, with what is stated of their numbers.
+    /// Rungs, by their effects in order and by the restrictions.
     steps: Recent<Step>,
-    /// What was answered, by the same.
+    /// Answers, by the same key.
     answers: Recent<Comparison>,
 }
 
-/// Rungs and answers that are kept at most: some changes for each effect of the catalogue.
+/// Most rungs and answers that are kept: several changes for each effect of the catalogue.
 const MOST_KEPT: usize = 256;
-/// Forces of rows that they may hold: a rung holds that of every row, an answer about as much. 256 MB.
+/// Most forces that they may hold, 256 MB: a rung holds one for every row, an answer about as many.
 const MOST_FORCES: usize = 1 << 25;
-/// Rungs that are kept of the longest record: a ladder.
+/// Fewest rungs that are kept, even of the longest record: one ladder.
 const FEWEST_KEPT: usize = 12;
 
-/// By what rungs and answers are known: each effect with what is stated of its numbers, in their order.
+/// Key of rungs and answers: each effect with the restrictions of its parameters, in order.
 fn key(effects: &[Arc<dyn Effect>], restrictions: &[Restriction]) -> Vec<String> {
     let one = |effect: &Arc<dyn Effect>| {
         let name = effect.card().name;
@@ -80,7 +83,7 @@ fn key(effects: &[Arc<dyn Effect>], restrictions: &[Restriction]) -> Vec<String>
     effects.iter().map(one).collect()
 }
 
-/// A rung with what it predicts.
+/// A rung with its predictions.
 struct Step {
     climbed: Climbed,
     rung: Rung,
@@ -93,19 +96,19 @@ impl Step {
     }
 }
 
-/// The last rung of which any row has a state; the base if none has.
+/// The last rung in which any row has a state; the base if none has.
 fn last_that_says_something(analysis: &Analysis<'_>, ladder: &[Arc<Step>]) -> usize {
     ladder.iter().rposition(|step| step.says_something(analysis)).unwrap_or(0)
 }
 
-/// What the data check finds, with the length of the muscle.
+/// Findings of the data check, for the muscle's length.
 pub(crate) fn quality(data: &Data, muscle: &Muscle) -> Vec<Finding> {
     let known = QualityOptions { l0_m: Some(muscle.length().si()), ..QualityOptions::default() };
     data.quality(&known).findings
 }
 
 impl<'a> Comparing<'a> {
-    /// Compares with the base alone; the effects of `options` aren't asked for yet.
+    /// Compares with the base alone; the effects of `options` are not added yet.
     ///
     /// # Errors
     /// As [`compare`].
@@ -118,7 +121,7 @@ impl<'a> Comparing<'a> {
         let first = analysis.climb(0, None)?;
         let floor = analysis.measure_noise(&first);
         analysis.bound_tails(&first);
-        // Weights follow from the noise: the first rung again if it fits anything.
+        // The weights follow from the noise: repeat the first rung if it fits anything.
         let climbed = if first.fit.is_some() { analysis.climb(0, Some(&first))? } else { first };
         let base = Arc::new(Step { rung: analysis.rung(0, &climbed), climbed });
         let quality = quality(&analysis.data, analysis.muscle);
@@ -127,7 +130,8 @@ impl<'a> Comparing<'a> {
         Ok(Self { analysis, floor, quality, base, steps, answers })
     }
 
-    /// Compares with these effects, in this order, instead of those of the options; numbers are restricted by these statements beside those of the options.
+    /// Compares with these effects, in this order, instead of those of the options. The restrictions are
+    /// added to those of the options.
     ///
     /// # Errors
     /// As [`compare`].
@@ -146,7 +150,8 @@ impl<'a> Comparing<'a> {
         Ok(Comparison::clone(&found))
     }
 
-    /// The options of a comparison whose base isn't this one's: a statement is about one of its numbers, say an error of the rig that is fitted along.
+    /// The options of a comparison with another base, if a restriction concerns a parameter of the base, such
+    /// as a rig error that is fitted along.
     fn of_other_base(&self, effects: &[Arc<dyn Effect>], restrictions: &[Restriction]) -> Option<Options> {
         let base = &self.base.climbed.prepared.model;
         restrictions.iter().any(|restriction| base.mentions(restriction)).then(|| {
@@ -156,7 +161,7 @@ impl<'a> Comparing<'a> {
         })
     }
 
-    /// The same data and muscle, with other options from the start.
+    /// The comparison of the same data and muscle, started anew with other options.
     fn begun_with<'b>(&'b self, options: &'b Options) -> Result<Comparing<'b>, InferenceError> {
         Comparing::of(Analysis::new(&self.analysis.data, self.analysis.muscle, options)?)
     }
@@ -170,7 +175,7 @@ impl<'a> Comparing<'a> {
 
     /// Every row of the data, with the force of the base and of the model with these effects.
     ///
-    /// Rungs that [`Comparing::with`] has climbed aren't climbed again.
+    /// Rungs that [`Comparing::with`] has computed are not computed again.
     ///
     /// # Errors
     /// As [`compare`].
@@ -182,7 +187,7 @@ impl<'a> Comparing<'a> {
         self.rows_with(effects, restrictions, false)
     }
 
-    /// The same with the force of each rung, for a report.
+    /// The rows with the force of each rung, for a report.
     ///
     /// # Errors
     /// As [`compare`].
@@ -211,7 +216,7 @@ impl<'a> Comparing<'a> {
         })
     }
 
-    /// The last rung alone, as [`fit_effects`] answers with these effects and restrictions.
+    /// The last rung alone; equals the result of [`fit_effects`] with these effects and restrictions.
     ///
     /// # Errors
     /// As [`compare`].
@@ -254,7 +259,7 @@ impl<'a> Comparing<'a> {
         })
     }
 
-    /// The rows with the force of the base and the last rung, or of all rungs.
+    /// The rows with the forces of the base and the last rung, or of all rungs.
     fn rungs(
         &self,
         analysis: &Analysis<'_>,
@@ -268,7 +273,7 @@ impl<'a> Comparing<'a> {
         Rows::of(analysis, &rungs, last)
     }
 
-    /// With the effects of the options, once.
+    /// The comparison with the effects of the options, when nothing else will be asked.
     fn asked(self) -> Result<Comparison, InferenceError> {
         self.compared(&self.analysis, &[], false)
     }
@@ -277,7 +282,7 @@ impl<'a> Comparing<'a> {
         Ok((self.compared(&self.analysis, &[], true)?, self.rungs(&self.analysis, &[], true)?))
     }
 
-    /// The rungs from the base to the last effect; they are kept if others will be asked for.
+    /// The rungs from the base to the last effect; they are kept if more questions will follow.
     fn ladder(
         &self,
         analysis: &Analysis<'_>,
@@ -290,7 +295,7 @@ impl<'a> Comparing<'a> {
             if place > 0
                 && let Some(below) = Arc::get_mut(&mut ladder[place])
             {
-                // Of many rows forces are large, and what the rungs between say is in the ladder.
+                // The forces of many rows are large, and the ladder has the results of the rungs between.
                 below.climbed.force = Vec::new();
             }
             let step = self.step(&key[..=place], again, || {
@@ -302,7 +307,7 @@ impl<'a> Comparing<'a> {
         Ok(ladder)
     }
 
-    /// The rung that is kept under a key, or a new one, which is kept if others will be asked for.
+    /// The rung that is kept under a key, or a new one, which is kept if more questions will follow.
     fn step(
         &self,
         key: &[String],
@@ -326,7 +331,8 @@ impl<'a> Comparing<'a> {
             climbed.force = analysis.predicted(&climbed.prepared, &climbed.theta)?.prediction.force;
         }
         let last = &ladder[place].climbed;
-        // A surface follows the residuals of a better model better: then less of them is taken for noise.
+        // The saturated surface follows the residuals of a better model more closely: less of them is taken
+        // for noise then.
         let again = analysis.noise_floor(last);
         let floor = match (&self.floor, again) {
             (Some(first), Some(again)) if again.sd_n < first.sd_n => Some(again),
@@ -341,7 +347,7 @@ impl<'a> Comparing<'a> {
         }
         let (contributions, maps) =
             rayon::join(|| stack::contributions(analysis, last), || residuals::maps(analysis, forces));
-        // With the last fit's numbers the muscle may not even pull before all effects are in.
+        // With the last fit's parameters the muscle may not even pull before all effects are added.
         let contributions = contributions.unwrap_or_else(|error| {
             warnings.push(format!("what each effect contributes can't be shown one by one: {error}"));
             Vec::new()
@@ -373,10 +379,11 @@ impl<'a> Comparing<'a> {
     }
 }
 
-/// Times the noise of the data sheet from which the scatter of the readings is another one.
+/// Ratio of the readings' scatter to the noise of the data sheet from which the two are said to disagree.
 const BEYOND_SHEET: f64 = 4.0;
 
-/// Fits weight rows by the noise of the data sheet, where there is one: what it means that the readings scatter far more.
+/// Warns if the readings scatter far more than the noise of the data sheet, which weights the fits if it is
+/// stated.
 fn beyond_sheet(muscle: &Muscle, floor: &NoiseFloor) -> Option<String> {
     let stated = muscle.instruments().force.map(|force| force.noise()).filter(|sd| *sd > 0.0)?;
     let times = floor.sd_n / stated;
@@ -400,19 +407,20 @@ pub struct Fitting {
     pub model: Model,
     /// The fit.
     pub fit: Fit,
-    /// Numbers that were held at a value or tied to another one.
+    /// Parameters that were held at a value or tied to another one.
     pub held: Vec<HeldNumber>,
-    /// What the data are.
+    /// Summary of the data.
     pub data: DataSummary,
     /// RMS error of the muscle as stated \[N\].
     pub before_rmse_n: f64,
     /// RMS error with the effects \[N\].
     pub rmse_n: f64,
-    /// What no model can go below, if anything is known of it.
+    /// The error that no model can go below, if it is known.
     pub noise_floor: Option<NoiseFloor>,
 }
 
-/// Fits the effects to the data: the last rung of the ladder of [`compare`], without held-out errors and what else stands beside it.
+/// Fits the effects to the data: the last rung of the ladder of [`compare`], without held-out errors and the
+/// other results beside it.
 ///
 /// # Errors
 /// As [`compare`].
@@ -424,7 +432,7 @@ pub fn fit_effects(data: &Data, muscle: &Muscle, options: &Options) -> Result<Fi
     })
 }
 
-/// The fit of a model without free numbers.
+/// The fit of a model without free parameters.
 fn nothing_fitted(analysis: &Analysis<'_>, theta: Vec<f64>, force: &Vec<f64>) -> Fit {
     let error = residuals::summary(analysis, force);
     Fit {

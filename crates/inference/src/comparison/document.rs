@@ -1,4 +1,4 @@
-//! A comparison as a value: everything that text, JSON and report show, and nothing that they would have to compute.
+//! The result of a comparison: everything that text, JSON and report show, so that they compute nothing.
 
 use bulge_measurements::{Finding, Reading, SweepKind};
 use serde::Serialize;
@@ -6,24 +6,24 @@ use serde::Serialize;
 use crate::fit::document::Fit;
 use crate::fit::held::HeldNumber;
 
-/// Model against measurement, from the base law to the last effect added.
+/// The comparison of a model with measurements, from the base to the last effect added.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Comparison {
-    /// `bulge.comparison/1`.
+    /// Name and version of the document: `bulge.comparison/1`.
     pub schema: &'static str,
     /// Name of the muscle.
     pub muscle: String,
-    /// What the base is: `equilibrium`, or the name of a force law.
+    /// The base: `equilibrium`, or the name of a force law.
     pub base: String,
-    /// What was measured.
+    /// Summary of the data.
     pub data: DataSummary,
-    /// What the quality gate found.
+    /// Findings of the quality check.
     pub quality: Vec<Finding>,
     /// The error that no model can go below.
     pub noise_floor: Option<NoiseFloor>,
     /// The ladder of errors: the base first, then one rung for each effect added.
     pub ladder: Vec<Rung>,
-    /// Error by pressure, contraction, direction, rate, sweep, specimen and time, as far as each varies.
+    /// Error by pressure, contraction, direction, rate, sweep, specimen and time, for those that vary.
     pub by: Vec<Breakdown>,
     /// Mean and half-gap of the loops.
     pub loops: Vec<LoopGap>,
@@ -33,43 +33,44 @@ pub struct Comparison {
     pub maps: Vec<ResidualMap>,
     /// Force against contraction, one for each pressure level (and specimen).
     pub curves: Vec<Curve>,
-    /// What each effect contributes to the force, one for each pressure level.
+    /// Contribution of each effect to the force, one stack for each pressure level.
     pub contributions: Vec<Stack>,
-    /// Measured force, force of the first rung, force of the last \[N\]: at most 2000 rows.
+    /// Measured force, force of the first rung, and force of the last rung \[N\]: at most 2000 rows.
     pub scatter: Vec<[f64; 3]>,
-    /// Force laws of the papers on the same data, where asked for.
+    /// Published force laws on the same data, if requested.
     pub rivals: Vec<Rival>,
     /// What a reader should know before trusting the numbers.
     pub warnings: Vec<String>,
 }
 
-/// What was measured.
+/// Summary of the data.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct DataSummary {
     /// Rows in the files.
     pub rows: usize,
     /// Rows that enter errors and fits.
     pub used: usize,
-    /// Rows that don't, and why.
+    /// Rows that don't, with the reasons.
     pub left_out: Vec<LeftOut>,
-    /// Units, signs and scales that can't be true, with the evidence.
+    /// Units, signs and scales that are impossible, with the evidence.
     pub findings: Vec<Mismatch>,
-    /// What the columns were taken for, and the rows that can't be used.
+    /// How the columns were interpreted, and the rows that can't be used.
     #[serde(flatten)]
     pub reading: Reading,
-    /// SHA-256 of the file, or of the digests of several.
+    /// SHA-256 of the file, or of the digests of several files.
     pub sha256: String,
     /// Names of the files.
     pub files: Vec<String>,
     /// Number of sweeps.
     pub sweeps: usize,
-    /// What each sweep does.
+    /// Kind of each sweep.
     pub sweep_kinds: Vec<SweepKind>,
-    /// What the two branches of a loop are called: shortening and lengthening, or filling and venting where only the pressure goes to and fro.
+    /// Names of the two branches of a loop: shortening and lengthening, or filling and venting if only the
+    /// pressure moves.
     pub branches: [&'static str; 2],
     /// Names of the specimens.
     pub specimens: Vec<String>,
-    /// Whether the rows are a path, or a static map.
+    /// Whether the rows are a path; otherwise they are a static map.
     pub is_path: bool,
     /// Least and largest pressure \[Pa\].
     pub pressure_pa: [f64; 2],
@@ -77,23 +78,24 @@ pub struct DataSummary {
     pub contraction: [f64; 2],
     /// Least and largest force \[N\].
     pub force_n: [f64; 2],
-    /// Largest force that was measured \[N\]: errors are given in per cent of it.
+    /// Largest measured force \[N\]; errors are given in per cent of it.
     pub full_scale_n: f64,
 }
 
-/// Data and muscle that don't go together, and by what they would.
+/// A contradiction between data and muscle, with the change that would resolve it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Mismatch {
-    /// What it is about: `absolute-pressure`, `pressure-unit`, `force-unit`, `force-sign`, `contraction-unit`, `displacement`, `length`, `time-unit`,
-    /// `scale`, `pushes`.
+    /// What it is about: `absolute-pressure`, `pressure-unit`, `force-unit`, `force-sign`,
+    /// `contraction-unit`, `displacement`, `length`, `time-unit`, `scale`, `pushes`.
     pub kind: &'static str,
-    /// Whether the readings are those of another unit or sign beyond doubt: no physics can be learnt from them as they stand.
+    /// Whether the readings have another unit or sign beyond doubt. Nothing can be learnt about the muscle
+    /// from them as they stand.
     pub decided: bool,
     /// RMS error of the muscle as stated \[N\], with the readings as they stand.
     pub rmse_n: f64,
-    /// The same with the readings as they are meant, where something else would fit.
+    /// The same with the readings as they are probably meant, if another meaning fits.
     pub meant_rmse_n: Option<f64>,
-    /// What is seen, with numbers, and the question.
+    /// The evidence, with numbers, and the question.
     pub says: String,
     /// What to write instead.
     pub instead: String,
@@ -109,57 +111,59 @@ impl std::fmt::Display for Mismatch {
 /// Rows that were left out.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct LeftOut {
-    /// Why.
+    /// The reason.
     pub why: String,
     /// Line numbers, as ranges: `12, 33-40`.
     pub lines: String,
-    /// How many.
+    /// Number of rows.
     pub rows: usize,
 }
 
-/// The scatter of the measurement itself.
+/// The noise level of the measurement itself.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct NoiseFloor {
     /// Standard deviation \[N\].
     pub sd_n: f64,
-    /// `repeats`, `saturated` or `instruments`.
+    /// Origin: `repeats`, `saturated` or `instruments`.
     pub source: &'static str,
-    /// How it was found, in a sentence.
+    /// How it was estimated, in a sentence.
     pub says: String,
 }
 
 /// One rung of the ladder.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct Rung {
-    /// The effect added; none for the base.
+    /// The added effect; none for the base.
     pub added: Option<String>,
-    /// Its title.
+    /// Title of the rung.
     pub title: String,
-    /// RMS error of the rows that have a state \[N\].
+    /// RMS error over the rows that have a state \[N\].
     pub rmse_n: f64,
-    /// The same without the rows whose direction is in doubt and which therefore count less; none where that is no smaller.
+    /// The same without the rows of uncertain direction, which have smaller weights; none if it is hardly
+    /// smaller.
     pub directed_rmse_n: Option<f64>,
-    /// The same in per cent of full scale.
+    /// RMS error in per cent of full scale.
     pub rmse_percent: f64,
     /// Mean error, measured - model \[N\].
     pub bias_n: f64,
-    /// Largest error \[N\].
+    /// Largest absolute error \[N\].
     pub largest_n: f64,
-    /// RMS error on what was left out of the fit \[N\]: whole pressures, sweeps or specimens in turn.
+    /// RMS error on data left out of the fit \[N\]: whole pressures, lengths, loads, sweeps or specimens in
+    /// turn.
     pub held_out_rmse_n: Option<f64>,
     /// What was left out in turn: `pressure`, `length`, `load`, `sweep`, `specimen`.
     pub held_out_by: Option<&'static str>,
     /// Coefficient of determination 1 - SS_error/SS_total.
     pub r_squared: f64,
-    /// Number of numbers fitted.
+    /// Number of fitted parameters.
     pub fitted: usize,
-    /// RMS error of half the gap between lengthening and shortening \[N\], where there are loops.
+    /// RMS error of half the gap between lengthening and shortening \[N\], if there are loops.
     pub half_gap_rmse_n: Option<f64>,
-    /// The fit, where something was fitted.
+    /// The fit, if there were free parameters.
     pub fit: Option<Fit>,
-    /// Numbers that were held at a value or tied to another one.
+    /// Parameters that were held at a value or tied to another one.
     pub held: Vec<HeldNumber>,
-    /// Rows of which this model says nothing: they have no state with its numbers, and aren't in its errors.
+    /// Rows that have no state with the parameters of this model; they are left out of its errors.
     pub without_state: Option<LeftOut>,
 }
 
@@ -168,20 +172,21 @@ pub struct Rung {
 pub struct Breakdown {
     /// `pressure`, `contraction`, `direction`, `rate`, `sweep`, `specimen`, `time`.
     pub variable: &'static str,
-    /// Unit of the bins, for people.
+    /// Unit of the bins, as shown.
     pub unit: &'static str,
-    /// In order.
+    /// Bins in ascending order.
     pub bins: Vec<Bin>,
 }
 
 /// Rows with about the same value of a variable.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Bin {
-    /// What to call it.
+    /// Label.
     pub label: String,
-    /// Middle of the bin, in the breakdown's unit (the number of the sweep, specimen ... where it has none).
+    /// Middle of the bin, in the breakdown's unit; the number of the sweep, specimen etc. if there is no
+    /// unit.
     pub at: f64,
-    /// How many.
+    /// Number of rows.
     pub rows: usize,
     /// Mean error of the first and the last rung, measured - model \[N\].
     pub bias_n: [f64; 2],
@@ -189,14 +194,15 @@ pub struct Bin {
     pub rmse_n: [f64; 2],
 }
 
-/// Loops at one pressure level: half of the sum and half of the difference of the lengthening and the shortening branch.
+/// Loops at one pressure level: half the sum and half the difference of the lengthening and the shortening
+/// branch.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct LoopGap {
     /// Mean pressure \[Pa\].
     pub pressure_pa: f64,
     /// The specimen.
     pub specimen: String,
-    /// Mean contractions of the readings that were taken together.
+    /// Mean contractions of the readings in each bin.
     pub contraction: Vec<f64>,
     /// Mean of both branches, measured \[N\].
     pub mean_measured_n: Vec<f64>,
@@ -208,7 +214,8 @@ pub struct LoopGap {
     pub half_gap_model_n: [Vec<f64>; 2],
 }
 
-/// A sweep under a held load: the contraction that was read, and those at which models bear the load, to first order in the error.
+/// A sweep under a held load: the contractions that were read, and those at which the models bear the load,
+/// to first order in the error.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct HeldLoad {
     /// The sweep.
@@ -219,7 +226,7 @@ pub struct HeldLoad {
     pub load_n: f64,
     /// RMS error of the contraction of the first and the last rung.
     pub rmse_contraction: [f64; 2],
-    /// In the order of measurement: at most 400.
+    /// Points in the order of measurement: at most 400.
     pub points: Vec<HeldLoadPoint>,
 }
 
@@ -247,9 +254,9 @@ pub struct ResidualMap {
     pub pressure_pa: Vec<f64>,
     /// Middle of its columns.
     pub contraction: Vec<f64>,
-    /// Of the first rung, row by row \[N\]; none where nothing was measured.
+    /// Mean residuals of the first rung, row by row \[N\]; none in cells without measurements.
     pub first_n: Vec<Option<f64>>,
-    /// Of the last rung.
+    /// Mean residuals of the last rung \[N\].
     pub last_n: Vec<Option<f64>>,
 }
 
@@ -260,7 +267,7 @@ pub struct Curve {
     pub pressure_pa: f64,
     /// The specimen.
     pub specimen: String,
-    /// In the order of measurement (by contraction in a static map): at most 400.
+    /// Points in the order of measurement (by contraction in a static map): at most 400.
     pub points: Vec<CurvePoint>,
 }
 
@@ -271,57 +278,57 @@ pub struct CurvePoint {
     pub pressure_pa: f64,
     /// Contraction as read.
     pub contraction: f64,
-    /// +1 shortening, -1 lengthening, 0 at rest; at held length that of the pressure.
+    /// +1 shortening, -1 lengthening, 0 at rest; at held length the direction of the pressure.
     pub direction: f64,
-    /// Measured \[N\].
+    /// Measured force \[N\].
     pub measured_n: f64,
-    /// Of the first rung \[N\].
+    /// Force of the first rung \[N\].
     pub first_n: f64,
-    /// Of the last rung \[N\].
+    /// Force of the last rung \[N\].
     pub last_n: f64,
 }
 
-/// What the effects contribute at one pressure level, averaged over both directions.
+/// Contributions of the effects at one pressure level, averaged over both directions.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Stack {
     /// Mean pressure \[Pa\].
     pub pressure_pa: f64,
     /// Contractions.
     pub contraction: Vec<f64>,
-    /// Measured \[N\].
+    /// Measured force \[N\].
     pub measured_n: Vec<f64>,
-    /// The base without effects \[N\].
+    /// Force of the base without effects \[N\].
     pub base_n: Vec<f64>,
-    /// Each effect with what it adds to the force of all before it \[N\].
+    /// Contribution of each effect to the force, on top of the effects before it \[N\].
     pub parts: Vec<Part>,
 }
 
 /// The contribution of one effect.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Part {
-    /// The effect.
+    /// Name of the effect.
     pub effect: String,
-    /// What it adds, by contraction \[N\].
+    /// Its contribution at each contraction \[N\].
     pub force_n: Vec<f64>,
 }
 
-/// A force law of the papers, fitted to the same data.
+/// A published force law, fitted to the same data.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Rival {
     /// Name of the law.
     pub law: String,
     /// Its title.
     pub title: String,
-    /// RMS error with the printed coefficients \[N\], where there are any for this muscle.
+    /// RMS error with the printed coefficients \[N\], if there are any for this muscle.
     pub printed_rmse_n: Option<f64>,
-    /// RMS error fitted \[N\].
+    /// RMS error of the fit \[N\].
     pub rmse_n: f64,
-    /// In per cent of full scale.
+    /// RMS error of the fit in per cent of full scale.
     pub rmse_percent: f64,
-    /// On what was left out of the fit.
+    /// RMS error on data left out of the fit \[N\].
     pub held_out_rmse_n: Option<f64>,
-    /// How many numbers were fitted.
+    /// Number of fitted coefficients.
     pub fitted: usize,
-    /// Why not, where it wasn't possible.
+    /// Why the law couldn't be fitted.
     pub failed: Option<String>,
 }

@@ -1,4 +1,4 @@
-//! Rows whose direction isn't known: they count by how much the direction matters.
+//! Rows of unknown direction, weighted by how much the direction matters.
 
 use bulge_measurements::Data;
 use bulge_model::Record;
@@ -7,15 +7,18 @@ use crate::comparison::analysis::Analysis;
 use crate::comparison::floor::every;
 use crate::comparison::levels::Levels;
 
-/// The error of the other rows is told beside that of all where it is lower than this part of it.
+/// The error of the other rows is reported as well if it is below this fraction of the error of all rows.
 const WORTH_TELLING: f64 = 0.9;
-/// Fewer rows of a branch say nothing about its place.
+/// Fewest rows of a branch that give its median.
 const FEWEST: usize = 3;
 
-/// The rows whose direction is in doubt, in ascending order, and standard deviations of all rows, where those have the variance that the doubt makes: `sigma^2 + g^2` with the gap `g` between the branches at their pressure, by which a
-/// row is off that lies on the other branch.
+/// The rows of uncertain direction, in ascending order, and the standard deviations of all rows. Rows of
+/// uncertain direction get the variance `sigma^2 + g^2` with the gap `g` between the branches at their
+/// pressure, which is the error of a row that lies on the other branch.
 ///
-/// The gap is that of the medians of the residuals while shortening and while lengthening (filling and venting at held length). A muscle without friction has none, and loses nothing: none then.
+/// The gap is the difference between the medians of the residuals while shortening and while lengthening
+/// (filling and venting at held length). None if no gap is larger than the noise, as for a muscle without
+/// friction.
 pub(crate) fn doubtful_sd(
     record: &Record,
     data: &Data,
@@ -42,7 +45,7 @@ pub(crate) fn doubtful_sd(
     if gaps.iter().all(|gap| *gap <= sd_n) {
         return None;
     }
-    // What the file states, not what the record may have from an earlier comparison.
+    // As the file states it; the record may have the standard deviations of an earlier comparison.
     let stated = data.force_sd();
     let sd = |row: usize| {
         let own = stated.map_or(sd_n, |sd| sd[row]);
@@ -64,7 +67,8 @@ fn gap(branches: [Vec<f64>; 2]) -> f64 {
 }
 
 impl Analysis<'_> {
-    /// RMS error \[N\] of the rows whose direction is known; none where rows in doubt count like the others, or where the error is about that of all rows, `all_n`.
+    /// RMS error \[N\] of the rows of known direction; none if no row has a reduced weight, or if the error
+    /// isn't clearly below that of all rows, `all_n`.
     pub(crate) fn directed_rmse(&self, force: &[f64], all_n: f64) -> Option<f64> {
         if self.doubtful.is_empty() {
             return None;

@@ -13,17 +13,19 @@ use crate::comparison::analysis::{Analysis, Climbed};
 use crate::comparison::document::NoiseFloor;
 use crate::comparison::levels::sweep_of;
 
-/// Degrees of freedom from which repeats are believed.
+/// Degrees of freedom from which the scatter of repeats is used.
 const ENOUGH: f64 = 8.0;
-/// Rows on which the smooth surface is fitted: its scatter is then known to one per cent.
+/// Most rows for fitting the smooth surface; they give the scatter to one per cent.
 const MOST_ROWS: usize = 5_000;
-/// Readings that show the step of a sensor and the scatter of neighbours: a median of so many is known to half a per cent.
+/// Most readings for the resolution of a sensor and for the scatter of neighbours; their median is accurate
+/// to half a per cent.
 const MOST_READINGS: usize = 100_000;
-/// Part of the sum of squares below which what a promised decrease leaves may be rounding.
+/// The remaining fraction of the sum of squares, below which the predicted decrease may be dominated by
+/// rounding.
 const LEFT: f64 = 1e-9;
 
 impl Analysis<'_> {
-    /// What no model can go below, as the residuals of a rung show it.
+    /// The error that no model can go below, estimated from the residuals of a rung.
     pub(crate) fn noise_floor(&self, climbed: &Climbed) -> Option<NoiseFloor> {
         let (measured, force) = (self.record.force(), &climbed.force);
         let counts = |row: usize| self.used.mask[row] && force[row].is_finite();
@@ -32,7 +34,8 @@ impl Analysis<'_> {
     }
 }
 
-/// From repeats, else from what a smooth surface leaves of the residuals of the rows that count, else from the data sheet.
+/// Estimated from repeats; otherwise from the residuals of a smooth surface through the residuals of the rows
+/// that count; otherwise taken from the data sheet.
 pub(crate) fn noise_floor(
     repeats: Option<&PureError>,
     record: &Record,
@@ -51,7 +54,7 @@ pub(crate) fn noise_floor(
         });
     }
     if let Some((sd_n, columns)) = saturated(record, counts, residual) {
-        // No reading is better than its last digit.
+        // The quantisation error of the readings is a lower bound.
         let sd_n = sd_n.max(step(record.force()) / 12.0_f64.sqrt());
         return Some(NoiseFloor {
             sd_n,
@@ -70,7 +73,8 @@ pub(crate) fn noise_floor(
     })
 }
 
-/// The step in which the force was read: the least difference between readings, where most of them occur several times.
+/// The resolution of the force readings: the least difference between them, if most of them occur several
+/// times; otherwise 0.
 fn step(force: &[f64]) -> f64 {
     let mut levels: Vec<f64> = force.iter().copied().step_by(every(force.len())).collect();
     let readings = levels.len();
@@ -79,16 +83,16 @@ fn step(force: &[f64]) -> f64 {
     if 3 * levels.len() > readings {
         return 0.0;
     }
-    // A single level has no step.
+    // A single level shows no resolution.
     levels.windows(2).map(|pair| pair[1] - pair[0]).reduce(f64::min).unwrap_or(0.0)
 }
 
-/// Every so-manieth reading is enough.
+/// Stride with which at most `MOST_READINGS` readings are taken.
 pub(crate) fn every(readings: usize) -> usize {
     readings.div_ceil(MOST_READINGS).max(1)
 }
 
-/// Polynomials of Chebyshev in pressure and contraction, even and odd in direction.
+/// Chebyshev polynomials in pressure and contraction, even and odd in direction.
 struct Surface {
     columns: usize,
     rows: Vec<f64>,
@@ -123,7 +127,8 @@ impl Residuals for Surface {
     }
 }
 
-/// Standard deviation about a smooth surface and its number of columns; none if there are too few rows for one.
+/// Standard deviation about a smooth surface, and the number of its columns; none if there are too few rows
+/// for one.
 fn saturated(
     record: &Record,
     counts: &dyn Fn(usize) -> bool,
@@ -182,16 +187,19 @@ fn saturated(
         let part = 1.0 - found.certificate.relative_decrease;
         Some((found.cost * part, part, found.certificate.rank))
     };
-    // The surface is linear in its numbers: what the first step promises is the minimum.
+    // The surface is linear in its coefficients, so the cost predicted by the first Gauss-Newton step is the
+    // minimum.
     let (cost, _, rank) = fitted(1).filter(|(_, part, _)| *part > LEFT).or_else(|| fitted(2000))?;
     let freedom = n.checked_sub(rank).filter(|f| *f > 0)?;
     let smooth = (cost / freedom as f64).sqrt();
-    // What a coarse surface can't follow would count as noise: neighbours along a sweep know better.
+    // A surface that is too coarse leaves misfit that would count as noise; differences of neighbours along a
+    // sweep don't.
     let local = neighbours(record, counts, residual).unwrap_or(f64::INFINITY);
     Some((smooth.min(local.max(0.5 * smooth)), columns)).filter(|(sd, _)| *sd > 0.0)
 }
 
-/// Scatter from second differences along the sweeps: `r_(i-1) - 2 r_i + r_(i+1)` has the variance 6 sd^2.
+/// Standard deviation from second differences along the sweeps: `r_(i-1) - 2 r_i + r_(i+1)` has the variance
+/// 6 sd^2.
 fn neighbours(
     record: &Record,
     counts: &dyn Fn(usize) -> bool,
@@ -200,24 +208,24 @@ fn neighbours(
     if !record.is_path() {
         return None;
     }
-    let mut squares: Vec<f64> = Vec::new();
+    let mut deviations: Vec<f64> = Vec::new();
     for sweep in record.sweeps() {
         for i in (sweep.start + 1..sweep.end.saturating_sub(1)).step_by(every(record.len())) {
             if counts(i - 1) && counts(i) && counts(i + 1) {
                 let d = residual(i - 1) - 2.0 * residual(i) + residual(i + 1);
-                squares.push(d.abs() / 6.0_f64.sqrt());
+                deviations.push(d.abs() / 6.0_f64.sqrt());
             }
         }
     }
-    if squares.len() < 20 {
+    if deviations.len() < 20 {
         return None;
     }
-    squares.sort_by(f64::total_cmp);
-    // Median of |x| of a normal x is 0.6745 sd: reversals and spikes don't count.
-    Some(squares[squares.len() / 2] / (0.476_936_276_204_469_9 * SQRT_2))
+    deviations.sort_by(f64::total_cmp);
+    // The median of |x| of a normal variable x is 0.6745 sd; it is insensitive to reversals and spikes.
+    Some(deviations[deviations.len() / 2] / (0.476_936_276_204_469_9 * SQRT_2))
 }
 
-/// A range mapped to -1 ..= 1.
+/// Maps a range to -1 ..= 1.
 struct Scaled {
     middle: f64,
     half: f64,
@@ -247,7 +255,7 @@ mod tests {
             .collect();
         let force: Vec<f64> = (0..120).map(|i| 40.0 * f64::from(20 - i % 20)).collect();
         let record = Record::from_moments(moments, force, std::iter::once(0..120).collect()).unwrap();
-        // A model that meets the rounded readings to a millionth of a newton.
+        // A model that matches the rounded readings to about a micronewton.
         let residuals: Vec<f64> = (0..120).map(|i| 1e-6 * f64::from(i * 37 % 11)).collect();
         let muscle = preset("ppam-2-r16").unwrap();
         let floor = noise_floor(None, &record, &|_| true, &|row| residuals[row], &muscle).unwrap();

@@ -1,4 +1,4 @@
-//! Tests under a held load: how far the model is off in contraction.
+//! Tests under a held load: the error of the model in contraction.
 
 use bulge_measurements::SweepKind;
 use bulge_model::{Wanted, Warm};
@@ -6,13 +6,14 @@ use bulge_model::{Wanted, Warm};
 use crate::comparison::analysis::{Analysis, Climbed};
 use crate::comparison::document::{HeldLoad, HeldLoadPoint};
 
-/// Points of one sweep.
+/// Most points of one sweep.
 const MOST_POINTS: usize = 400;
 
-/// The isotonic sweeps, with the contractions at which the first and the last rung bear the load that was read, to first order:
-/// `contraction + (F - F_model) / (dF_model/d contraction)`.
+/// The isotonic sweeps, with the contractions at which the first and the last rung bear the measured load, to
+/// first order: `contraction + (F - F_model) / (dF_model/d contraction)`.
 ///
-/// Force stays what is predicted and fitted: friction has no single answer in contraction. Rows at which a model doesn't get weaker with the contraction are left out.
+/// The force remains the quantity that is predicted and fitted, because with friction the contraction isn't
+/// unique. Rows in which a model's force doesn't decrease with the contraction are left out.
 pub(crate) fn held_loads(analysis: &Analysis<'_>, rungs: [&Climbed; 2]) -> Vec<HeldLoad> {
     let sweeps = analysis.data.sweeps();
     let isotonic = || sweeps.iter().filter(|sweep| sweep.kind == SweepKind::Isotonic);

@@ -1,21 +1,22 @@
-//! Pressure levels: which rows were measured at about the same pressure, and which rows to leave out together.
+//! Pressure levels: rows measured at about the same pressure, and the folds of held-out data.
 
 use bulge_model::Record;
 use std::ops::Range;
 
-/// Most levels that are told apart; a map of many pressures is cut into this many.
+/// Most levels. A map of more pressures is cut into this many.
 const MOST: usize = 8;
-/// Two pressures belong to different levels if this part of the largest pressure lies between them without a row.
+/// Two pressures belong to different levels if a gap of this fraction of the largest pressure lies between
+/// them.
 const GAP: f64 = 0.03;
-/// Most groups that are left out in turn.
+/// Most folds.
 const FOLDS: usize = 6;
 
 /// Pressure levels of a record.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Levels {
-    /// Level of each row; there are few.
+    /// Level of each row; there are few levels, so a byte is enough.
     of: Vec<u8>,
-    /// Mean pressure of each level \[Pa\], rising.
+    /// Mean pressure of each level \[Pa\], ascending.
     pub(crate) mean: Vec<f64>,
     is_cut: bool,
 }
@@ -69,7 +70,7 @@ impl Levels {
         usize::from(self.of[row])
     }
 
-    /// Whether the pressures have no levels of their own, but were cut into some.
+    /// Whether the pressures have no distinct levels and were cut into some.
     pub(crate) fn is_cut(&self) -> bool {
         self.is_cut
     }
@@ -80,25 +81,26 @@ impl Levels {
     }
 }
 
-/// What is left out of a fit together, in turn.
+/// Folds: the groups of rows that are left out of a fit in turn.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Folds {
     /// `pressure`, `length`, `load`, `sweep` or `specimen`.
     pub(crate) by: &'static str,
-    /// Fold of each row; there are few.
+    /// Fold of each row; there are few folds, so a byte is enough.
     of: Vec<u8>,
     /// Number of folds.
     pub(crate) count: usize,
 }
 
-/// Lengths or loads that a test held belong to different levels if this part of their range lies between them without a row.
+/// Held lengths or loads belong to different levels if a gap of this fraction of their range lies between
+/// them.
 const HELD_GAP: f64 = 0.03;
-/// Rows of a level, on average, below which it was not held.
+/// Fewest rows per level, on average, for a quantity that counts as held.
 const HELD_ROWS: usize = 5;
 
 impl Folds {
-    /// Whichever the test set apart: three or more pressures, lengths (isometric) or loads (isotonic), else two or more specimens, else three or more sweeps;
-    /// none if nothing can be left out.
+    /// Folds by what the test kept distinct: three or more pressures, lengths (isometric) or loads
+    /// (isotonic), else two or more specimens, else three or more sweeps; none if nothing can be left out.
     pub(crate) fn of(record: &Record, levels: &Levels, used: &[bool]) -> Option<Self> {
         let folded = |by, of: Vec<usize>, groups: usize| {
             let count = groups.min(FOLDS);
@@ -134,12 +136,13 @@ impl Folds {
     }
 }
 
-/// A number below [`MOST`], as it is kept for each row.
+/// A number below [`MOST`], as stored for each row.
 fn small(number: usize) -> u8 {
     u8::try_from(number).unwrap_or(u8::MAX)
 }
 
-/// Levels of a quantity that was held, if there are three or more: the level of each row, and their number.
+/// Levels of a quantity that was held, if there are three or more: the level of each row, and the number of
+/// levels.
 fn held(values: &[f64], used: &[bool]) -> Option<(Vec<usize>, usize)> {
     let mut sorted: Vec<f64> =
         values.iter().zip(used).filter(|(_, used)| **used).map(|(value, _)| *value).collect();
@@ -186,7 +189,7 @@ mod tests {
         // Hundreds of pressures at four lengths.
         let isometric = |i: usize| Moment::at_rest(2e5 + 1.5e5 * wave(i), 0.05 * level(i) + 1e-4 * wave(i));
         assert_eq!(of(&isometric, &|i| 300.0 + 200.0 * wave(i), all()), Some(("length", 4)));
-        // Under four weights.
+        // Hundreds of pressures under four loads.
         let isotonic = |i: usize| Moment::at_rest(2e5 + 1.5e5 * wave(i), 0.1 + 0.1 * wave(i));
         assert_eq!(of(&isotonic, &|i| 50.0 * (1.0 + level(i)) + wave(i), all()), Some(("load", 4)));
         let mixed = |i: usize| 100.0 + 50.0 * wave(i);

@@ -1,4 +1,4 @@
-//! Loops: half of the sum and half of the difference of the lengthening and the shortening branch.
+//! Loops: half the sum and half the difference of the lengthening and the shortening branch.
 
 use bulge_measurements::{Data, Sweep, SweepKind};
 
@@ -9,7 +9,7 @@ use crate::comparison::residuals::{bin, contractions};
 /// Bins of contraction.
 const BINS: usize = 25;
 
-/// What the two branches of a loop are called.
+/// Names of the two branches of a loop.
 pub(crate) fn branches(data: &Data) -> [&'static str; 2] {
     let is_isometric = |sweep: &Sweep| sweep.kind == SweepKind::Isometric;
     match (data.sweeps().iter().any(is_isometric), data.sweeps().iter().all(is_isometric)) {
@@ -19,20 +19,23 @@ pub(crate) fn branches(data: &Data) -> [&'static str; 2] {
     }
 }
 
-/// Rows between which a reading is interpolated follow one another, but for some that don't count.
+/// Largest distance of two rows between which a reading is interpolated: neighbours, apart from a few rows
+/// that don't count.
 const APART: usize = 3;
 
-/// Sums over one place: readings, and contraction, measured and two models, for shortening and lengthening.
+/// Sums at one place, for shortening and lengthening: number of readings; contraction, measured force and the
+/// forces of two models.
 #[derive(Debug, Clone, Copy, Default)]
 struct Branches {
     rows: [usize; 2],
     sums: [[f64; 4]; 2],
 }
 
-/// Mean and half-gap at each pressure level and specimen where both branches were measured.
+/// Mean and half-gap at each pressure level and specimen for which both branches were measured.
 ///
-/// Both branches are taken at the same place, interpolated between the two rows around it: at the middle of a bin of contraction, and at held length at
-/// the mean of a pressure level. A model without hysteresis has no gap then.
+/// Both branches are taken at the same place, interpolated between the two rows around it: the middle of a
+/// contraction bin or, at held length, the mean of a pressure level. A model without hysteresis therefore has
+/// no gap.
 pub(crate) fn gaps(analysis: &Analysis<'_>, forces: [&Vec<f64>; 2]) -> Vec<LoopGap> {
     let specimens = analysis.record.specimens();
     let place = |level: usize, specimen: usize, bin: usize| (level * specimens.len() + specimen) * BINS + bin;
@@ -47,7 +50,7 @@ pub(crate) fn gaps(analysis: &Analysis<'_>, forces: [&Vec<f64>; 2]) -> Vec<LoopG
         });
     }
     let is_isometric = analysis.data.sweeps().iter().any(|sweep| sweep.kind == SweepKind::Isometric);
-    // Few lengths are held, many are passed.
+    // Few lengths are held, but many contractions are passed.
     let fewest = if is_isometric { 1 } else { 3 };
     let mut gaps = Vec::new();
     for (level, pressure_pa) in analysis.levels.mean.iter().enumerate() {
@@ -88,7 +91,8 @@ pub(crate) fn gaps(analysis: &Analysis<'_>, forces: [&Vec<f64>; 2]) -> Vec<LoopG
     gaps
 }
 
-/// Hands over what is read of a sweep at each place that its rows pass: level, bin, branch, and contraction, measured and modelled forces.
+/// Passes on what is read at each place that the rows of a sweep go through: level, bin, branch, and
+/// contraction, measured force and model forces.
 fn collect(
     analysis: &Analysis<'_>,
     forces: [&Vec<f64>; 2],

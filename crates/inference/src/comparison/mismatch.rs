@@ -1,4 +1,5 @@
-//! Data and muscle that belong to different worlds: a wrong unit, sign or zero is no physics, and is asked about with the evidence.
+//! Contradictions between data and muscle. A wrong unit, sign or zero is not physics, so the user is asked
+//! about it, with the evidence.
 
 use bulge_measurements::{Data, Motion};
 use bulge_model::{Model, Record, Wanted, Warm};
@@ -9,31 +10,35 @@ use crate::comparison::clock;
 use crate::comparison::document::Mismatch;
 use crate::comparison::rows::{full_scale, lines};
 
-/// Below this part of full scale an error is no question of units.
+/// An error below this fraction of full scale raises no question about units.
 const LARGE: f64 = 0.08;
-/// Part of the error that may be left if the readings were meant otherwise.
+/// Largest remaining fraction of the error if the readings were meant otherwise.
 const LEFT: f64 = 0.35;
-/// An offset as large as the air's is geometry or an effect as well, where more than this part of the error is left and it is large still.
+/// An absolute pressure is decided if at most this fraction of the error remains, or a small error; otherwise
+/// geometry or an effect may cause the offset as well.
 const LEFT_SURELY: f64 = 0.15;
-/// Factors between these are gains, geometry, or effects.
+/// Factors between these may be gains, geometry, or effects.
 const USUAL: (f64, f64) = (0.55, 1.8);
-/// Two meanings with errors that differ by less than this factor are both named.
+/// Two meanings are both named if their errors differ by less than this factor.
 const ALIKE: f64 = 1.3;
-/// Rows on which meanings are tried, and those on which most of them are seen to make it worse.
+/// Rows on which meanings are tried; the next constant is for rejecting most of them quickly.
 const ROWS: usize = 300;
 const FEW_ROWS: usize = 20;
-/// Part of them that has to have an answer.
+/// Fraction of these rows that must have a state; the next constant is for the few rows.
 const ANSWERED: f64 = 0.9;
 const ANSWERED_OF_FEW: f64 = 0.7;
 /// The standard atmosphere \[Pa\].
 const ATMOSPHERE: f64 = 101_325.0;
-/// Weather and height leave the pressure of the air above this \[Pa\]: a reading below is no absolute pressure.
+/// The atmospheric pressure is above this value \[Pa\] in any weather and at usual heights, so that a lower
+/// reading is no absolute pressure.
 const LEAST_AIR: f64 = 0.85e5;
-/// An offset that differs from the air's pressure by more than this fits worse than that, if the pressure is absolute \[Pa\].
+/// If the pressure is absolute, offsets that differ from the standard atmosphere by this much fit worse
+/// \[Pa\].
 const OTHER_OFFSET: f64 = 0.25e5;
-/// A measured force above this part of full scale where the model would push is a muscle that doesn't match.
+/// A muscle doesn't match if a measured force is above this fraction of full scale where the model would
+/// push.
 const CLEARLY_PULLS: f64 = 0.1;
-/// Factors by which units of force differ, with what was read as what.
+/// Factors between units of force, with the name of the unit and the heading to write.
 const FORCES: [(f64, &str, &str); 4] = [
     (9.806_65, "kilograms", "force [kgf]"),
     (4.448_222, "pounds", "force [lbf]"),
@@ -52,17 +57,17 @@ const PRESSURES: [(f64, &str); 8] = [
     (1.0 / 6.894_76, "kPa read as psi"),
 ];
 
-/// A factor of the force may be a unit as well as another muscle.
+/// Another muscle may explain a factor of the force as well as a unit.
 const OTHER_MUSCLE: &str = ", or is the muscle not the one that was measured (its kind, its radius)?";
 
-/// What readings may have been meant as.
+/// A possible meaning of the readings.
 struct Meaning {
     kind: &'static str,
-    /// The question, after "with ... the error falls from ... to ...: ".
+    /// The question, following "with ... the error falls from ... to ...: ".
     with: String,
     question: String,
     instead: String,
-    /// From pressure, contraction and force as read to those that are meant.
+    /// Maps pressure, contraction and force as read to those that are meant.
     of: Box<dyn Fn([f64; 3]) -> [f64; 3]>,
 }
 
@@ -71,12 +76,13 @@ struct Trial<'a> {
     model: &'a Model,
     record: &'a Record,
     used: &'a [bool],
-    /// Part of them that has to have an answer.
+    /// Fraction of the rows that must have a state.
     answered: f64,
 }
 
 impl Trial<'_> {
-    /// RMS error with the readings as they are meant \[N\], and the force of each row; none where too few rows have an answer.
+    /// RMS error \[N\] and force of each row, with the readings as they are meant; none if too few rows have
+    /// a state.
     fn error(&self, of: &dyn Fn([f64; 3]) -> [f64; 3]) -> Option<(f64, Vec<f64>)> {
         let moments = self.record.moments();
         let meant: Vec<[f64; 3]> = moments
@@ -105,7 +111,8 @@ impl Trial<'_> {
     }
 }
 
-/// What is asked about data for a muscle, `model` being the muscle as stated: units and signs first, then a scale and a sign that nothing explains.
+/// Questions about data for a muscle; `model` is the muscle as stated. Units and signs come first, then an
+/// unexplained scale and sign.
 pub(crate) fn questions(
     data: &Data,
     muscle: &Muscle,
@@ -129,7 +136,7 @@ pub(crate) fn questions(
     }
     let read =
         (squares(&thin, &counts) / counts.iter().filter(|counts| **counts).count().max(1) as f64).sqrt();
-    // Of what is left the forces as they are meant are the measure.
+    // Compare errors relative to the forces as they are meant.
     let size = |meaning: &Meaning| scale_of(meaning) * read;
     let mut tried: Vec<(f64, Meaning)> = meanings(data, muscle)
         .into_iter()
@@ -150,7 +157,7 @@ pub(crate) fn questions(
     found
 }
 
-/// How much larger forces are as meant than as read.
+/// Ratio of the forces as meant to the forces as read.
 fn scale_of(meaning: &Meaning) -> f64 {
     (meaning.of)([1.0, 0.0, 1.0])[2].abs()
 }
@@ -160,7 +167,7 @@ fn squares(record: &Record, used: &[bool]) -> f64 {
     record.force().iter().zip(used).filter(|(_, used)| **used).map(|(force, _)| force * force).sum()
 }
 
-/// An absolute pressure is known by its offset: others fit worse.
+/// Whether an absolute pressure fits better than other offsets do.
 fn is_best(trial: &Trial<'_>, after: f64, meaning: &Meaning) -> bool {
     let is_worse = |offset: f64| {
         let other = trial.error(&|[p, c, f]| [p - offset, c, f]);
@@ -186,7 +193,7 @@ fn asked(before: f64, after: f64, full: f64, meaning: Meaning) -> Mismatch {
     }
 }
 
-/// All meanings that these columns can have.
+/// All meanings that these columns may have.
 fn meanings(data: &Data, muscle: &Muscle) -> Vec<Meaning> {
     let mut found = vec![Meaning {
         kind: "force-sign",
@@ -223,7 +230,7 @@ fn meanings(data: &Data, muscle: &Muscle) -> Vec<Meaning> {
     found
 }
 
-/// What the column of the motion may be.
+/// Meanings of the motion column.
 fn motions(data: &Data, muscle: &Muscle) -> Vec<Meaning> {
     let l0 = muscle.length().si();
     let meaning = |kind, with: &str, question: &str, instead: &str, of: fn(f64, f64) -> f64| Meaning {
@@ -281,7 +288,8 @@ fn motions(data: &Data, muscle: &Muscle) -> Vec<Meaning> {
     }
 }
 
-/// Meanings of the motion under which its contractions are possible, where they are not as read: the question that goes with the refusal.
+/// The question about the motion column if its contractions are impossible as read, but possible with another
+/// meaning; it is added to the refusal.
 pub(crate) fn possible_motion(data: &Data, muscle: &Muscle, is_possible: &dyn Fn(f64) -> bool) -> String {
     let read = data.contraction(muscle.length().si());
     let all = |meaning: &Meaning| {
@@ -291,7 +299,7 @@ pub(crate) fn possible_motion(data: &Data, muscle: &Muscle, is_possible: &dyn Fn
             possible &= is_possible(c);
             largest = largest.max(c.abs());
         }
-        // A hundredth of everything is possible, and nothing that a muscle does.
+        // Dividing by 100 makes every value possible, but a muscle moves by more than a hundredth.
         possible && largest > 0.01
     };
     let found = motions(data, muscle).into_iter().find(all);
@@ -300,7 +308,7 @@ pub(crate) fn possible_motion(data: &Data, muscle: &Muscle, is_possible: &dyn Fn
     })
 }
 
-/// Measured and computed forces that differ by one large factor.
+/// Asks about measured and computed forces that differ by a single large factor.
 fn scale(record: &Record, used: &[bool], model: &[f64], before: f64) -> Option<Mismatch> {
     let force = record.force();
     let rows = || (0..record.len()).filter(|row| used[*row] && model[*row].is_finite());
@@ -325,7 +333,7 @@ fn scale(record: &Record, used: &[bool], model: &[f64], before: f64) -> Option<M
     })
 }
 
-/// A model that would push where the muscle pulls.
+/// Asks about a model that would push where the muscle pulls.
 fn pushes(
     data: &Data,
     muscle: &Muscle,

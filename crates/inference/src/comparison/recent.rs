@@ -1,35 +1,35 @@
-//! What was computed last, by what it was computed for.
+//! A cache of recent results.
 
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// Entries that are kept until there are too many: then the one that was asked for the longest time ago goes, so that memory doesn't grow with the number of
-/// questions.
+/// A cache with least-recently-used eviction, so that memory doesn't grow with the number of questions.
 ///
-/// Two threads that ask for the same at the same time both compute it: a thread of a pool that waited for another one could wait for itself.
+/// Two threads that ask for the same key at the same time both compute it: if a thread of a pool waited for
+/// another one, it could end up waiting for itself.
 pub(crate) struct Recent<T> {
     most: usize,
     kept: Mutex<Kept<T>>,
 }
 
 struct Kept<T> {
-    /// With the number of the question that asked for it last.
+    /// Each entry with the number of the last question that asked for it.
     entries: HashMap<Vec<String>, (u64, Arc<T>)>,
     asked: u64,
 }
 
 impl<T> Recent<T> {
-    /// Keeps at most this many, and one at least.
+    /// A cache with at most `most` entries, and at least one.
     pub(crate) fn new(most: usize) -> Self {
         Self { most: most.max(1), kept: Mutex::new(Kept { entries: HashMap::new(), asked: 0 }) }
     }
 
     fn locked(&self) -> MutexGuard<'_, Kept<T>> {
-        // A thread that panicked leaves whole entries.
+        // Entries are complete even if a thread panicked.
         self.kept.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// What is kept under a key; else what `compute` makes, which is kept.
+    /// The entry under a key; otherwise the result of `compute`, which is kept.
     pub(crate) fn of<E>(&self, key: &[String], compute: impl FnOnce() -> Result<T, E>) -> Result<Arc<T>, E> {
         if let Some(found) = self.get(key) {
             return Ok(found);
@@ -76,7 +76,7 @@ mod tests {
             *found
         };
         assert_eq!(["first", "second", "first", "third"].map(ask), [0, 1, 0, 2]);
-        // The second one had to go.
+        // The second one was evicted.
         assert_eq!(["first", "third", "second"].map(ask), [0, 2, 3]);
         assert_eq!(["second", "first"].map(ask), [3, 4]);
     }

@@ -1,4 +1,4 @@
-//! What data must have for a muscle and for effects to be compared with them.
+//! Requirements on data for a comparison with a muscle and its effects.
 
 use bulge_effects::{Effect, Needs};
 use bulge_measurements::Data;
@@ -11,11 +11,11 @@ use crate::comparison::mismatch::possible_motion;
 use crate::comparison::rows::lines;
 use crate::error::InferenceError;
 
-/// Contractions that a muscle can have: a braid is drawn straight before it is twice as long as at rest (with fibres at less than 60 deg), and no pleated
-/// muscle gets shorter by more than 54.3 %.
+/// Contractions that a muscle can have. A braid with fibres at less than 60 deg is straight before it reaches
+/// twice its rest length, and no pleated muscle shortens by more than 54.3 %.
 const POSSIBLE: RangeInclusive<f64> = -1.0..=0.6;
 
-/// Contractions that no muscle has are those of another one.
+/// Refuses contractions that no muscle can have: the data are those of another one.
 pub(crate) fn check_size(
     data: &Data,
     muscle: &Muscle,
@@ -43,7 +43,7 @@ pub(crate) fn check_size(
     })
 }
 
-/// An effect that needs what these data don't have can't be fitted to them.
+/// Refuses an effect that needs something these data don't have.
 pub(crate) fn check_needs(effect: &Arc<dyn Effect>, record: &Record) -> Result<(), InferenceError> {
     let card = effect.card();
     let moments = record.moments();
@@ -63,7 +63,7 @@ pub(crate) fn check_needs(effect: &Arc<dyn Effect>, record: &Record) -> Result<(
     Err(InferenceError::Needs { effect: card.name.to_owned(), needs: lacking(card.needs, record) })
 }
 
-/// What of the needs of an effect these data lack, in words.
+/// The unmet needs of an effect, in words.
 fn lacking(needs: Needs, record: &Record) -> &'static str {
     match needs {
         Needs::Path | Needs::Motion if !record.is_path() => {

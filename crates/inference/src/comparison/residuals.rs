@@ -1,4 +1,4 @@
-//! Where the error lies: by each variable, on maps, along curves.
+//! Distribution of the error: by each variable, on maps, along curves.
 
 use crate::comparison::analysis::{Analysis, Climbed};
 use crate::comparison::document::{Bin, Breakdown, Curve, CurvePoint, ResidualMap};
@@ -7,12 +7,12 @@ use crate::comparison::loops::branches;
 
 /// Bins of a continuous variable.
 const BINS: usize = 10;
-/// Columns of a map.
+/// Contraction columns of a map.
 const COLUMNS: usize = 20;
-/// Points of a curve, and of the scatter.
+/// Most points of a curve; the next constant is for the scatter plot.
 const MOST_POINTS: usize = 400;
 const MOST_SCATTER: usize = 2000;
-/// Sweeps that are shown one by one.
+/// Most sweeps that are shown one by one.
 const MOST_SWEEPS: usize = 60;
 
 /// Errors of one prediction.
@@ -25,13 +25,14 @@ pub(crate) struct Errors {
 }
 
 impl Analysis<'_> {
-    /// Measured less modelled force of all rows \[N\].
+    /// Measured less model force of all rows \[N\].
     pub(crate) fn residuals(&self, climbed: &Climbed) -> Vec<f64> {
         self.record.force().iter().zip(&climbed.force).map(|(measured, model)| measured - model).collect()
     }
 }
 
-/// Over all rows that count and have a state. If none has one, the error is the measured force: what says nothing predicts none.
+/// Errors over all rows that count and have a state. If none has one, the error is the measured force, since
+/// the model then predicts none.
 pub(crate) fn summary(analysis: &Analysis<'_>, force: &Vec<f64>) -> Errors {
     let measured = analysis.record.force();
     let has_any = analysis.with_state(&[force]).next().is_some();
@@ -47,12 +48,12 @@ pub(crate) fn summary(analysis: &Analysis<'_>, force: &Vec<f64>) -> Errors {
         sums[2] += (measured[row] - mean).powi(2);
         largest = largest.max(error.abs());
     }
-    // Of a single point no variance can be explained.
+    // A single point has no variance to explain.
     let r_squared = if sums[2] > 0.0 { 1.0 - sums[1] / sums[2] } else { 0.0 };
     Errors { rmse: (sums[1] / n).sqrt(), bias: sums[0] / n, largest, r_squared }
 }
 
-/// A variable cut into groups: name and unit, group of each row, label and middle of each group.
+/// A variable divided into groups: name and unit, group of each row, label and middle of each group.
 struct Groups<'a> {
     variable: &'static str,
     unit: &'static str,
@@ -60,7 +61,7 @@ struct Groups<'a> {
     labels: Vec<(String, f64)>,
 }
 
-/// Every variable that varies.
+/// A breakdown by every variable that varies.
 pub(crate) fn breakdowns(analysis: &Analysis<'_>, forces: [&Vec<f64>; 2]) -> Vec<Breakdown> {
     let record = &analysis.record;
     let moments = record.moments();
@@ -138,7 +139,7 @@ fn even<'a>(
     Some(Groups { variable, unit, of, labels: (0..BINS).map(label).collect() })
 }
 
-/// Number of the bin of a value; values outside go to the ends.
+/// Bin of a value; values outside go to the first or last bin.
 pub(crate) fn bin(value: f64, low: f64, high: f64, bins: usize) -> usize {
     let part = if high > low { (value - low) / (high - low) } else { 0.0 };
     #[expect(
@@ -193,7 +194,7 @@ pub(crate) fn maps(analysis: &Analysis<'_>, forces: [&Vec<f64>; 2]) -> Vec<Resid
             }
             any += 1;
         }
-        // Turning points alone are no map.
+        // Turning points alone don't make a map.
         if any <= analysis.record.len() / 100 {
             continue;
         }
@@ -255,7 +256,7 @@ pub(crate) fn curves(analysis: &Analysis<'_>, forces: [&Vec<f64>; 2]) -> Vec<Cur
     curves
 }
 
-/// Measured against predicted.
+/// Measured against predicted forces.
 pub(crate) fn scatter(analysis: &Analysis<'_>, forces: [&Vec<f64>; 2]) -> Vec<[f64; 3]> {
     let measured = analysis.record.force();
     let stride = analysis.with_state(&forces).count().div_ceil(MOST_SCATTER).max(1);

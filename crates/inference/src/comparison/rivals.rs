@@ -1,4 +1,5 @@
-//! The papers' force laws on the same data: what an empirical fit reaches, with how many numbers.
+//! Published force laws on the same data: the error that an empirical fit reaches, and with how many
+//! coefficients.
 
 use bulge_effects::law::{LAWS, Law, LawGeometry};
 use bulge_model::{Model, Wanted};
@@ -11,9 +12,9 @@ use crate::fit::nuisance::Prepared;
 use crate::fit::problem::free;
 use crate::fit::search::{Task, fit};
 
-/// Every law for this kind of muscle, with its printed coefficients where there are any, and fitted.
+/// Every law for this kind of muscle, with its printed coefficients, if there are any, and fitted.
 pub(crate) fn laws(analysis: &Analysis<'_>) -> Vec<Rival> {
-    // A law of a single pressure can't follow several.
+    // A law for a single pressure can't follow several.
     let isobaric = |law: &Law| law.is_isobaric() && analysis.levels.len() > 1;
     let suits = |law: &&'static Law| law.suits(analysis.muscle.kind()) && !isobaric(law);
     LAWS.iter().filter(suits).map(|law| rival(analysis, law)).collect()
@@ -61,7 +62,8 @@ fn fitted(analysis: &Analysis<'_>, law: &'static Law, values: &[f64]) -> Result<
     if rows <= numbers {
         return Err(InferenceError::TooFewRows { rows, numbers });
     }
-    // One start: most coefficients are linear, and the bounds of the others say little.
+    // One start is enough: most coefficients are linear, and the bounds of the others are no guide to where
+    // to start.
     let task = Task {
         record: &analysis.record,
         used: &analysis.used.mask,

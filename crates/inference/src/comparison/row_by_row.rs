@@ -1,4 +1,4 @@
-//! A comparison row by row: what was read, what the base and the last rung say of it, and whether it counts.
+//! A comparison row by row: the readings, the forces of base and last rung, and whether the row counts.
 
 use bulge_measurements::{SweepKind, WrittenColumn, WrittenValues};
 use bulge_model::{Wanted, Warm};
@@ -8,63 +8,66 @@ use crate::comparison::analysis::{Analysis, Climbed};
 use crate::comparison::levels::sweep_of;
 use crate::error::InferenceError;
 
-/// Every row of the data in the order of the files, one entry of each column for each row.
+/// Every row of the data in the order of the files; each column has one entry per row.
 ///
-/// Forces are those of the models also where a row doesn't count, as far as there is a state; else they are NaN (`null` as JSON).
+/// Model forces are given for rows that don't count as well. They are NaN (`null` in JSON) if the row has no
+/// state.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Rows {
     /// Names of the files.
     pub files: Vec<String>,
     /// Names of the sweeps.
     pub sweeps: Vec<String>,
-    /// What each of the sweeps is.
+    /// Kind of each sweep.
     pub sweep_kinds: Vec<SweepKind>,
     /// Names of the specimens.
     pub specimens: Vec<String>,
-    /// Why rows don't count.
+    /// Reasons why rows don't count.
     pub reasons: Vec<String>,
-    /// Effects up to the model of `model_n`, in their order: all that were asked for, but for those at the end with which no row has a state.
+    /// Effects of the model behind `model_n`, in their order: all that were requested, except those at the
+    /// end with which no row has a state.
     pub effects: Vec<String>,
-    /// Place of the file in `files`.
+    /// Index of the file in `files`.
     pub file: Vec<u32>,
-    /// Line in the file, or number of the row where the file has no lines, from 1.
+    /// Line in the file, or number of the row if the file has no lines, from 1.
     pub line: Vec<u32>,
-    /// Place of the sweep in `sweeps`.
+    /// Index of the sweep in `sweeps`.
     pub sweep: Vec<u32>,
-    /// Place of the specimen in `specimens`.
+    /// Index of the specimen in `specimens`.
     pub specimen: Vec<u32>,
     /// Whether the row enters errors and fits.
     pub counts: Vec<bool>,
-    /// Place of the reason in `reasons`, of rows that don't count.
+    /// Index of the reason in `reasons`, for rows that don't count.
     pub reason: Vec<Option<u32>>,
-    /// Whether the row was excluded by hand.
+    /// Whether the row was excluded by the user.
     pub excluded: Vec<bool>,
-    /// Whether the rows follow each other; else they are a static map, and sweeps mean nothing.
+    /// Whether the rows follow each other in time; otherwise they are a static map, and sweeps have no
+    /// meaning.
     pub is_path: bool,
-    /// Time as read \[s\], where there is any.
+    /// Time as read \[s\], if there is any.
     pub time_s: Option<Vec<f64>>,
-    /// Temperature as read \[K\], where there is any.
+    /// Temperature as read \[K\], if there is any.
     pub temperature_k: Option<Vec<f64>>,
     /// Gauge pressure as read \[Pa\].
     pub pressure_pa: Vec<f64>,
-    /// Contraction as read, 1 - l/l0 where the length was read.
+    /// Contraction as read, or 1 - l/l0 if the length was read.
     pub contraction: Vec<f64>,
     /// Rate of contraction \[1/s\], positive when shortening; 0 without time.
     pub rate: Vec<f64>,
-    /// +1 shortening, -1 lengthening, 0 at rest; at held length that of the pressure.
+    /// +1 shortening, -1 lengthening, 0 at rest; at held length the direction of the pressure.
     pub direction: Vec<f64>,
     /// Measured force \[N\].
     pub measured_n: Vec<f64>,
     /// Force of the base \[N\].
     pub base_n: Vec<f64>,
-    /// Force of each rung between base and model \[N\], where those were asked for.
+    /// Force of each rung between base and model \[N\], if requested.
     pub between_n: Vec<Vec<f64>>,
     /// Force of the model with the effects \[N\].
     pub model_n: Vec<f64>,
 }
 
 impl Rows {
-    /// The rungs from the base to the model, all of them or these two.
+    /// The rows for the rungs from the base to the model: all of them, or these two.
     pub(crate) fn of(
         analysis: &Analysis<'_>,
         rungs: &[&Climbed],
@@ -124,7 +127,8 @@ impl Rows {
         self.counts.is_empty()
     }
 
-    /// The columns of a file that Bulge reads again, in SI units; [`bulge_measurements::written`] makes its bytes.
+    /// The columns of a file that Bulge can read again, in SI units; [`bulge_measurements::written`] turns
+    /// them into bytes.
     #[must_use]
     pub fn columns(&self) -> Vec<WrittenColumn<'_>> {
         let numbers = WrittenValues::numbers;
@@ -132,7 +136,7 @@ impl Rows {
             ("file", WrittenValues::names(&self.files, &self.file)),
             ("line", WrittenValues::Counts(&self.line)),
         ];
-        // With a sweep a row would be one of a path.
+        // A sweep column would turn the rows of a static map into a path.
         if self.is_path {
             columns.push(("sweep", WrittenValues::names(&self.sweeps, &self.sweep)));
         }
@@ -156,20 +160,20 @@ impl Rows {
         columns.into_iter().map(|(heading, values)| WrittenColumn { heading, values }).collect()
     }
 
-    /// Measured force less that of the model with the effects \[N\]; NaN where that has no state.
+    /// Measured force less that of the model with the effects \[N\]; NaN without a state.
     #[must_use]
     pub fn residual_n(&self) -> Vec<f64> {
         difference(&self.measured_n, &self.model_n)
     }
 
-    /// Measured force less that of the base \[N\]; NaN where that has no state.
+    /// Measured force less that of the base \[N\]; NaN without a state.
     #[must_use]
     pub fn base_residual_n(&self) -> Vec<f64> {
         difference(&self.measured_n, &self.base_n)
     }
 }
 
-/// The force of all rows \[N\]: fits leave out those that don't count, and here they are wanted as well.
+/// The force of all rows \[N\], including those that don't count and are left out of the fits.
 fn force_of_all(analysis: &Analysis<'_>, climbed: &Climbed) -> Result<Vec<f64>, InferenceError> {
     let mut force = if climbed.force.is_empty() {
         analysis.predicted(&climbed.prepared, &climbed.theta)?.prediction.force
@@ -194,6 +198,6 @@ fn difference(measured: &[f64], model: &[f64]) -> Vec<f64> {
 }
 
 pub(crate) fn short(number: usize) -> u32 {
-    // Files of more rows aren't read: their lines are numbers of this kind.
+    // Files with more rows aren't read, so line numbers fit in this type.
     u32::try_from(number).unwrap_or(u32::MAX)
 }

@@ -1,4 +1,4 @@
-//! Which rows enter errors and fits, and how rows are named to people.
+//! Rows that enter errors and fits, and the line numbers by which messages name rows.
 
 use bulge_measurements::{Data, Reading};
 use bulge_muscles::units::significant;
@@ -6,30 +6,31 @@ use std::fmt::Write;
 
 use crate::comparison::document::LeftOut;
 
-/// Steps of pressure that make more than this part of the rows are what was tested.
+/// Rows between isobaric runs are kept if they are more than this fraction: then they are the test itself.
 const MOST_BETWEEN: f64 = 0.2;
-/// More than this part of the rows pushes only if the force has the other sign.
+/// If more than this fraction of the rows pushes, the force must have the other sign.
 const MOST_IDLE: f64 = 0.8;
 
-/// Rows that count, and those that don't with the reason.
+/// Rows that count, and the reasons for the others.
 #[derive(Debug, Clone)]
 pub(crate) struct Used {
     pub(crate) mask: Vec<bool>,
     pub(crate) left_out: Vec<LeftOut>,
-    /// Of each row that doesn't count, the place of its reason in the list.
+    /// For each row that doesn't count, the index of its reason in the list.
     pub(crate) reason: Vec<Option<u32>>,
-    /// How the data were read, with the rows that no equilibrium has.
+    /// How the data were read, and the rows that can't have an equilibrium.
     pub(crate) reading: Reading,
 }
 
-/// How the reason begins of a row that was read and can't be used, because its pressure is no gauge pressure above 0: such rows are among those left out.
+/// Start of the reason for rows that were read but can't be used because their gauge pressure isn't above 0.
+/// They are among the rows left out.
 pub const UNPRESSURISED: &str = "a gauge pressure of";
 
-/// Why rows are left out that a person took out.
+/// Reason for rows that a user left out.
 pub(crate) const BY_HAND: &str = "excluded by hand";
 
 impl Used {
-    /// Leaves out rows, unless nothing would be left.
+    /// Leaves out rows, unless none would remain.
     pub(crate) fn leave_out(&mut self, data: &Data, rows: impl IntoIterator<Item = usize>, why: String) {
         let rows: Vec<usize> = rows.into_iter().filter(|row| self.mask[*row]).collect();
         if rows.is_empty() || rows.len() == self.mask.iter().filter(|counts| **counts).count() {
@@ -52,7 +53,8 @@ impl Used {
         (0..self.mask.len()).filter(|row| self.mask[*row])
     }
 
-    /// Leaves out rows whose gauge pressure is 0 or, by the noise of a zero, below: nothing balances the fibres there.
+    /// Leaves out rows whose gauge pressure is 0 or, through noise around zero, negative: no pressure
+    /// balances the fibres there.
     fn leave_out_unpressurised(&mut self, data: &Data) {
         let pressure = data.pressure();
         let rows: Vec<usize> = (0..pressure.len()).filter(|row| pressure[*row] <= 0.0).collect();
@@ -67,10 +69,10 @@ impl Used {
         }
     }
 
-    /// Leaves out spikes that only show when the model's force is taken off.
+    /// Leaves out spikes that only show up in the residuals.
     pub(crate) fn leave_out_spikes(&mut self, data: &Data, residuals: Vec<f64>) {
         let mut values = residuals;
-        // Rows that don't count may have no prediction: they lie on the line between those that do.
+        // Rows that don't count may lack a prediction: interpolate between those that do.
         for sweep in data.sweeps() {
             let mut last = None;
             for row in sweep.rows.clone() {
@@ -87,9 +89,10 @@ impl Used {
     }
 }
 
-/// Rows that say nothing about the muscle: readings that are disturbed, frozen or clipped; rows of steps of pressure between isobaric runs; and readings at
-/// zero, which say only that it didn't pull: two or more of exactly the lowest force, within 1 % of full scale of zero; rows that moved
-/// on at zero force; rows in which the muscle pushed.
+/// The rows that count. Left out are rows without information about the muscle: disturbed, frozen or clipped
+/// readings; rows of pressure steps between isobaric runs; and readings at zero force, which only say that
+/// the muscle didn't pull. The last kind comprises two or more rows of exactly the lowest force, within 1 %
+/// of full scale of zero, rows that moved on at zero force, and rows in which the muscle pushed.
 pub(crate) fn used(data: &Data) -> Used {
     let force = data.force();
     let mut used = Used {
@@ -118,7 +121,7 @@ pub(crate) fn used(data: &Data) -> Used {
     if data.between_isobars().len() as f64 <= MOST_BETWEEN * force.len() as f64 {
         used.leave_out(data, between, why.to_owned());
     }
-    // Where nearly all rows push, the load cell has the other sign: that is a question.
+    // If nearly all rows push, the load cell has the other sign, which is left to a question.
     let idle = data.not_pulling();
     if idle.len() as f64 <= MOST_IDLE * force.len() as f64 {
         let why = "slack or pushing: the muscle didn't pull, and says nothing about its force";
@@ -127,12 +130,13 @@ pub(crate) fn used(data: &Data) -> Used {
     used
 }
 
-/// Largest force that was measured in some rows \[N\].
+/// Largest measured force among some rows \[N\].
 pub(crate) fn full_scale(force: &[f64], rows: impl Iterator<Item = usize>) -> f64 {
     rows.map(|row| force[row].abs()).fold(0.0, f64::max)
 }
 
-/// Line numbers of rows: `12, 33-40`, with the names of the files where there are several. Long lists end with a count.
+/// Line numbers of rows: `12, 33-40`, with the names of the files if there are several. Long lists end with a
+/// count.
 pub(crate) fn lines(data: &Data, rows: &[usize]) -> String {
     const MOST: usize = 12;
     let ranges = data.line_ranges(rows);

@@ -1,11 +1,16 @@
-//! A sweep that lies off as a whole: the load cell was zeroed anew, or something was hung on it. It is no physics, and says nothing of the others.
+//! Detects a sweep that is shifted as a whole, because the load cell was zeroed again or something was hung
+//! on it. Such a shift isn't physics and doesn't affect the other sweeps.
 //!
 //! ```text
 //! r = S(driven, held, direction) + d 1_s,    gain_s = (a_s . z)^2/(a_s . a_s),    d = (a_s . z)/(a_s . a_s)
 //! ```
-//! r are residuals, S is a surface that all sweeps share: polynomials in what is driven (the contraction, or the pressure at held length) and in what is held: affine in
-//! the pressure, as the force of nearly every mechanism goes with it, of the third degree in the length, with which rubber, angle and friction go as they like. z is what S leaves of r, a_s what it leaves of the sweep's indicator. A sweep is shifted if its offset d is
-//! large against the noise, the same all along the sweep, much larger than that of any other once it is taken off, and if no other sweep's offset would do as well.
+//! r are the residuals. S is a surface that all sweeps share: a polynomial in the driven variable (the
+//! contraction, or the pressure at held length) and in the held one. It is affine in a held pressure, like
+//! the force of nearly every mechanism, and of the third degree in a held length, on which rubber, angle and
+//! friction depend in their own ways. z are the residuals of r about S, and a_s is the sweep's indicator
+//! orthogonalised against S. A sweep is shifted if its offset d is large compared with the noise and constant
+//! along the sweep, if no other offset remains comparable once it is removed, and if no other sweep's offset
+//! explains the residuals as well.
 
 use bulge_effects::Moment;
 use bulge_measurements::Data;
@@ -18,41 +23,43 @@ use crate::comparison::rows::Used;
 use crate::dot::dot;
 use crate::noise::orthonormal::Basis;
 
-/// Rows on which the surface is fitted.
+/// Most rows for fitting the surface.
 const MOST_ROWS: usize = 4_000;
-/// Sweeps from which the others agree on where one should lie, and rows of each.
+/// Fewest sweeps for the others to agree on where one should lie, and fewest rows of each.
 const FEWEST: [usize; 2] = [4, 8];
-/// Most sweeps: the test of each takes a column.
+/// Most sweeps; the test of each takes a column.
 const MOST_SWEEPS: usize = 200;
-/// One sweep in so many may be shifted.
+/// At most one sweep in this many may be shifted.
 const ONE_IN: usize = 4;
-/// Part of the range over which a sweep goes if that is what is driven.
+/// A variable is driven if most sweeps cover more than this fraction of its total range.
 const DRIVEN: f64 = 0.3;
-/// Part of the largest contraction and of the largest pressure within which either is held.
+/// A variable counts as held within this fraction of its largest value: contraction, pressure.
 const HELD: [f64; 2] = [0.01, 0.02];
-/// Degrees over what is driven, of both branches together and of their difference; lower ones where there are few rows.
+/// Degrees in the driven variable, for the mean of the branches and for their difference; the lower set is
+/// for few rows.
 const DEGREES: [[usize; 2]; 2] = [[7, 4], [4, 2]];
-/// Degree over what is held, a pressure or a length, at most one less than there are levels.
+/// Degree in the held variable (pressure, length); at most one less than the number of levels.
 const HELD_DEGREE: [usize; 2] = [1, 3];
-/// Rows for each column of the surface.
+/// Fewest rows for each column of the surface.
 const ROWS_PER_COLUMN: usize = 3;
-/// Part of the largest value between what is held in different sweeps.
+/// Levels of the held variable are at least this fraction of its largest value apart.
 const GAP: f64 = 0.03;
-/// An offset of fewer standard deviations of a reading does little,
+/// A smaller offset, in standard deviations of a reading, hardly matters.
 const SIZE: f64 = 2.5;
-/// one of fewer standard deviations of its own may be chance,
+/// A smaller offset, in its own standard deviations, may be chance.
 const SURE: f64 = 8.0;
-/// and what the surface leaves undetermined isn't known: part of the sweep's rows that it has to leave.
+/// Least fraction of the sweep's indicator that is outside the surface; otherwise the offset is undetermined.
 const LEFT: f64 = 0.1;
-/// Part of the gain that another sweep may reach instead of it,
+/// Largest fraction of the gain that another sweep's offset may reach instead,
 const INSTEAD: f64 = 0.85;
-/// that another may reach besides it,
+/// that another sweep's offset may reach in addition,
 const BESIDES: f64 = 0.05;
-/// and that a change along the sweep may reach.
+/// and that a variation along the sweep may reach.
 const ALONG: f64 = 0.1;
-/// Places along a sweep from which on its own change may begin: a jump within it is no shift of all of it.
+/// Number of positions along a sweep at which a jump is tried: a jump within a sweep is no shift of the whole
+/// sweep.
 const PARTS: usize = 16;
-/// Gain in variances of a reading that is nothing.
+/// Gains below this, in variances of a reading, are insignificant.
 const CHANCE: f64 = 30.0;
 
 /// A sweep and its offset.
@@ -63,7 +70,8 @@ struct Shift {
 }
 
 impl Used {
-    /// Leaves out sweeps that lie off as a whole, by the residuals \[N\] of a model that needn't be right.
+    /// Leaves out sweeps that are shifted as a whole. `residuals` \[N\] are those of a model, which may be
+    /// wrong.
     pub(crate) fn leave_out_shifted(&mut self, data: &Data, record: &Record, residuals: &[f64], sd_n: f64) {
         for _ in 0..record.sweeps().len() / ONE_IN {
             let Some(found) = shifted(record, &self.mask, residuals, sd_n) else { break };
@@ -80,7 +88,7 @@ impl Used {
     }
 }
 
-/// The sweep that lies farthest off, if it is one of a kind.
+/// The sweep with the largest shift, if it is the only one that explains the residuals.
 fn shifted(record: &Record, used: &[bool], residuals: &[f64], sd_n: f64) -> Option<Shift> {
     let sweeps = record.sweeps();
     if !record.is_path() || !(FEWEST[0]..=MOST_SWEEPS).contains(&sweeps.len()) || sd_n <= 0.0 {
@@ -143,7 +151,7 @@ fn take_out(vector: &mut [f64], column: &[f64]) {
     }
 }
 
-/// Rows that count, every so-manieth of each sweep, and where each sweep is among them.
+/// Rows that count, thinned at a constant stride within each sweep, and the range of each sweep among them.
 fn thinned(
     sweeps: &[Range<usize>],
     counts: &dyn Fn(usize) -> bool,
@@ -159,13 +167,14 @@ fn thinned(
     (rows, blocks)
 }
 
-/// Range of some values as their middle and half width.
+/// Middle and half-width of the range of some values.
 fn scale(values: impl Iterator<Item = f64>) -> [f64; 2] {
     let [low, high] = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], v| [l.min(v), h.max(v)]);
     [0.5 * (low + high), (0.5 * (high - low)).max(f64::MIN_POSITIVE)]
 }
 
-/// What all sweeps share, as an orthonormal basis; none if what is driven is neither the length alone nor the pressure alone.
+/// The surface that all sweeps share, as an orthonormal basis; none unless exactly one of contraction and
+/// pressure is driven.
 fn surface(record: &Record, rows: &[usize], blocks: &[(usize, Range<usize>)]) -> Option<Basis> {
     let moments = record.moments();
     let read: [fn(&Moment) -> f64; 2] = [|m| m.contraction, |m| m.pressure];
@@ -211,7 +220,8 @@ fn surface(record: &Record, rows: &[usize], blocks: &[(usize, Range<usize>)]) ->
     Some(Basis::of(&design, rows.len()))
 }
 
-/// What a sweep's own change along it would look like: with the contraction or the pressure, with the direction, with both, and from a row on.
+/// Variations along the sweep as columns: linear in contraction and in pressure, in the direction, in both
+/// together, and a step at each position.
 fn along(record: &Record, rows: &[usize], block: &Range<usize>) -> Vec<Vec<f64>> {
     let moments = record.moments();
     let own = |of: &dyn Fn(&Moment) -> f64| {
@@ -250,7 +260,7 @@ mod tests {
         })
     }
 
-    /// Filled and vented in 60 rows at contractions, one sweep each.
+    /// Filling and venting in 60 rows at contractions, one sweep each.
     fn fillings(contractions: &[f64]) -> Record {
         there_and_back(contractions, |contraction, part, way| Moment {
             pressure_direction: way,
@@ -274,8 +284,9 @@ mod tests {
             .unwrap()
     }
 
-    /// Rubber that the model lacks bends with the length: of four lengths none is off, and of two at one length nobody knows which; of seven lengths, or of
-    /// three at one length, one is.
+    /// Rubber that the model lacks gives residuals that are curved in the length. With four lengths no shift
+    /// is found, and with two sweeps at one length it is ambiguous; with seven lengths or three sweeps at one
+    /// length it is found.
     #[test]
     fn at_held_lengths_what_goes_with_the_length_is_no_shift() {
         for (lengths, finds) in [
@@ -297,7 +308,8 @@ mod tests {
         }
     }
 
-    /// Rubber, friction that grows with the pressure, a little that does not go straight with it, and noise of 1 N.
+    /// Missing rubber, friction that grows with the pressure, a small term quadratic in the pressure, and
+    /// noise of 1 N.
     fn misfit(record: &Record, seed: u64) -> Vec<f64> {
         let mut random = Random::new(seed, 0);
         let of = |m: &Moment| {
@@ -329,7 +341,7 @@ mod tests {
                 let found = shifted(&record, &used, &residuals, 1.0);
                 assert_eq!(found.map(|found| found.sweep), Some(place), "{pressures:?} {seed}");
                 let found = found.unwrap();
-                // The surface knows of an inner sweep of four what 60 rows and three tenths of them say.
+                // For an inner sweep of four, the surface leaves three tenths of the information of 60 rows.
                 assert!((found.offset_n + 6.0).abs() < 1.2, "{pressures:?}: {}", found.offset_n);
             }
             assert_eq!(clean, 0, "{pressures:?}");
@@ -342,7 +354,7 @@ mod tests {
         }
     }
 
-    /// Pressures \[bar\], and what is added to the residuals.
+    /// Pressures \[bar\], and the term added to the residuals.
     type Case<'c> = (&'c [f64], &'c dyn Fn(&Moment) -> f64);
 
     #[test]
@@ -359,13 +371,14 @@ mod tests {
             }
             assert_eq!(shifted(&record, &used, &residuals, 1.0), None, "{name}");
         }
-        // A jump within a sweep leaves its beginning where it was.
+        // A jump within a sweep leaves its beginning in place.
         for jump in [8, 15, 30, 45, 54] {
             let mut residuals = misfit(&record, 3);
             residuals[120 + jump..180].iter_mut().for_each(|value| *value += 20.0);
             assert_eq!(shifted(&record, &used, &residuals, 1.0), None, "{jump}");
         }
-        // Of three sweeps nobody knows which is off; two that are off are none of a kind; and what bends with the pressure is physics.
+        // With three sweeps the shifted one is ambiguous; two shifted sweeps are not unique; and curvature in
+        // the pressure is physics.
         let bent = |m: &Moment| 6.0 * (m.pressure / 1e5 - 3.5).powi(2);
         let second = |m: &Moment| if (m.pressure - 3e5).abs() < 1e4 { 6.0 } else { 0.0 };
         let both = |m: &Moment| if (m.pressure - 3.5e5).abs() < 6e4 { 6.0 } else { 0.0 };

@@ -1,4 +1,4 @@
-//! Specimens that differ: the data with the lengths of their specimens, as the muscle states them.
+//! Specimens that differ: the data with the lengths of the specimens that the muscle file states.
 
 use bulge_measurements::Data;
 use bulge_muscles::{Muscle, Quantity};
@@ -9,7 +9,7 @@ use crate::error::InferenceError;
 /// The data with the unpressurised lengths of specimens that have their own.
 ///
 /// # Errors
-/// If nothing is measured on a specimen that the muscle states, or one of the data looks like a slip in its name.
+/// If a specimen that the muscle file states wasn't measured, or if a name in the data looks misspelt.
 pub(crate) fn of_specimens<'d>(data: &'d Data, muscle: &Muscle) -> Result<Cow<'d, Data>, InferenceError> {
     muscle.check_specimens(data.specimens()).map_err(|error| InferenceError::Specimens(Box::new(error)))?;
     if muscle.specimens().is_empty() {
@@ -19,7 +19,7 @@ pub(crate) fn of_specimens<'d>(data: &'d Data, muscle: &Muscle) -> Result<Cow<'d
     Ok(Cow::Owned(data.clone().with_lengths(length)))
 }
 
-/// What a reader should know of specimens of which nothing is stated.
+/// The warning about specimens of which the muscle file states nothing.
 pub(crate) fn note(data: &Data, muscle: &Muscle) -> Option<String> {
     let others = muscle.check_specimens(data.specimens()).ok().filter(|others| !others.is_empty())?;
     let names: Vec<String> = others.iter().map(|name| format!("`{name}`")).collect();

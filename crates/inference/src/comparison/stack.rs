@@ -1,4 +1,4 @@
-//! What each effect contributes to the force, with the numbers of the last fit.
+//! Contribution of each effect to the force, with the parameters of the last fit.
 
 use bulge_model::{Wanted, Warm};
 
@@ -11,13 +11,14 @@ use crate::fit::carry_over::carry_over;
 /// Bins of contraction.
 const BINS: usize = 25;
 
-/// Effects added one after the other, all with the numbers that the last fit gave them; rig errors within the data sheets come last.
+/// Adds the effects one after the other, each with the parameters of the last fit; rig errors within the data
+/// sheets come last.
 pub(crate) fn contributions(analysis: &Analysis<'_>, last: &Climbed) -> Result<Vec<Stack>, InferenceError> {
     let effects = &analysis.options.effects;
     if effects.is_empty() {
         return Ok(Vec::new());
     }
-    // Bins of some rows say as much.
+    // A thinned record is enough for the bins.
     let (record, kept) = &analysis.record.thinned(FEWER_ROWS);
     let row_of = |place: usize| kept[place];
     let counts: Vec<bool> = (0..record.len()).map(|place| analysis.used.mask[row_of(place)]).collect();
@@ -25,7 +26,7 @@ pub(crate) fn contributions(analysis: &Analysis<'_>, last: &Climbed) -> Result<V
     let mut forces: Vec<Vec<f64>> = Vec::new();
     for count in 0..=effects.len() {
         let prepared = analysis.model(count)?;
-        // Nuisances stay off until the last.
+        // Nuisance parameters stay off until the end.
         let mut theta = prepared.model.off();
         let asked = |i: usize| !prepared.nuisance[i];
         let mut final_values = theta.clone();
@@ -55,7 +56,7 @@ pub(crate) fn contributions(analysis: &Analysis<'_>, last: &Climbed) -> Result<V
         }
         let filled: Vec<&Vec<usize>> = rows_of.iter().filter(|rows| !rows.is_empty()).collect();
         if filled.is_empty() {
-            // With these numbers the muscle has no state here before all effects are in.
+            // With these parameters the muscle has no state here before all effects are added.
             continue;
         }
         let mean = |values: &[f64]| -> Vec<f64> {

@@ -1,4 +1,5 @@
-//! What people state of an analysis in words, on a command line or in a script: rows to leave out by their lines, numbers held, bounded or tied.
+//! Statements of a user about an analysis, on a command line or in a script: rows to leave out by their
+//! lines, parameters held, bounded or tied.
 
 use bulge_measurements::{Data, MeasurementError};
 use bulge_muscles::{Fault, Muscle};
@@ -7,59 +8,59 @@ use crate::comparison::options::Options;
 use crate::error::InferenceError;
 use crate::fit::restrictions::check_restrictions;
 
-/// What is stated of numbers, each list in its order.
+/// Restrictions of parameters; each list keeps its order.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Statements {
-    /// As [`Options::hold`] takes them: `coulomb-friction.force=14 N`.
+    /// As in [`Options::hold`]: `coulomb-friction.force=14 N`.
     pub hold: Vec<String>,
-    /// As [`Options::bound`] takes them: `coulomb-friction.force=5..20 N`.
+    /// As in [`Options::bound`]: `coulomb-friction.force=5..20 N`.
     pub bound: Vec<String>,
-    /// As [`Options::tie`] takes them: `force-lag.time=pressure-lag.time`.
+    /// As in [`Options::tie`]: `force-lag.time=pressure-lag.time`.
     pub tie: Vec<String>,
 }
 
-/// Why something can't be stated.
+/// Reasons why a statement is refused.
 #[derive(Debug, thiserror::Error)]
 pub enum StatementError {
-    /// A text that can't be read, or that this analysis can't heed.
+    /// The text can't be parsed, or this analysis can't use it.
     #[error("{}: {what}", about.name())]
     Text {
-        /// What it is about.
+        /// Subject of the statement.
         about: Stated,
         /// What is wrong with it, and what to write.
         what: String,
     },
-    /// No list of lines, or of none of these files.
+    /// The list of lines is invalid, or has none of these files.
     #[error(transparent)]
     Lines(#[from] Box<MeasurementError>),
-    /// Something is stated of a number that isn't fitted, or the comparison can't be made.
+    /// The statement concerns a parameter that isn't fitted, or the comparison is impossible.
     #[error(transparent)]
     Inference(#[from] Box<InferenceError>),
 }
 
 impl StatementError {
-    /// Whose fault it is.
+    /// The kind of the error: wrong input, no solution, or a search that failed.
     #[must_use]
     pub fn fault(&self) -> Fault {
         if let Self::Inference(error) = self { error.fault() } else { Fault::Input }
     }
 }
 
-/// What a statement is about.
+/// Subject of a statement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stated {
     /// Rows to leave out.
     Exclude,
-    /// A number at a value.
+    /// A parameter held at a value.
     Hold,
-    /// A number between two values.
+    /// A parameter bounded by two values.
     Bound,
-    /// A number with the value of another.
+    /// A parameter tied to another one.
     Tie,
 }
 
 impl Stated {
-    /// The word that a command or a function has for it.
+    /// The word for it in commands and functions.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -72,10 +73,12 @@ impl Stated {
 }
 
 impl Options {
-    /// The same with what is stated of its numbers. `muscle` is the one that is fitted: its widths say what is fitted along.
+    /// The options with these statements about parameters. `muscle` is the one that is fitted: its widths
+    /// decide which nuisance parameters there are.
     ///
     /// # Errors
-    /// [`StatementError`]: as [`Options::hold`], [`Options::bound`], [`Options::tie`] and [`check_restrictions`].
+    /// [`StatementError`], as in [`Options::hold`], [`Options::bound`], [`Options::tie`] and
+    /// [`check_restrictions`].
     pub fn stating(
         self,
         statements: &Statements,
@@ -97,7 +100,7 @@ impl Options {
         Ok(options)
     }
 
-    /// The same without the rows of some lines, as [`Data::rows_of_lines`] takes them: `12,33-40`.
+    /// The options without the rows of some lines, written as in [`Data::rows_of_lines`]: `12,33-40`.
     ///
     /// # Errors
     /// As [`rows_to_exclude`].
@@ -106,10 +109,10 @@ impl Options {
     }
 }
 
-/// The rows of some lines, of which not all are.
+/// The rows of some lines; they may not be all rows.
 ///
 /// # Errors
-/// [`StatementError`]: as [`Data::rows_of_lines`]; if no row would be left.
+/// [`StatementError`], as in [`Data::rows_of_lines`], or if no row would remain.
 pub fn rows_to_exclude(lines: &str, data: &Data) -> Result<Vec<usize>, StatementError> {
     let rows = data.rows_of_lines(lines).map_err(Box::new)?;
     if !data.is_empty() && rows.len() == data.len() {

@@ -1,4 +1,5 @@
-//! Readings far off the path of their neighbours: how far they may be off, and how little those beyond count.
+//! Readings far from their neighbours: how far a reading may deviate, and how readings beyond are weighted
+//! down.
 
 use bulge_model::Record;
 use std::sync::Arc;
@@ -7,25 +8,26 @@ use crate::comparison::analysis::{Analysis, Climbed};
 use crate::comparison::levels::Levels;
 use crate::median::{MAD_TO_SD, median};
 
-/// Rows on each side of one that say where it should be,
+/// Neighbours on each side of a row that determine its expected value.
 const AROUND: usize = 5;
-/// and how many of their standard deviations (by the median deviation) it may be off; a normal number is once in 16 000.
+/// Largest deviation, in standard deviations of the neighbours (from the median absolute deviation); normal
+/// noise exceeds it once in 16 000.
 const BOUND: f64 = 4.0;
 /// Standard deviations stated for two rows of one mean differ by no more than this factor.
 const ALIKE: f64 = 1.5;
-/// Differences from which the noise is found: its median is then known to a hundredth.
+/// Most differences for estimating the noise; their median is accurate to a hundredth.
 const MOST_DIFFERENCES: usize = 100_000;
-/// A reading that is moved by less than this part of the noise keeps its weight.
+/// A reading that is moved by less than this fraction of the noise keeps its weight.
 const MOVED: f64 = 1e-3;
 
-/// Stretches of rows with one direction, specimen and pressure level.
+/// Stretches of rows with the same direction, specimen and pressure level.
 pub(crate) fn ways<'r>(
     rows: &'r [usize],
     record: &'r Record,
     levels: &'r Levels,
 ) -> impl Iterator<Item = &'r [usize]> {
     let moments = record.moments();
-    // A row in doubt would take its neighbours along.
+    // Rows with a much larger standard deviation are kept apart, because they would affect their neighbours.
     let is_alike = move |a: usize, b: usize| {
         record.force_sd().is_none_or(|sd| sd[a].max(sd[b]) <= ALIKE * sd[a].min(sd[b]))
     };
@@ -39,10 +41,12 @@ pub(crate) fn ways<'r>(
     })
 }
 
-/// Residuals of which none is far off the path of its neighbours in its stretch of rows (Huber's pseudo-values about Hampel's running median): a residual beyond both of its
-/// neighbours is moved to 4 standard deviations from the median of the five on either side, or to the nearer neighbour if that is farther. The standard deviation
-/// is that of these rows or of all, whichever is larger. Normal noise keeps its values but once in 16 000 rows; what rises or falls steadily, such as
-/// the transition after a reversal, keeps them always.
+/// Residuals with outliers moved towards their neighbours (Huber's pseudo-values about Hampel's running
+/// median). A residual outside the range of its two neighbours is moved to within 4 standard deviations of
+/// the median of the five rows on either side, or to the nearer neighbour if that is farther. The standard
+/// deviation is the larger one of that of these rows and that of all rows. Normal noise keeps its values
+/// except once in 16 000 rows; a steady rise or fall, such as the transition after a reversal, always keeps
+/// them.
 pub(crate) fn bounded(residual: &[f64], stretches: &[Vec<usize>]) -> Vec<f64> {
     let mut bounded = residual.to_vec();
     for (row, value) in moved(residual, stretches) {
@@ -79,7 +83,7 @@ fn moved(residual: &[f64], stretches: &[Vec<usize>]) -> Vec<(usize, f64)> {
     found
 }
 
-/// Standard deviation of the white part of residuals, from second differences along the stretches.
+/// Standard deviation of the white part of the residuals, from second differences along the stretches.
 fn white(residual: &[f64], stretches: &[Vec<usize>]) -> f64 {
     let all: usize = stretches.iter().map(Vec::len).sum();
     let every = all.div_ceil(MOST_DIFFERENCES).max(1);
@@ -89,8 +93,9 @@ fn white(residual: &[f64], stretches: &[Vec<usize>]) -> f64 {
     MAD_TO_SD * median(&mut differences) / 6.0_f64.sqrt()
 }
 
-/// Standard deviations of all rows \[N\], where a reading in the tails has one so large that it counts as it would at the bound (Huber's weights as variances,
-/// `s^2 (1 + m/(4 s))` for a reading that is moved by m); none if no reading lies there. `sd_n` is the noise of those of which the file states none.
+/// Standard deviations of all rows \[N\], in which an outlier has the weight that it would have at the bound:
+/// Huber's weights as variances, `s^2 (1 + m/(4 s))` for a reading that is moved by m. None if there are no
+/// outliers. `sd_n` is the noise of rows for which the file states none.
 fn sd_with_tails(
     record: &Record,
     levels: &Levels,
@@ -120,7 +125,8 @@ fn sd_with_tails(
 }
 
 impl Analysis<'_> {
-    /// Bounds what a reading in the tails of the noise does to fits from here on, by its weight. Means of rows, on which a diagnosis stands, bound it themselves.
+    /// From here on, limits the influence of readings in the tails of the noise on fits through their
+    /// weights. Means of rows, which a diagnosis uses, have their own limit.
     pub(crate) fn bound_tails(&mut self, first: &Climbed) {
         let residuals = self.residuals(first);
         let sd = sd_with_tails(&self.record, &self.levels, &self.used.mask, &residuals, self.noise.force_n);
@@ -160,7 +166,7 @@ mod tests {
             assert!(sd.iter().enumerate().all(|(row, sd)| (*sd - 2.0).abs() < 1e-12 || row == 200));
             off / (sd[200] * sd[200])
         };
-        // At four standard deviations 8 N/(2 N)^2 = 2, and never more.
+        // At four standard deviations 8 N/(2 N)^2 = 2, and hardly more beyond.
         for off in [12.0, 40.0, 400.0, 4000.0] {
             assert!((1.0..2.6).contains(&pull(off)), "{off}: {}", pull(off));
         }

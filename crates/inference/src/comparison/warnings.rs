@@ -1,4 +1,4 @@
-//! What a reader should know before trusting the numbers.
+//! Warnings about the results of a comparison.
 
 use bulge_muscles::Parameter;
 
@@ -9,7 +9,7 @@ use crate::comparison::specimens::note;
 use crate::fit::nuisance::is_geometry;
 
 impl Analysis<'_> {
-    /// The warnings, the most important first.
+    /// The warnings, most important first.
     pub(crate) fn warnings(&self, ladder: &[Rung]) -> Vec<String> {
         let mut warnings: Vec<String> =
             self.findings.iter().map(ToString::to_string).chain(note(&self.data, self.muscle)).collect();
@@ -67,7 +67,7 @@ impl Analysis<'_> {
         warnings
     }
 
-    /// A braid whose fibres run rather around the axis than along it.
+    /// Warns about a braid whose fibres run around the axis rather than along it.
     fn extensor(&self) -> Option<String> {
         let neutral = std::f64::consts::SQRT_2.atan();
         let angle = self.muscle.get(Parameter::BraidAngle).filter(|angle| *angle > neutral)?;
@@ -79,7 +79,8 @@ impl Analysis<'_> {
     }
 }
 
-/// Held numbers of effects with which the error of the fit rose, or with which nothing was left to fit: a free number of an effect that is added lets it fall.
+/// Held parameters of effects with which the error rose, or which left nothing to fit. With a free parameter
+/// the error would fall.
 fn held_amiss(ladder: &[Rung]) -> Vec<String> {
     let mut found = Vec::new();
     for (i, pair) in ladder.windows(2).enumerate() {
@@ -93,7 +94,7 @@ fn held_amiss(ladder: &[Rung]) -> Vec<String> {
     found
 }
 
-/// The sentence on rows of which a model says nothing.
+/// The sentence about rows that have no state in a model.
 pub(crate) fn without_state(model: &str, left: &LeftOut) -> String {
     let LeftOut { why, lines, rows } = left;
     format!(

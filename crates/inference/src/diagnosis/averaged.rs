@@ -1,4 +1,5 @@
-//! A long record made short: means of neighbouring rows, which keep what a slowly varying misfit says and average the noise.
+//! Shortens a long record to means of neighbouring rows, which keep a slowly varying misfit and average the
+//! noise.
 
 use bulge_model::Record;
 use std::ops::Range;
@@ -7,33 +8,37 @@ use crate::comparison::levels::Levels;
 use crate::comparison::tails::{self, ways};
 use crate::noise::inputs::Scatter;
 
-/// Means of each way from one reversal to the next, where there are rows enough: fewer would hide the shape of the loop.
+/// Means of each stroke from one reversal to the next, if it has enough rows; fewer would hide the shape of
+/// the loop.
 const PARTS: usize = 16;
-/// Most means that this makes.
+/// Most means that this may lead to.
 const MOST_PARTS: usize = 5_000;
-/// Cycles of each sweep that are kept in any case: the first has no history, and pure error takes two others.
+/// Cycles of each sweep that are always kept: the first one lacks a history, and pure error needs two others.
 const FEWEST_CYCLES: f64 = 3.0;
-/// Rows from which a group has a line of its own.
+/// Fewest rows of a group for a straight line of its own.
 const LINE: usize = 4;
-/// Groups that scatter by this multiple of the usual variance, and more than chance does once in 30 000 times (a normal quantile), hold something else than noise.
+/// A group whose scatter is this multiple of the usual variance, and beyond this normal quantile (exceeded by
+/// chance once in 30 000), contains something other than noise.
 const ODD: [f64; 2] = [3.0, 4.0];
 
-/// A record of means, and what belongs to each of them.
+/// A record of means, and the rows behind each of them.
 #[derive(Debug, Clone)]
 pub(crate) struct Averaged {
-    /// Means of the rows that count; forces are those of [`Averaged::forces`].
+    /// Means of the rows that count; their forces are those of [`Averaged::forces`].
     pub(crate) record: Record,
     /// Rows of the long record in each mean.
     pub(crate) groups: Vec<Vec<usize>>,
-    /// Stretches of the groups over which the muscle moves one way, as ranges of groups; none in a static map.
+    /// Stretches in which the muscle moves one way, as ranges of groups; none in a static map.
     stretches: Vec<Range<usize>>,
 }
 
 impl Averaged {
-    /// About `most` means of the rows that are used, each within one sweep, one specimen and one direction. With no more rows than that, each is its own mean.
-    /// Of many cycles there are more: so many that each way has its shape.
+    /// About `most` means of the used rows, each within one sweep, one specimen and one direction. If there
+    /// are no more rows than that, each row is its own mean. A record of many cycles gets more means, so that
+    /// each stroke keeps its shape.
     ///
-    /// Rows of a static map have no order: neighbours are those of the same pressure level and nearly the same contraction.
+    /// The rows of a static map have no order: their neighbours are those of the same pressure level and
+    /// nearly the same contraction.
     pub(crate) fn of(record: &Record, used: &[bool], levels: &Levels, most: usize) -> Option<Self> {
         let rows = used.iter().filter(|counts| **counts).count();
         let size = rows.div_ceil(most.max(1)).max(1);
@@ -79,8 +84,9 @@ impl Averaged {
         self.groups.iter().map(|group| mean(group, values)).collect()
     }
 
-    /// The forces that the means stand for: the model's at the mean plus the mean residual, so that what the model already says of the curvature
-    /// within a group is not taken for a misfit. Residuals are bounded first: see [`Averaged::bounded`].
+    /// The forces of the means: the model's force at the mean row plus the mean residual. In this way the
+    /// curvature within a group that the model already describes isn't taken for a misfit. Outliers among the
+    /// residuals are bounded first, see [`Averaged::bounded`].
     pub(crate) fn forces(&self, record: &Record, model: &[f64], at_means: &[f64]) -> Vec<f64> {
         let residual: Vec<f64> =
             record.force().iter().zip(model).map(|(measured, force)| measured - force).collect();
@@ -88,9 +94,10 @@ impl Averaged {
         self.means(&residual).iter().zip(at_means).map(|(residual, force)| residual + force).collect()
     }
 
-    /// Scatter of residuals within the groups: sum of squares about a straight line through each, and its degrees of freedom. What a misfit does within a group is
-    /// nearly straight, and no scatter; a group with a reversal or a spike in it is left out. Groups of two or three rows have no line of their own: along a path their
-    /// rows are looked at by threes.
+    /// Scatter of the residuals within the groups: sum of squares about a straight line through each group,
+    /// and its degrees of freedom. A misfit is nearly straight within a group and doesn't count as scatter; a
+    /// group with a reversal or a spike is left out. Groups of two or three rows have no line of their own:
+    /// along a path, second differences of three rows at a time replace them.
     pub(crate) fn within(&self, residual: &[f64]) -> (f64, f64) {
         let bounded = self.bounded(residual);
         let mut all: Vec<Scatter> = self.scatters(&bounded).into_iter().flatten().collect();
@@ -108,7 +115,8 @@ impl Averaged {
         kept.fold((0.0, 0.0), |(sum, freedom), one| (sum + one.sum, freedom + one.freedom))
     }
 
-    /// The scatter of each group as [`Averaged::within`] takes it; none of those that are left out there or have no line.
+    /// The scatter of each group as in [`Averaged::within`]; none for groups that are left out there or have
+    /// no line.
     pub(crate) fn within_each(&self, residual: &[f64]) -> Vec<Option<Scatter>> {
         let found = self.scatters(&self.bounded(residual));
         let is_usual = usual(&found.iter().flatten().copied().collect::<Vec<_>>());
@@ -122,7 +130,7 @@ impl Averaged {
     }
 }
 
-/// Whether something scatters as most do, or as chance may make it.
+/// Whether the scatter of a group is within chance of the usual one.
 fn usual(all: &[Scatter]) -> impl Fn(&Scatter) -> bool + use<> {
     let mut sorted: Vec<&Scatter> = all.iter().collect();
     sorted.sort_by(|a, b| (a.sum / a.freedom).total_cmp(&(b.sum / b.freedom)));
@@ -131,13 +139,15 @@ fn usual(all: &[Scatter]) -> impl Fn(&Scatter) -> bool + use<> {
     move |one| one.sum <= middle * one.freedom * of_freedom(one.freedom, ODD[1]).max(ODD[0])
 }
 
-/// Quantile of chi-squared over its degrees of freedom, at that of a normal number (Wilson and Hilferty 1931).
+/// Quantile of chi-squared over its degrees of freedom, at the probability of a normal quantile (Wilson and
+/// Hilferty 1931).
 fn of_freedom(freedom: f64, normal: f64) -> f64 {
     let spread = 2.0 / (9.0 * freedom);
     (1.0 - spread + normal * spread.sqrt()).powi(3)
 }
 
-/// Sum of squares of a group about its line (of two or three rows about their mean), with its degrees of freedom.
+/// Sum of squares of a group about its line (for two or three rows about their mean), with its degrees of
+/// freedom.
 fn scatter(group: &[usize], residual: &[f64]) -> Option<Scatter> {
     let n = group.len() as f64;
     let middle = mean(group, residual);
@@ -154,14 +164,16 @@ fn scatter(group: &[usize], residual: &[f64]) -> Option<Scatter> {
     }
 }
 
-/// The rows of the first cycles of each sweep, where there are so many that their means would hide the shape of the loop; none if there are fewer.
+/// The rows of the first cycles of each sweep; none if a record has few enough cycles that their means keep
+/// the shape of the loop.
 ///
-/// Means of several cycles would have no history of their own, and later cycles without those before them a wrong one.
+/// Means over several cycles would have no history of their own, and later cycles without the earlier ones a
+/// wrong history.
 fn first_cycles(record: &Record, used: &[bool], levels: &Levels) -> Option<Vec<bool>> {
     let moments = record.moments();
     let of_sweep = |sweep: &Range<usize>| -> Vec<(usize, usize)> {
         let rows: Vec<usize> = sweep.clone().filter(|row| used[*row]).collect();
-        // First row of each way, and the rows that it has.
+        // First row of each stroke, and its number of rows.
         ways(&rows, record, levels).map(|run| (run[0], run.len())).collect()
     };
     let ways: Vec<Vec<(usize, usize)>> = record.sweeps().iter().map(of_sweep).collect();
@@ -190,7 +202,7 @@ fn first_cycles(record: &Record, used: &[bool], levels: &Levels) -> Option<Vec<b
     Some(kept)
 }
 
-/// Means for each way from one reversal to the next.
+/// Number of means for each stroke from one reversal to the next.
 fn parts_of_ways(record: &Record, used: &[bool], levels: &Levels) -> usize {
     let ways = |sweep: &Range<usize>| {
         let rows: Vec<usize> = sweep.clone().filter(|row| used[*row]).collect();
@@ -201,7 +213,8 @@ fn parts_of_ways(record: &Record, used: &[bool], levels: &Levels) -> usize {
 }
 
 impl Averaged {
-    /// Residuals of which none is far off the path of its neighbours, see [`tails::bounded`]. In a static map rows have no neighbours.
+    /// Residuals with bounded outliers, see [`tails::bounded`]. In a static map rows have no neighbours, so
+    /// nothing is bounded.
     fn bounded(&self, residual: &[f64]) -> Vec<f64> {
         let rows = |stretch: &Range<usize>| self.groups[stretch.clone()].iter().flatten().copied().collect();
         tails::bounded(residual, &self.stretches.iter().map(rows).collect::<Vec<_>>())
@@ -264,7 +277,7 @@ mod tests {
         assert!((averaged.counts().sum::<f64>() - 1000.0).abs() < 1e-9);
         for (moment, force) in averaged.record.moments().iter().zip(averaged.record.force()) {
             assert!((moment.direction.abs() - 1.0).abs() < 1e-15);
-            // A straight line is its own mean.
+            // The mean of points on a straight line lies on the line.
             assert!((force - 1000.0 * moment.contraction).abs() < 1e-9);
         }
     }
@@ -274,7 +287,7 @@ mod tests {
         let record = triangle(1000);
         let levels = Levels::of(&record, &vec![true; 1000]);
         let averaged = Averaged::of(&record, &vec![true; 1000], &levels, 100).unwrap();
-        // A trend, a turn of friction at the reversal with a transition, and noise of +-1.
+        // A trend, friction that changes sign at the reversal with a transition, and noise of +-1.
         let noise = |row: usize| (f64::from(u32::try_from(row).unwrap()) * 12.9898).sin() * 43_758.545_3;
         let mut residual: Vec<f64> = (0..1000)
             .map(|row| {
@@ -293,12 +306,12 @@ mod tests {
             let off = bounded[row] - clean[row];
             match row {
                 100 | 300 | 700 => assert!(off < 6.0, "{row}: {off}"),
-                // Within a transition it may rise as far as that does.
+                // Within the transition, the outlier may stay as high as the transition reaches.
                 502 => assert!((0.0..=50.0).contains(&off), "{off}"),
                 _ => assert!(off.abs() < 1e-12, "{row}: {off}"),
             }
         }
-        // Without order nothing is known of neighbours.
+        // Without an order of the rows, outliers can't be detected.
         let mut moments = record.moments().to_vec();
         for moment in &mut moments {
             moment.direction = 0.0;
@@ -337,7 +350,7 @@ mod tests {
 
     #[test]
     fn long_tests_keep_their_first_cycles_whole() {
-        // Two sweeps of 120 cycles: 480 ways of 16 means are more than 5000.
+        // Two sweeps of 120 cycles have 480 strokes; 16 means each are more than 5000.
         let moments: Vec<Moment> = cycles(120).into_iter().chain(cycles(120)).collect();
         let n = moments.len();
         let force = moments.iter().map(|m| 1000.0 * m.contraction).collect();
@@ -347,7 +360,7 @@ mod tests {
         let (means, sweeps) = (averaged.record.moments(), averaged.record.sweeps());
         assert!(means.len() <= MOST_PARTS && means.len() > MOST_PARTS - 100, "{}", means.len());
         for (sweep, first) in sweeps.iter().zip([0, n / 2]) {
-            // Row by row from the first on, none left out, none of two ways.
+            // Consecutive rows from the first one on, none left out, and no mean over two strokes.
             let rows: Vec<usize> = averaged.groups[sweep.clone()].iter().flatten().copied().collect();
             assert!(rows.iter().copied().eq(first..first + rows.len()));
             assert_eq!((rows.len() % 200, rows.len() / 200 >= 3), (0, true));
@@ -359,7 +372,7 @@ mod tests {
 
     #[test]
     fn many_cycles_keep_the_shape_of_each_and_a_misfit_is_no_scatter() {
-        // A misfit of 100 N over the stroke, friction that jumps at reversals, 1.2 N of noise.
+        // A misfit of 100 N over the stroke, friction that jumps at reversals, and 1.2 N of noise.
         let moments = cycles(100);
         let mut random = bulge_numerics::Random::new(4, 0);
         let misfit = |m: &Moment| 100.0 * (8.0 * m.contraction).exp().recip() - 14.0 * m.direction;
@@ -368,7 +381,7 @@ mod tests {
         let used = vec![true; record.len()];
         let levels = Levels::of(&record, &used);
         let averaged = Averaged::of(&record, &used, &levels, 300).unwrap();
-        // 200 ways of 16 means each.
+        // 200 strokes of 16 means each.
         assert!((3_200..3_300).contains(&averaged.groups.len()), "{}", averaged.groups.len());
         let (sum, freedom) = averaged.within(record.force());
         let sd = (sum / freedom).sqrt();

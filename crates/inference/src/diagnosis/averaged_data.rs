@@ -1,4 +1,4 @@
-//! What models are tried on: means of the rows, and what is known of their noise.
+//! The data on which models are tried: means of the rows, and their noise.
 
 use bulge_model::{ModelError, Record, Wanted, Warm};
 
@@ -16,28 +16,29 @@ use crate::median::median;
 use crate::noise::law::{NoiseLaw, NoiseSource};
 use crate::noise::whitening::Whitening;
 
-/// Means of rows on which models are tried.
+/// Number of means on which models are tried.
 const MOST_ROWS: usize = 2500;
-/// Part of the variance below which a law about a better model is another law.
+/// The noise law about a better model replaces the old one if its variance is below this fraction of the old
+/// variance.
 const LESS_NOISE: f64 = 0.7;
-/// Part of it by which means may move, on average, without another search.
+/// The search is repeated if the means move by more than this fraction of the variance (mean square).
 const MOVED: f64 = 0.1;
 
-/// Means of rows that models are tried on, and what is known of their noise.
+/// Means of rows on which models are tried, and their noise.
 pub(crate) struct AveragedData {
     pub(crate) averaged: Averaged,
     pub(crate) record: Record,
     input_variances: Vec<f64>,
-    /// Mean variance of a single row from noise of the inputs that data sheets state \[N^2\].
+    /// Typical variance of a single row from input noise that data sheets state \[N^2\].
     stated: f64,
-    /// Variance of single rows about their means \[N^2\]; none where each is its own mean.
+    /// Variance of single rows about their means \[N^2\]; none if each row is its own mean.
     within: Option<f64>,
     pub(crate) law: Option<NoiseLaw>,
-    /// Of the law; of white noise without one.
+    /// Whitening by the law, or by unit white noise if there is no law.
     whitening: Whitening,
 }
 
-/// Why a diagnosis has to stop.
+/// Reasons why a diagnosis stops.
 pub(crate) enum Stop {
     Error(InferenceError),
     /// The base has no state at these rows of the record.
@@ -45,7 +46,7 @@ pub(crate) enum Stop {
 }
 
 impl Stop {
-    /// An error at means of rows.
+    /// The reason for an error at means of rows.
     pub(crate) fn at_means(error: ModelError, averaged: &Averaged, analysis: &Analysis<'_>) -> Self {
         match &error {
             ModelError::NoEquilibrium { rows, .. } | ModelError::NotFinite { rows, .. }
@@ -67,7 +68,7 @@ impl<E: Into<InferenceError>> From<E> for Stop {
 }
 
 impl AveragedData {
-    /// What models are tried with; `fits` are those made under this law.
+    /// The context for trying models; `fits` are those made under this law.
     pub(crate) fn context<'a>(
         &'a self,
         law: &'a NoiseLaw,
@@ -90,12 +91,12 @@ impl AveragedData {
         }
     }
 
-    /// Variances of the means on top of the law's white one \[N^2\].
+    /// Variances of the means in addition to the law's white one \[N^2\].
     pub(crate) fn input_variances(&self) -> &[f64] {
         &self.input_variances
     }
 
-    /// Variance of a mean as the law says it \[N^2\].
+    /// Variance of a mean under the law \[N^2\].
     fn variance(&self) -> f64 {
         let inputs = median(&mut self.input_variances.clone());
         self.law.as_ref().map_or(f64::INFINITY, |law| {
@@ -104,7 +105,7 @@ impl AveragedData {
     }
 }
 
-/// The averaged data about the best model of a search, where that changes what is known of the noise, or what the means are.
+/// The averaged data about the best model of a search, if the noise is much smaller there or the means move.
 pub(crate) fn averaged_data_again(
     analysis: &Analysis<'_>,
     search: &Search,
@@ -125,7 +126,7 @@ pub(crate) fn averaged_data_again(
     (again.variance() < LESS_NOISE * before.variance() || moved > MOVED * again.variance()).then_some(again)
 }
 
-/// Means, their forces, and their noise under a model that is about right.
+/// The means, their forces, and their noise, under a model that is approximately right.
 pub(crate) fn averaged_data(
     analysis: &Analysis<'_>,
     base: &Climbed,
@@ -145,11 +146,13 @@ pub(crate) fn averaged_data(
         }
     };
     let at_means = whole(&averaged.record)?;
+    // Only checks that the model has a state at every set point.
     whole(&setpoints(&averaged.record))?;
     let forces = averaged.forces(&analysis.record, &base.force, &at_means.force);
     let record = averaged.record.clone().with_force(forces);
     let noise = analysis.noise;
     let slopes = at_means.by_pressure.iter().zip(&at_means.by_contraction);
+    // Errors of pressure and contraction act through the slopes of the force and average out within a mean.
     let input_variances: Vec<f64> = slopes
         .zip(averaged.counts())
         .enumerate()
@@ -185,7 +188,8 @@ pub(crate) fn averaged_data(
     Ok(AveragedData { averaged, record, input_variances, stated, within, law, whitening })
 }
 
-/// Variances by which the means differ, on top of what they share \[N^2\]: a mean of fewer rows knows less, and a file may state a scatter for each row.
+/// Variances of the means in addition to their common one \[N^2\]: a mean of fewer rows has a larger
+/// variance, and a file may state a scatter for each row.
 fn unequal(averaged: &Averaged, counts: &[f64], within: f64, stated: Option<&[f64]>) -> Vec<f64> {
     let most = counts.iter().copied().fold(1.0, f64::max);
     let squares = stated.map(|sd| averaged.means(&sd.iter().map(|sd| sd * sd).collect::<Vec<_>>()));
@@ -197,7 +201,7 @@ fn unequal(averaged: &Averaged, counts: &[f64], within: f64, stated: Option<&[f6
     counts.iter().enumerate().map(of).collect()
 }
 
-/// Rows that count as independent: as many single rows as would know a constant as well as the means do.
+/// Effective number of independent rows: so many single rows determine a constant as well as the means do.
 pub(crate) fn effective_rows(context: &Context<'_>, averaged_data: &AveragedData, sd_n: f64) -> f64 {
     let law = context.law;
     let inputs = median(&mut averaged_data.input_variances.clone());
@@ -206,23 +210,26 @@ pub(crate) fn effective_rows(context: &Context<'_>, averaged_data: &AveragedData
     if of_mean > 0.0 { (context.whitening.effective_rows() * sd_n * sd_n / of_mean).min(rows) } else { rows }
 }
 
-/// Standard deviation of a single row: the law of the means, what the means have averaged, and what noise of pressure and contraction makes of it.
+/// Standard deviation of a single row: from the law of the means, the scatter that the means have averaged,
+/// and noise of pressure and contraction.
 pub(crate) fn row_sd(law: &NoiseLaw, averaged_data: &AveragedData) -> f64 {
     (white_of_row(law, averaged_data) + law.correlated_n.powi(2) + law.offset_n.powi(2)).sqrt()
 }
 
-/// Variance of a single row without what it shares with its neighbours \[N^2\].
+/// Variance of a single row without the noise that it shares with its neighbours \[N^2\].
 fn white_of_row(law: &NoiseLaw, averaged_data: &AveragedData) -> f64 {
     let counts: Vec<f64> = averaged_data.averaged.counts().collect();
     let inputs = variance_of_rows(&averaged_data.input_variances, &counts);
     let own = law.white_n.powi(2) + inputs;
-    // Rows scatter by no more than their means do: where few rows are a mean, what bends from row to row is in their scatter too.
+    // The scatter of rows includes curvature from row to row if few rows form a mean, so the variance of the
+    // means is an upper bound.
     let most = counts.iter().copied().fold(1.0, f64::max);
     let of_means = law.white_n.powi(2) * most + inputs;
     averaged_data.within.map_or(own, |within| within.min(of_means).max(own))
 }
 
-/// Median variance of single rows from those of means: that of rows in doubt is not the rule.
+/// Median variance of single rows, from those of the means. The median disregards rows of uncertain
+/// direction.
 fn variance_of_rows(variances: &[f64], counts: &[f64]) -> f64 {
     let mut of_rows: Vec<f64> =
         variances.iter().zip(counts).map(|(variance, count)| variance * count).collect();

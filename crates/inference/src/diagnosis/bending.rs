@@ -1,4 +1,5 @@
-//! In which ways the formula of an effect may be wrong: columns along the state, at turns, and of kin.
+//! Form errors of an effect, the ways in which its formula may be wrong: columns along the state, along its
+//! drive, at turns, and from related effects.
 //!
 //! ```text
 //! F = F(theta) + sum over groups g of sd_g B_g c_g,    c ~ N(0, 1)
@@ -8,7 +9,8 @@
 //! at turns:         3 s exp(-way/l),  way since the last reversal, to the next, since the beginning of a sweep;  3 s exp(-|rate|/(q fastest))
 //! of kin:           |s| u,  u of length 1: other forms of the effect, what isn't in proportion to its sizes, other members of its family
 //! ```
-//! No real effect obeys a formula exactly: rubber has two constants, friction rounds off at a turn. What a formula leaves must not be taken for another effect.
+//! No real effect obeys a formula exactly: rubber has two constants, and friction rounds off at a turn. The
+//! misfit that a formula leaves must not be taken for another effect.
 
 use bulge_effects::{Catalogue, Effect, Form, Mechanism, Needs, ParameterCard, Stage};
 use bulge_model::{ModelError, Wanted};
@@ -23,40 +25,43 @@ use crate::diagnosis::tangents::Tangents;
 use crate::dot::dot;
 use crate::fit::nuisance::Prepared;
 
-/// Size of the columns along the state: a form error of one standard deviation bends the effect by about that part of it.
+/// Size of the columns along the state: a form error of one standard deviation changes the effect by about
+/// that fraction of it.
 const ALONG: f64 = 1.4;
-/// Highest degrees over what is driven and over what is held, and the sum in which a degree of the latter counts as that many of the former.
+/// Highest degrees in the driven and in the held variable; the next two constants weight a degree of the
+/// latter and bound the weighted sum.
 const DEGREES: [usize; 2] = [4, 2];
 const HELD_WEIGHT: f64 = 1.5;
 const TOTAL: f64 = 4.0;
-/// How much the two strokes may differ, as a part of what may vary along the state.
+/// Difference between the two strokes, relative to the variation along the state.
 const BY_STROKE: f64 = 0.5;
-/// Highest degree over what drives an effect.
+/// Highest degree in the variable that drives an effect.
 const DRIVEN: usize = 3;
-/// At a turn friction is anything between -s and s, on few rows.
+/// At a turn, friction is anything between -s and s, on few rows.
 const AT_TURNS: f64 = 3.0;
-/// Lengths of transitions at turns, as parts of the stroke, and speeds, as parts of the fastest.
+/// Lengths of transitions at turns, as fractions of the stroke; then speeds, as fractions of the fastest.
 const LENGTHS: [f64; 4] = [0.003, 0.012, 0.05, 0.15];
 const SPEEDS: [f64; 4] = [0.012, 0.04, 0.12, 0.5];
-/// Values of each number that is no size, over what is plausible; fewer where each takes new equilibria.
+/// Number of values, over the plausible range, of each parameter that isn't a size; fewer if each value needs
+/// new equilibria.
 const FORMS: [usize; 2] = [6, 3];
-/// Multiples of the sizes at which an effect is looked at that isn't in proportion to them, likewise.
+/// Multiples of the sizes at which a nonlinear effect is evaluated; fewer if each needs new equilibria.
 const MULTIPLES: [&[f64]; 2] = [&[0.4, 0.7, 1.5, 2.5], &[0.5, 2.0]];
-/// A change out of proportion that is smaller than this part of the effect is rounding.
+/// A deviation from proportionality below this fraction of the effect is rounding error.
 const OUT_OF_PROPORTION: f64 = 1e-3;
 /// Most columns of another member of the family.
 const OF_MEMBER: usize = 4;
 
-/// Which form error a column belongs to: each has a standard deviation of its own.
+/// Kind of a form error; each kind has a standard deviation of its own.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Kind {
     /// Along the state.
     State,
-    /// Along what drives the effect.
+    /// Along the variable that drives the effect.
     Drive,
     /// At turns.
     Turn,
-    /// Of kin.
+    /// From related effects: other forms, nonlinearity in the sizes, other members of the family.
     Kin,
 }
 
@@ -64,22 +69,24 @@ impl Kind {
     pub(crate) const ALL: [Self; 4] = [Self::State, Self::Drive, Self::Turn, Self::Kin];
 }
 
-/// Columns of kin by the name of their effect: they hardly depend on what stands beside it, and take equilibria of their own.
+/// Kin columns by the name of their effect. They are kept because they hardly depend on the other effects and
+/// need equilibria of their own.
 pub(crate) type Kin = BTreeMap<String, Arc<Vec<Vec<f64>>>>;
 
 /// The columns of one effect.
 pub(crate) struct Bending {
     pub(crate) effect: Arc<dyn Effect>,
-    /// What the effect changes, by the catalogue's formula \[N\].
+    /// Change of the force by the effect, by the catalogue's formula \[N\].
     pub(crate) change: Vec<f64>,
-    /// Form errors of one standard deviation, for those along the state and at turns \[N\]; those of kin have a direction only.
+    /// Form errors of one standard deviation along the state, along the drive and at turns \[N\]; those of
+    /// kin only define a direction.
     pub(crate) columns: Vec<(Kind, Vec<f64>)>,
-    /// Those of kin.
+    /// The columns of kin.
     pub(crate) kin: Arc<Vec<Vec<f64>>>,
 }
 
-/// The columns of all effects of a model whose formulas may be wrong; `tangent` is of the same model at the same numbers, `kin` are
-/// columns that are known already.
+/// The columns of all effects of a model whose formulas may be wrong. `tangent` belongs to the same model at
+/// the same parameters; `kin` are columns that are known already.
 pub(crate) fn bendings(
     catalogue: &Catalogue,
     prepared: &Prepared,
@@ -104,7 +111,7 @@ fn inexact(prepared: &Prepared) -> impl Iterator<Item = &Arc<dyn Effect>> {
     chosen.filter(|effect| effect.card().form != Form::Exact && is_asked(prepared, effect.card().name))
 }
 
-/// Whether an effect is more than what data sheets leave open.
+/// Whether an effect is more than a nuisance from data sheets.
 fn is_asked(prepared: &Prepared, name: &str) -> bool {
     let numbers = prepared.model.parameters().iter().zip(&prepared.nuisance);
     numbers.filter(|(p, _)| p.effect == name).any(|(_, nuisance)| !nuisance)
@@ -114,7 +121,7 @@ fn driven_weight(degree: usize) -> f64 {
     (-0.5 * (degree as f64 - 1.0)).exp()
 }
 
-/// An effect of a model at its numbers.
+/// An effect of a model at its parameters.
 struct Bent<'a> {
     catalogue: &'a Catalogue,
     prepared: &'a Prepared,
@@ -123,10 +130,10 @@ struct Bent<'a> {
     effect: &'a Arc<dyn Effect>,
 }
 
-/// A number of the effect in the model.
+/// A parameter of the effect in the model.
 struct Number<'a> {
     index: usize,
-    /// Where it is a size: the value at which the effect is off.
+    /// For a size: the value at which the effect is off.
     off: Option<f64>,
     card: ParameterCard<'a>,
 }
@@ -156,7 +163,7 @@ impl Bent<'_> {
         Some(Bending { effect: Arc::clone(self.effect), change, columns, kin })
     }
 
-    /// The numbers of the effect.
+    /// The parameters of the effect.
     fn numbers(&self) -> Vec<Number<'_>> {
         let (card, model) = (self.effect.card(), &self.prepared.model);
         let cards: Vec<_> = self.effect.parameters().into_iter().map(|c| c.of(model.muscle())).collect();
@@ -174,7 +181,8 @@ impl Bent<'_> {
         Ok(model.evaluate_warm(&tangent.set, theta, &Wanted::default(), &tangent.warm.shared())?.force)
     }
 
-    /// What the effect changes, and the force without it, if there is one: else the change is that in first order.
+    /// Change of the force by the effect, and the force without it if there is one; otherwise the change is
+    /// the one to first order.
     fn change(&self) -> Option<(Vec<f64>, Option<Vec<f64>>)> {
         let sizes: Vec<(usize, f64)> =
             self.numbers().iter().filter_map(|number| Some((number.index, number.off?))).collect();
@@ -204,7 +212,7 @@ impl Bent<'_> {
     fn along_state(&self, change: &[f64]) -> Vec<Vec<f64>> {
         let set = &self.tangent.set;
         let (contraction, pressure) = (scaled(set, |m| m.contraction), scaled(set, |m| m.pressure));
-        // At held lengths the pressure is what runs.
+        // At held lengths the pressure is the driven variable.
         let is_held = drives_pressure(set) && set.moments().iter().all(|m| m.direction == 0.0);
         let [x, y] = if is_held { [pressure, contraction] } else { [contraction, pressure] };
         let total = |i: usize, j: usize| i as f64 + HELD_WEIGHT * j as f64;
@@ -236,7 +244,7 @@ impl Bent<'_> {
         columns
     }
 
-    /// An effect is a function of what drives it first of all: give of a rig one of the force, viscosity one of the speed.
+    /// An effect depends above all on its drive: compliance of the rig on the force, viscosity on the speed.
     fn along_drive(&self, change: &[f64]) -> Vec<Vec<f64>> {
         let (set, force) = (&self.tangent.set, &self.tangent.force_as_set);
         let moments = set.moments();
@@ -260,14 +268,15 @@ impl Bent<'_> {
         (1..=DRIVEN).map(column).collect()
     }
 
-    /// Another temperature at which there is no change: the change of a gain, of the size of the effect.
+    /// A shift of the temperature at which the effect vanishes. It acts like a gain, with the size of the
+    /// effect.
     fn at_another_zero(&self, change: &[f64], off: Option<&[f64]>) -> Option<Vec<f64>> {
         let off = off.filter(|_| self.effect.card().needs == Needs::Temperature)?;
         let scale = (dot(change, change) / dot(off, off).max(f64::MIN_POSITIVE)).sqrt();
         Some(off.iter().map(|force| scale * force).collect())
     }
 
-    /// Friction alone has layers at turns.
+    /// Layers at turns, which only friction has.
     fn at_turns(&self, change: &[f64]) -> Vec<Vec<f64>> {
         let (card, set) = (self.effect.card(), &self.tangent.set);
         if card.mechanism != Mechanism::DryFriction && card.name != "valve-hysteresis" || !set.is_path() {
@@ -289,7 +298,7 @@ impl Bent<'_> {
         columns
     }
 
-    /// Other forms of the effect, what is out of proportion, and other members of its family.
+    /// Other forms of the effect, its deviation from proportionality, and other members of its family.
     fn of_kin(&self, change: &[f64], off: Option<&[f64]>) -> Vec<Vec<f64>> {
         let mut columns = Vec::new();
         let Some(off) = off else { return columns };

@@ -1,4 +1,5 @@
-//! Candidates in the coordinates of the screen: what each effect could explain, alone and in pairs, and what it would cost to believe in it.
+//! Candidates in the coordinates of the screen: what each effect could explain, alone and in pairs, and the
+//! prior cost of assuming it.
 //!
 //! ```text
 //! S_e = max over forms of |z|^2 - |z - s_e a|^2,    a of the sign that the effect can have
@@ -9,42 +10,44 @@ use crate::diagnosis::sensitivity::{Sensitivities, Sensitivity, Sign, Size};
 use crate::diagnosis::space::{Space, norm};
 use crate::dot::dot;
 
-/// Sizes from this part of the literature's scale up are equally likely per decade.
+/// The prior of a size is uniform per decade from this fraction of the literature's scale
 const SMALLEST: f64 = 1e-3;
-/// Up to this multiple of it; beyond, the density falls with the square.
+/// up to this multiple of it; beyond, the density falls with the square.
 const LARGEST: f64 = 3.0;
-/// Columns with signs of which all combinations are tried.
+/// Most sign-constrained columns for which all combinations are tried.
 const MOST_SIGNED: usize = 6;
-/// A column of which less than this part is left without the model's own numbers is one of them.
+/// A column counts as part of the model's own tangents if less than this fraction remains outside them.
 const VISIBLE: f64 = 1e-4;
 
-/// One way in which an effect may show, in coordinates.
+/// One form of an effect, in coordinates.
 #[derive(Debug, Clone)]
 pub(crate) struct Candidate {
-    /// Place of the effect.
+    /// Index of the effect.
     pub(crate) effect: usize,
-    /// Place of its sensitivity.
+    /// Index of its sensitivity.
     pub(crate) sensitivity: usize,
     pub(crate) columns: Vec<Vec<f64>>,
     pub(crate) sizes: Vec<Size>,
     pub(crate) whole: bool,
-    /// Part of the column that the model's own numbers can compensate, c_e = 1 - |s_e|^2/|K^-1/2 dF/dA|^2.
+    /// Fraction of the column that the model's own parameters can compensate, c_e = 1 - |s_e|^2/|K^-1/2
+    /// dF/dA|^2.
     pub(crate) compensated: f64,
     /// Log of the number of forms of the effect.
     log_forms: f64,
 }
 
-/// What a set of columns explains.
+/// The part of the misfit that a set of columns explains.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Explained {
-    /// Fall of the square of the misfit.
+    /// Decrease of the squared misfit.
     pub(crate) gain: f64,
-    /// Sizes, deviations from `off`; 0 where the sign forbids one.
+    /// Sizes as deviations from `off`; 0 if the sign constraint forbids one.
     pub(crate) sizes: Vec<f64>,
 }
 
 impl Candidate {
-    /// All sensitivities in the coordinates of a space; `whiten` whitens a column and adds zeros for the priors.
+    /// All sensitivities in the coordinates of a space. `whiten` whitens a column and appends zeros for the
+    /// priors.
     pub(crate) fn all(
         sensitivities: &Sensitivities,
         space: &mut Space,
@@ -82,7 +85,7 @@ impl Candidate {
         all
     }
 
-    /// The same in other coordinates.
+    /// The candidate in other coordinates.
     pub(crate) fn with_columns(&self, columns: Vec<Vec<f64>>) -> Self {
         Self { columns, ..self.clone() }
     }
@@ -93,23 +96,23 @@ impl Candidate {
         Self { effect: 0, sensitivity: 0, columns, sizes, whole: false, compensated: 0.0, log_forms: 0.0 }
     }
 
-    /// What it explains of z alone.
+    /// The part of z that the candidate explains alone.
     pub(crate) fn explains(&self, z: &[f64]) -> Explained {
         explained(&[self], z)
     }
 
-    /// Log evidence over that of the model without it.
+    /// Log evidence relative to the model without it.
     pub(crate) fn log_evidence(&self, explained: &Explained) -> f64 {
         log_evidence(&[self], explained)
     }
 
-    /// Detectability of a deviation `size` of its first number from `off`: its length in sigma.
+    /// Detectability of a deviation `size` of its first parameter from `off`: its length in sigmas.
     pub(crate) fn detectability(&self, size: f64) -> f64 {
         self.columns.first().map_or(0.0, |column| size.abs() * norm(column))
     }
 }
 
-/// What several candidates explain together.
+/// The part of z that several candidates explain together.
 pub(crate) fn explained(together: &[&Candidate], z: &[f64]) -> Explained {
     let columns: Vec<&[f64]> = together.iter().flat_map(|c| c.columns.iter().map(Vec::as_slice)).collect();
     let signs: Vec<Sign> = together.iter().flat_map(|c| c.sizes.iter().map(|size| size.sign)).collect();
@@ -118,7 +121,7 @@ pub(crate) fn explained(together: &[&Candidate], z: &[f64]) -> Explained {
         let (gain, sizes) = signed_least_squares(&columns, &signs, z);
         return Explained { gain, sizes };
     }
-    // What is there as a whole is taken away first.
+    // Effects without a free size are subtracted first.
     let mut left = z.to_vec();
     for (column, _) in columns.iter().zip(&wholes).filter(|(_, whole)| **whole) {
         left.resize(left.len().max(column.len()), 0.0);
@@ -138,7 +141,7 @@ pub(crate) fn explained(together: &[&Candidate], z: &[f64]) -> Explained {
     Explained { gain: dot(z, z) - dot(&left, &left) + rest, sizes }
 }
 
-/// Log evidence of several candidates over that of the model without them.
+/// Log evidence of several candidates relative to the model without them.
 pub(crate) fn log_evidence(together: &[&Candidate], explained: &Explained) -> f64 {
     let mut log = 0.5 * explained.gain;
     let mut active: Vec<&[f64]> = Vec::new();
@@ -151,7 +154,8 @@ pub(crate) fn log_evidence(together: &[&Candidate], explained: &Explained) -> f6
             if candidate.whole || value == 0.0 {
                 continue;
             }
-            // A size below one standard deviation is as likely as one of it: the density has no peak at 0.
+            // A size below one standard deviation gets the density at one standard deviation, because the
+            // prior has no peak at 0.
             let sd = 1.0 / norm(column).max(f64::MIN_POSITIVE);
             log += log_prior(size, value.abs().max(sd)) + 0.5 * std::f64::consts::TAU.ln();
             active.push(column);
@@ -160,7 +164,8 @@ pub(crate) fn log_evidence(together: &[&Candidate], explained: &Explained) -> f6
     log - 0.5 * log_determinant(&active)
 }
 
-/// Log density of a deviation from `off`: equally likely per decade on the scale of the literature, less beyond it.
+/// Log prior density of a deviation from `off`: uniform per decade on the scale of the literature, less
+/// beyond it.
 pub(crate) fn log_prior(size: &Size, deviation: f64) -> f64 {
     let decades = (LARGEST / SMALLEST).ln() + 0.5;
     let deviation = deviation.abs().max(SMALLEST * size.scale);
@@ -177,7 +182,7 @@ fn log_determinant(columns: &[&[f64]]) -> f64 {
         .map(|column| {
             let whole = norm(column);
             let coordinates = space.enter(column);
-            // The last coordinate is the part that the columns before don't have.
+            // The last coordinate is the part outside the earlier columns.
             let own = if coordinates.len() == space.len() {
                 coordinates.last().map_or(0.0, |c| c.abs())
             } else {
@@ -188,7 +193,7 @@ fn log_determinant(columns: &[&[f64]]) -> f64 {
         .sum()
 }
 
-/// Least squares with signs: the fall of |z|^2 and the coefficients.
+/// Least squares with sign constraints: the decrease of |z|^2 and the coefficients.
 fn signed_least_squares(columns: &[&[f64]], signs: &[Sign], z: &[f64]) -> (f64, Vec<f64>) {
     match columns {
         [] => (0.0, Vec::new()),
@@ -204,7 +209,7 @@ fn signed_least_squares(columns: &[&[f64]], signs: &[Sign], z: &[f64]) -> (f64, 
             let signed: Vec<usize> = (0..columns.len()).filter(|i| signs[*i] != Sign::Any).collect();
             let tried = signed.len().min(MOST_SIGNED);
             let mut best = (0.0, vec![0.0; columns.len()]);
-            // Which of the signed ones are in: all combinations, the full one first.
+            // Try all active sets of the constrained columns, starting with the full one.
             for out in 0..1_usize << tried {
                 let is_in = |i: &usize| {
                     !signed.iter().take(tried).enumerate().any(|(bit, j)| j == i && out >> bit & 1 == 1)
@@ -232,7 +237,7 @@ fn may(sign: Sign, value: f64) -> bool {
     }
 }
 
-/// Least squares over some of the columns; none if they depend on each other.
+/// Least squares over some of the columns; none if they are linearly dependent.
 fn least_squares(columns: &[&[f64]], active: &[usize], z: &[f64]) -> Option<(f64, Vec<f64>)> {
     let k = active.len();
     let scale: Vec<f64> = active.iter().map(|i| norm(columns[*i])).collect();
@@ -303,7 +308,8 @@ mod tests {
 
     #[test]
     fn evidence_is_the_integral_over_the_prior() {
-        // One column s = 50: likelihood ratio exp(z s a - s^2 a^2/2), prior over a by quadrature.
+        // One column s = 50: likelihood ratio exp(z s a - s^2 a^2/2), with the prior of a integrated by
+        // quadrature.
         let one = candidate(&[&[50.0]], Sign::Any, false);
         let z = [8.0];
         let found = one.log_evidence(&one.explains(&z));
@@ -319,12 +325,12 @@ mod tests {
 
     #[test]
     fn the_prior_is_a_density() {
-        // Positive sizes from 0 to infinity: by substitution a = exp(t).
+        // Positive sizes from 0 to infinity, with the substitution a = exp(t).
         let sum: f64 = (-200_000..200_000)
             .map(|i| f64::from(i) * 1e-4)
             .map(|t: f64| (log_prior(&size(Sign::Positive), t.exp()) + t).exp() * 1e-4)
             .sum();
-        // Up to 10^-3: 1, then a decade each, beyond 3: 1/2.
+        // Contributions: 1 up to 10^-3, then the decades, and 1/2 beyond 3.
         let expected = (1.0 + (LARGEST / SMALLEST).ln() + 0.5) / ((LARGEST / SMALLEST).ln() + 0.5);
         assert!((sum - expected).abs() < 1e-3, "{sum} {expected}");
     }

@@ -1,4 +1,5 @@
-//! How far a claim goes: mechanism, family or form, with how sure each is, and how much the data bend the formula.
+//! Level of a claim (mechanism, family or form) with the confidence of each, and the form error that the data
+//! want.
 
 use bulge_effects::{Effect, Mechanism};
 use bulge_model::Record;
@@ -12,7 +13,7 @@ use crate::diagnosis::explained::bent_curves;
 use crate::diagnosis::form_error::Bent;
 use crate::dot::dot;
 
-/// How often a claim is right on three levels.
+/// Probability that a claim is right on three levels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Levels {
     pub(crate) mechanism: f64,
@@ -21,7 +22,8 @@ pub(crate) struct Levels {
 }
 
 impl Levels {
-    /// Of one of `named` effects: the evidence of its kin, and of what is the same on these data, among that of all rivals, and no more than what was simulated.
+    /// Confidence of one of `named` effects. It is the weight of its related effects, and of those
+    /// indistinguishable on these data, among all rivals, and at most the simulated confidence.
     pub(crate) fn of(class: &Class, simulated: &Confidence, named: usize) -> Self {
         let own = class.effect.card();
         let weights = |counts: &dyn Fn(&Rival) -> bool| -> f64 {
@@ -36,11 +38,12 @@ impl Levels {
         let mechanism = part(&|rival| is_same(rival) || is_same_mechanism(&rival.effect, &class.effect));
         let family = part(&|rival| is_same(rival) || rival.effect.card().family == own.family);
         let family = family.min(simulated.named);
-        // A user's formula without a mechanism stands for itself: what it isn't, it can't be.
+        // A user's formula without a mechanism represents itself, so a statement about it holds for its form,
+        // family and mechanism alike.
         Self { mechanism: mechanism.max(family), family, form: part(&|_| false).min(family) }
     }
 
-    /// The deepest level at which the claim is likelier right than wrong.
+    /// The most specific level at which the claim is more likely right than wrong.
     pub(crate) fn decided(self) -> Level {
         match self {
             Self { form, .. } if form >= RULE.decides => Level::Form,
@@ -51,13 +54,13 @@ impl Levels {
     }
 }
 
-/// Whether two effects are one mechanism; users' effects without one are so by family only.
+/// Whether two effects have the same mechanism; users' effects without one only share a family.
 fn is_same_mechanism(a: &Arc<dyn Effect>, b: &Arc<dyn Effect>) -> bool {
     let (a, b) = (a.card(), b.card());
     a.mechanism == b.mechanism && (a.mechanism != Mechanism::User || a.family == b.family)
 }
 
-/// How much the data bend the formula of an effect.
+/// The form error of an effect that the data want.
 pub(crate) fn form_error(record: &Record, bent: &Bent) -> FormErrorResult {
     let rows = record.len().max(1) as f64;
     let largest =
@@ -102,7 +105,8 @@ mod tests {
             detectability: 6.0,
             scatter: 1.0,
             is_further: false,
-            // One of the family, one of the mechanism, one that is the same on these data, and another.
+            // Rivals: one of the family, one of the mechanism, one that is indistinguishable on these data,
+            // and another one.
             rivals: vec![
                 rival("asymmetric-friction", 0.5, 2.0),
                 rival("pressure-friction", 1.0, 2.0),
@@ -118,7 +122,7 @@ mod tests {
         for (found, expected) in [found.mechanism, found.family, found.form].into_iter().zip(expected) {
             assert!((found - expected).abs() < 1e-12, "{found} {expected}");
         }
-        // No surer than what was simulated, and a tenth less for each further name.
+        // At most the simulated confidence, and a tenth less for each further name.
         assert!((Levels::of(&class, &simulated(0.4), 1).family - 0.4).abs() < 1e-12);
         assert!((Levels::of(&class, &simulated(1.0), 3).mechanism / found.mechanism - 0.81).abs() < 1e-12);
     }

@@ -1,4 +1,5 @@
-//! Which effects the data can't tell from a named one: rivals of the same evidence, or of a separation within the noise.
+//! Classes of effects that the data can't distinguish from a named one: rivals with similar evidence, or with
+//! a separation within the noise.
 //!
 //! ```text
 //! d_ee' = min over a' of |s_e - s_e' a'|,    s_e the whitened change of the force by e at its best numbers, without what the other numbers can do
@@ -18,36 +19,36 @@ use crate::diagnosis::space::Space;
 use crate::diagnosis::stage::{Stage, tempered};
 use crate::dot::dot;
 
-/// Rivals this far below in linear evidence aren't fitted.
+/// Rivals whose linear evidence is this far below the best are not fitted.
 const FITTED: f64 = 8.0;
 /// Most rivals that are fitted.
 const MOST: usize = 8;
 
-/// An effect that could stand in for a named one.
+/// An effect that could replace a named one.
 #[derive(Debug, Clone)]
 pub(crate) struct Rival {
     pub(crate) effect: Arc<dyn Effect>,
-    /// Log evidence over that of the model without either.
+    /// Log evidence relative to the model without either.
     pub(crate) log_evidence: f64,
-    /// Sigmas between the two, after the rival has done its best.
+    /// Sigmas between the two effects, with the rival at its best size.
     pub(crate) separation: f64,
-    /// Whether the data can't decide.
+    /// Whether the data can't decide between them.
     pub(crate) in_class: bool,
-    /// The fit, where one was made.
+    /// The fit, if one was made.
     pub(crate) fit: Option<Confirmed>,
 }
 
-/// A named effect and what stands beside it.
+/// A named effect and its rivals.
 #[derive(Debug, Clone)]
 pub(crate) struct Class {
     pub(crate) effect: Arc<dyn Effect>,
-    /// Log evidence over that of the model without it.
+    /// Log evidence relative to the model without it.
     pub(crate) log_evidence: f64,
-    /// Its length in sigmas beside the others.
+    /// Its length in sigmas beside the other effects.
     pub(crate) detectability: f64,
-    /// How much more than chance the misfit of the whole model scatters, as a ratio of variances.
+    /// Variance of the whole model's misfit relative to chance.
     pub(crate) scatter: f64,
-    /// Whether other effects were named besides.
+    /// Whether other effects are named as well.
     pub(crate) is_further: bool,
     pub(crate) rivals: Vec<Rival>,
 }
@@ -65,7 +66,8 @@ impl Class {
         }
     }
 
-    /// An effect without which there is no model at all: nothing stands beside it, and it is as long as what it made the misfit of the base fall by.
+    /// The class of an effect without which no model can be fitted. It has no rivals, and its length follows
+    /// from the decrease of the base's misfit.
     pub(crate) fn alone(stage: &Stage, place: usize, base: &Stage) -> Self {
         let effect = Arc::clone(&stage.added[place]);
         let scatter = stage.scatter();
@@ -83,8 +85,8 @@ impl Class {
 }
 
 impl Context<'_> {
-    /// The class of one of the added effects, all others staying, and the stage without it, where none was `known`; none if there is no model without it that these
-    /// data could come from.
+    /// The class of one of the added effects, with all others staying, and the stage without it if none was
+    /// `known`. None if without this effect there is no model that could have produced these data.
     pub(crate) fn class(
         &self,
         base: &Model,
@@ -124,6 +126,7 @@ impl Context<'_> {
             .filter(|h| Some(h.effects[0]) != own)
             .map(|h| {
                 let separation = plain.separation(&without.linear, h.effects[0]) / scatter.sqrt();
+                // Only rivals close to the best one or to this effect are fitted, and at most `MOST` of them.
                 let near = (h.log_evidence > best - FITTED * scatter || separation < RULE.separation)
                     && fitted < MOST;
                 fitted += usize::from(near);
@@ -139,6 +142,7 @@ impl Context<'_> {
                 let tried =
                     near.then(|| known.cloned().unwrap_or_else(|| beside.fitted(base, without, hypothesis)));
                 let fit = tried.as_ref().and_then(|tried| tried.confirmed.as_ref());
+                // If the rival has a form error, the separation takes its directions into account as well.
                 let own = fit.filter(|fit| fit.form.log_evidence > 0.0);
                 let own = own.map_or(Vec::new(), |fit| {
                     let known = Context { kin: Some(&fit.form.kin), ..*self };
@@ -168,7 +172,8 @@ impl Context<'_> {
         Some((Class { effect, log_evidence, detectability, scatter, is_further, rivals }, made))
     }
 
-    /// A stage without an effect that is no longer worth its price beside those which came after it (backward elimination).
+    /// The stage without an effect that isn't worth its prior cost any more beside later ones (backward
+    /// elimination).
     pub(crate) fn dropped(&self, base: &Model, stage: &Stage, place: usize, class: &Class) -> Option<Stage> {
         if stage.added.len() == 1 || class.log_evidence > RULE.worth[1] {
             return None;
@@ -179,7 +184,8 @@ impl Context<'_> {
         (other.adequate || !stage.adequate).then_some(other)
     }
 
-    /// A stage with the best rival instead of an effect, where that is clearly better and explains the data no less.
+    /// The stage with the best rival in place of an effect, if that is clearly better and explains the data
+    /// no less.
     pub(crate) fn swapped(&self, stage: &Stage, place: usize, class: &Class) -> Option<Stage> {
         let converged = |rival: &&Rival| rival.fit.as_ref().is_some_and(|fit| fit.converged);
         let better = |a: &&Rival, b: &&Rival| a.log_evidence.total_cmp(&b.log_evidence);
@@ -199,7 +205,8 @@ impl Context<'_> {
         (other.adequate || !stage.adequate).then_some(other)
     }
 
-    /// A model with fewer effects: from where it was `with` all, else from usual numbers; what was best with the effect may not even have an equilibrium
+    /// A model with fewer effects. The fit starts from the fit `with` all effects and, if it doesn't
+    /// converge, from usual parameters: the best parameters with the effect may not even have an equilibrium
     /// without it.
     pub(crate) fn refitted(
         &self,
@@ -241,7 +248,8 @@ impl Context<'_> {
                 tried.confirmed.as_ref().map_or(0.0, |c| without.confirmed.bent_cost() - c.bent_cost());
             tempered(tried.log_evidence, gain, scatter)
         });
-        // What is the same on these data stays, however unlikely its numbers are: priors may be wrong.
+        // A rival that is indistinguishable on these data stays, however implausible its parameters are:
+        // priors may be wrong.
         let undecided = log_evidence > named - margin
             || separation < RULE.separation && log_evidence > named - RULE.decided.max(margin)
             || separation < RULE.same;
@@ -251,14 +259,14 @@ impl Context<'_> {
         Rival { effect, log_evidence, separation, in_class, fit: tried.and_then(|tried| tried.confirmed) }
     }
 
-    /// What an effect changes \[N\], beside the model without it.
+    /// Change of the force by an effect \[N\], relative to the model without it.
     pub(crate) fn signal(&self, with: &Confirmed, without: &LinearisedModel) -> Result<Vec<f64>, ModelError> {
         let model = &with.prepared.model;
         let force = model.evaluate_warm(self.record, &with.theta, &Wanted::default(), &Warm::new())?.force;
         Ok(force.iter().zip(&without.force).map(|(with, without)| with - without).collect())
     }
 
-    /// A signal \[N\] beside a linearised model and form errors `bent` of one standard deviation \[N\].
+    /// A signal \[N\] relative to a linearised model and form errors `bent` of one standard deviation \[N\].
     pub(crate) fn beside(&self, linear: &LinearisedModel, signal: &[f64], bent: &[&Vec<f64>]) -> Beside {
         let whiten = |column: &[f64]| self.white(column, linear.priors);
         let signal = whiten(signal);
@@ -289,10 +297,11 @@ impl Context<'_> {
     }
 }
 
-/// What an effect changes, in coordinates beside form errors: what those make of it is no difference between it and another.
+/// The signal of an effect in coordinates, with form errors taken into account: what they can absorb doesn't
+/// distinguish it from another effect.
 pub(crate) struct Beside {
     signal: Vec<f64>,
-    /// Coordinates of the linearised model, and form errors with a prior each.
+    /// Number of coordinates of the linearised model, and of form errors with a prior each.
     length: usize,
     bent: usize,
     space: Space,
@@ -305,7 +314,7 @@ impl Beside {
         space.enter(&column)
     }
 
-    /// What is left of the signal when an effect does its best to stand in for it, in sigmas.
+    /// Sigmas between the signal and an effect at its best size.
     pub(crate) fn separation(&self, linear: &LinearisedModel, effect: usize) -> f64 {
         let candidates = linear.candidates.iter().filter(|c| c.effect == effect);
         if self.bent == 0 {
@@ -319,7 +328,7 @@ impl Beside {
     }
 }
 
-/// Sigmas between a signal in coordinates and the candidate that comes nearest, at its best size.
+/// Sigmas between a signal in coordinates and the nearest candidate at its best size.
 pub(crate) fn separation<'c>(signal: &[f64], candidates: impl Iterator<Item = &'c Candidate>) -> f64 {
     let most = candidates.map(|c| c.explains(signal).gain).fold(0.0, f64::max);
     (dot(signal, signal) - most).max(0.0).sqrt()
@@ -368,7 +377,8 @@ mod tests {
             context.dropped(&base, &stage, place, &class).map(|stage| stage.added[0].card().name.to_owned())
         };
         assert_eq!([dropped(0), dropped(1)], [None, Some("coulomb-friction".to_owned())]);
-        // The same model at another minimum of 40 more: what a fit with something idle found is taken.
+        // The stage is replaced by a lower minimum of its own model, which is 40 below, if a fit with an idle
+        // effect found it.
         let one = vec![Arc::clone(&stage.added[0])];
         let right = context.confirm(&base, &one, None, &[]).unwrap();
         let mut worse = context.stage(one, right.clone()).unwrap();

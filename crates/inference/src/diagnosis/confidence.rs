@@ -1,8 +1,11 @@
-//! How often a claim is right on data like these: the whole decision simulated on the user's own design, in the coordinates of the screen.
+//! Confidence of a claim on data like these: the whole decision is simulated on the user's own design, in the
+//! coordinates of the screen.
 //!
-//! A truth is drawn from what the data leave possible (nothing, or one of the effects, with a size that they allow), the misfit with its noise from that truth, and the
-//! decision is made as on the real data. Of the simulated data sets that lead to the same claim, as clearly as the real ones do, the part in which it is right is the
-//! confidence: less the chance that no effect of the catalogue is the right one.
+//! A truth is drawn from what the data leave possible: nothing, or one of the effects, with a size that they
+//! allow. The misfit with its noise follows from that truth, and the decision is made as on the real data.
+//! Among the simulated data sets that lead to the same claim, as clearly as the real ones do, the fraction of
+//! right claims is the confidence. It is reduced by the chance that no effect of the catalogue is the right
+//! one.
 
 use rayon::prelude::*;
 use serde::Serialize;
@@ -17,32 +20,35 @@ use crate::diagnosis::sensitivity::Screened;
 use crate::dot::dot;
 use bulge_numerics::Random;
 
-/// Simulated data sets.
+/// Number of simulated data sets.
 const DRAWS: usize = 4000;
-/// Data sets from one stream of random numbers.
+/// Data sets per random stream.
 const PER_STREAM: usize = 100;
-/// A claim is as clear as another if the lead of its log evidence over the next effect differs by less than this part of the lead, or this much.
+/// Two claims are equally clear if the lead of their log evidence over the next effect differs by less than
+/// this fraction of the lead, or by less than this much.
 const AS_CLEAR: [f64; 2] = [0.3, 1.0];
-/// A claim with a larger lead is as clear as one with this lead.
+/// Larger leads are treated as equal to this one.
 const CLEAR: f64 = RULE.decided;
-/// Fewest claims of the same kind from which a rate is stated.
+/// Fewest claims of the same kind for a rate.
 const ENOUGH: usize = 20;
 
 /// How often a claim is right.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Confidence {
-    /// Part of the simulated claims of this kind in which the named effect is the right one (or differs from it by less than one sigma).
+    /// Fraction of the simulated claims of this kind in which the named effect is the right one (or differs
+    /// from it by less than one sigma).
     pub named: f64,
-    /// Part in which the right one is in the class.
+    /// Fraction in which the right effect is in the class.
     pub class: f64,
     /// Wilson's 95 % interval of `named`.
     pub interval: [f64; 2],
-    /// Simulated claims of this kind.
+    /// Number of simulated claims of this kind.
     pub claims: usize,
 }
 
 impl Confidence {
-    /// Of an effect without which no model could be made to compare with: its weight among what was tried when it was added. Nothing was simulated.
+    /// Confidence of an effect without which no model could be fitted: its weight among the hypotheses tried
+    /// when it was added. Nothing is simulated.
     pub(crate) fn of_tried(tried: &[Tried], effect: &str, effects: &[Screened]) -> Self {
         let most = tried.iter().map(|t| t.log_evidence).fold(f64::NEG_INFINITY, f64::max);
         let weight = |t: &Tried| (t.log_evidence - most).exp();
@@ -55,7 +61,7 @@ impl Confidence {
     }
 }
 
-/// A truth that is possible: an effect at one of its forms, or nothing.
+/// A possible truth: an effect in one of its forms, or nothing.
 struct Truth<'a> {
     candidate: Option<&'a Candidate>,
     effect: Option<usize>,
@@ -63,9 +69,9 @@ struct Truth<'a> {
     sizes: Vec<f64>,
 }
 
-/// The confidence of a claim, beside the model without the named effect.
+/// The confidence of a claim, relative to the model without the named effect.
 ///
-/// Where something unknown remains, its scatter counts as noise: misfits are then in units of that.
+/// If something unknown remains, its scatter counts as noise, and misfits are in units of that noise.
 pub(crate) fn confidence(
     context: &Context<'_>,
     linear: &LinearisedModel,
@@ -106,7 +112,7 @@ pub(crate) fn confidence(
     let [claims, right, held] =
         counted.into_iter().fold([0; 3], |a, b| [a[0] + b[0], a[1] + b[1], a[2] + b[2]]);
     if claims < ENOUGH {
-        // The claim would hardly come again: what is left is the weight of the evidence.
+        // Hardly any simulation repeats the claim, so use the weights of the evidence instead.
         let of = |counts: &dyn Fn(&Rival) -> bool| {
             let is_one = |effect: usize| {
                 let name = linear.sensitivities.effects[effect].effect.card().name;
@@ -125,13 +131,13 @@ pub(crate) fn confidence(
     Confidence { named: part(right), class: part(held), interval, claims }
 }
 
-/// Whether a claim with one lead is as clear as one with another.
+/// Whether two leads are equally clear.
 fn is_as_clear(lead: f64, other: f64) -> bool {
     let (lead, other) = (lead.min(CLEAR), other.min(CLEAR));
     (lead - other).abs() <= (AS_CLEAR[0] * other).max(AS_CLEAR[1])
 }
 
-/// Everything that the data leave possible, with weights that add up to 1.
+/// All truths that the data leave possible, with weights that add up to 1.
 fn truths<'a>(
     linear: &'a LinearisedModel,
     z: &[f64],
@@ -153,7 +159,7 @@ fn truths<'a>(
             sizes: explained.sizes,
         });
     }
-    // Where an effect was fitted as it is, that evidence counts, shared among its forms.
+    // If an effect was fitted, use the evidence of the fit, divided among its forms.
     let mut fitted: Vec<(usize, f64)> = class
         .rivals
         .iter()
@@ -187,7 +193,7 @@ fn drawn<'t, 'a>(truths: &'t [Truth<'a>], mut left: f64) -> Option<&'t Truth<'a>
     truths.last()
 }
 
-/// A misfit as this truth would make it.
+/// A random misfit under this truth.
 fn misfit(
     context: &Context<'_>,
     linear: &LinearisedModel,
@@ -197,7 +203,7 @@ fn misfit(
     let mut z = linear.chance_of(context).draw(random);
     let Some((truth, candidate)) = truth.and_then(|t| Some((t, t.candidate?))) else { return z };
     for (column, size) in candidate.columns.iter().zip(&truth.sizes) {
-        // A size that the data allow: its own uncertainty, its sign kept.
+        // Draw the size within its uncertainty, but keep its sign.
         let sd = 1.0 / dot(column, column).sqrt().max(f64::MIN_POSITIVE);
         let mut drawn = if candidate.whole { *size } else { size + sd * random.normal() };
         if drawn * size < 0.0 {
@@ -210,19 +216,19 @@ fn misfit(
     z
 }
 
-/// What would be claimed.
+/// The claim on one data set.
 struct Claim {
     named: usize,
     /// Log evidence of each effect.
     evidence: Vec<f64>,
-    /// What the named effect would change.
+    /// Signal of the named effect.
     signal: Vec<f64>,
     /// Log evidence from which an effect counts.
     worth: f64,
 }
 
 impl Claim {
-    /// The decision on a misfit: none if nothing would be named.
+    /// The decision on a misfit; none if nothing would be named.
     fn of(linear: &LinearisedModel, null: &Null, log_priors: &[f64], worth: f64, z: &[f64]) -> Option<Self> {
         let statistics = Statistics::of(z, &linear.candidates, &[]);
         if null.chance(&statistics)[0] >= RULE.screen {
@@ -256,7 +262,7 @@ impl Claim {
         Some(Self { named, evidence, signal, worth })
     }
 
-    /// Log evidence over that of the next effect of another family, and over none.
+    /// Lead of the log evidence over the next effect of another family, and over no effect.
     fn lead(&self, linear: &LinearisedModel) -> f64 {
         let family = |effect: usize| linear.sensitivities.effects[effect].effect.card().family;
         let others = (0..self.evidence.len()).filter(|effect| family(*effect) != family(self.named));
@@ -267,7 +273,7 @@ impl Claim {
         separation(&self.signal, linear.candidates.iter().filter(|c| c.effect == effect))
     }
 
-    /// Whether the named effect is the truth, or the same as far as these data go.
+    /// Whether the named effect is the truth, or indistinguishable from it on these data.
     fn is_same(&self, linear: &LinearisedModel, truth: &Truth<'_>) -> bool {
         let family = |effect: usize| linear.sensitivities.effects[effect].effect.card().family.to_owned();
         truth.effect.is_some_and(|effect| {
@@ -305,7 +311,7 @@ mod tests {
 
     #[test]
     fn claims_are_alike_if_they_lead_by_as_much() {
-        // Within 1 below a lead of 3.3, within three tenths above, and all from 6 on.
+        // Within 1 below a lead of 3.3, within three tenths above, and all equal from 6 on.
         assert!(is_as_clear(1.9, 1.0) && !is_as_clear(2.1, 1.0));
         assert!(is_as_clear(3.1, 4.0) && is_as_clear(5.1, 4.0) && !is_as_clear(5.3, 4.0));
         assert!(is_as_clear(60.0, 9.0) && is_as_clear(4.3, 100.0) && !is_as_clear(4.1, 100.0));

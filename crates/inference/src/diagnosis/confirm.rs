@@ -1,4 +1,5 @@
-//! Hypotheses fitted as they are, not in linear approximation: bounded, whitened, from several starts, with a certificate and the evidence.
+//! Fits of hypotheses with the full model instead of its linear approximation: bounded, whitened, from
+//! several starts, with a convergence certificate and the evidence.
 //!
 //! ```text
 //! log Z = -chi^2/2 + log prior + (k/2) log 2 pi - (1/2) log |H|        (Laplace),   H = J' J + the curvature of the priors
@@ -21,39 +22,42 @@ use crate::fit::nuisance::{Prepared, with_nuisances};
 use crate::fit::problem::{FitProblem, free};
 use crate::fit::states::{is_of_rows, minimise_partly, of_start};
 
-/// Tolerance of the fits, as a part of what the residuals are: no step promises more than its square, 1e-7, of the sum of squares, and evidence counts in hundredths. In the
-/// flat valleys of effects that do nearly the same a hundred times less took five times as long.
+/// Tolerance of the fits relative to the residuals. No step promises more than its square, 1e-7, of the sum
+/// of squares, and evidence counts in hundredths. In the flat valleys of effects that do nearly the same, a
+/// tolerance a hundred times smaller took five times as long.
 const TOLERANCE: f64 = 3e-4;
 const EVALUATIONS: usize = 50;
-/// Rows on which a start is looked for from where all have a state: rows without one take the longest to be solved.
+/// Rows on which a start is sought from which all rows have a state; rows without one take the longest to
+/// solve.
 const FEW_ROWS: usize = 300;
-/// Starts that are followed to their minimum.
+/// Number of starts that are followed to their minimum.
 const FOLLOWED: usize = 2;
 
-/// A model with its effects at their best numbers.
+/// A model with its effects at their best parameters.
 #[derive(Debug, Clone)]
 pub(crate) struct Confirmed {
     pub(crate) prepared: Prepared,
     pub(crate) theta: Vec<f64>,
     pub(crate) minimum: Minimum,
-    /// Log evidence, up to a constant of the data, with that of the form errors.
+    /// Log evidence, up to a constant of the data, including that of the form errors.
     pub(crate) log_evidence: f64,
-    /// What of it implausible numbers cost.
+    /// The penalty for implausible parameters that it includes.
     pub(crate) penalty: f64,
-    /// How much the formulas of its effects are bent.
+    /// Form errors of its effects.
     pub(crate) form: FormError,
     /// Whether the best search ended in a minimum.
     pub(crate) converged: bool,
 }
 
 impl Confirmed {
-    /// The model and its numbers, for others to start from.
+    /// The model and its parameters, as a start for other fits.
     pub(crate) fn numbers(&self) -> (&Model, &[f64]) {
         (&self.prepared.model, &self.theta)
     }
 
-    /// Whether a number of these effects is at the end of all that was searched, and beyond what is plausible, or a relaxation takes longer than any sweep of the record: then it is
-    /// a spring, and in the place of one. That explains nothing.
+    /// Whether these effects have an absurd parameter: at the end of the searched range and beyond the
+    /// plausible one, or a relaxation that takes longer than any sweep of the record. The latter acts as a
+    /// spring and would only stand in for one. Such a fit explains nothing.
     pub(crate) fn is_absurd(&self, effects: &[Arc<dyn Effect>], record: &Record) -> bool {
         let model = &self.prepared.model;
         let longest = longest_sweep(record);
@@ -67,7 +71,7 @@ impl Confirmed {
         })
     }
 
-    /// Whether all sizes of these effects are off: their model is the one without them.
+    /// Whether all sizes of these effects are off, so that the model equals the one without them.
     pub(crate) fn is_idle(&self, effects: &[Arc<dyn Effect>]) -> bool {
         let model = &self.prepared.model;
         let roles = roles(model);
@@ -85,14 +89,14 @@ impl Confirmed {
         self.minimum.cost
     }
 
-    /// The same beside the form errors.
+    /// The same, reduced by what the form errors explain.
     pub(crate) fn bent_cost(&self) -> f64 {
         self.minimum.cost - self.form.fall
     }
 }
 
 impl Context<'_> {
-    /// A base model with further effects, which start where each of `starts` says: the numbers of the effects in order.
+    /// Fits a base model with further effects. Each of `starts` has the parameters of the effects in order.
     pub(crate) fn confirm(
         &self,
         base: &Model,
@@ -127,7 +131,7 @@ impl Context<'_> {
         for theta in &mut thetas {
             theta.iter_mut().zip(numbers).for_each(|(value, p)| *value = value.clamp(p.low, p.high));
         }
-        // Where bounds have made them one, one is enough.
+        // Clamping to the bounds may have made starts equal.
         let mut different: Vec<Vec<f64>> = Vec::new();
         for theta in thetas {
             if !different.contains(&theta) {
@@ -137,8 +141,8 @@ impl Context<'_> {
         self.best(prepared, &different)
     }
 
-    /// Numbers at which more rows may have a state than at a start: the minimum over those that have one there. All rows must have one in the end: a model
-    /// gains nothing by what it doesn't say.
+    /// Parameters at which more rows may have a state than at the start: the minimum over the rows that have
+    /// one there. All rows must have a state in the end, so that no model gains by having none.
     fn nearer(
         &self,
         prepared: &Prepared,
@@ -161,7 +165,8 @@ impl Context<'_> {
         Some(found.problem.theta(&found.minimum.theta))
     }
 
-    /// The starts that are nearest to the data, where there are many: those that have no state at some row are not far enough from them to be told.
+    /// The starts nearest to the data, if there are many. A start at which some row has no state has an
+    /// infinite distance.
     fn nearest<'s>(
         &self,
         prepared: &Prepared,
@@ -184,7 +189,7 @@ impl Context<'_> {
         found.into_iter().take(FOLLOWED).map(|(_, start)| start).collect()
     }
 
-    /// The least of the minima that several starts lead to.
+    /// The lowest of the minima that several starts lead to.
     fn best(&self, prepared: Prepared, starts: &[Vec<f64>]) -> Result<Confirmed, ModelError> {
         let priors = nuisance_priors(&prepared);
         let searched: Vec<Result<(Minimum, Vec<f64>), ModelError>> = self
@@ -241,13 +246,14 @@ impl Context<'_> {
         let form = self.form_error(&prepared, &theta)?.in_short();
         let penalty = penalty(&prepared, &theta);
         let log_evidence = log_evidence(&prepared, &theta, &minimum) + form.log_evidence - penalty;
-        // At a kink as at a stationary point: lower by what counts it doesn't get.
+        // A kink counts as converged: the cost can't decrease further by an amount that matters.
         let converged = minimum.certificate.converged || minimum.certificate.reason == Reason::Kink;
         Ok(Confirmed { prepared, theta, minimum, log_evidence, penalty, form, converged })
     }
 }
 
-/// Only what data sheets say is a prior of the fit: sizes of effects are free, their priors enter the evidence.
+/// Priors of the fit are only those of data sheets. Sizes of effects are free in the fit; their priors enter
+/// the evidence.
 fn nuisance_priors(prepared: &Prepared) -> Vec<Option<(f64, f64)>> {
     prepared
         .priors
@@ -264,8 +270,9 @@ fn inside(mut coordinates: Vec<f64>, bounds: &Bounds) -> Vec<f64> {
     coordinates
 }
 
-/// Laplace's approximation, each number with its prior: data sheets are normal, sizes of effects equally likely per decade, forms equally likely
-/// over what is plausible. A number that the data say nothing about costs nothing.
+/// Laplace's approximation with the prior of each parameter: normal for data sheets, uniform per decade for
+/// sizes of effects, uniform over the plausible range for forms. A parameter that the data don't inform costs
+/// nothing.
 fn log_evidence(prepared: &Prepared, theta: &[f64], minimum: &Minimum) -> f64 {
     let model = &prepared.model;
     let places = free(model);
@@ -287,7 +294,7 @@ fn log_evidence(prepared: &Prepared, theta: &[f64], minimum: &Minimum) -> f64 {
         if let Some(size) = roles[*index] {
             let deviation = value - size.off;
             if deviation == 0.0 {
-                // Off, at its bound: as if it weren't there.
+                // The size is off, at its bound, so the parameter doesn't count.
                 held[column] = true;
                 continue;
             }
@@ -311,7 +318,7 @@ fn log_evidence(prepared: &Prepared, theta: &[f64], minimum: &Minimum) -> f64 {
     log - 0.5 * log_determinant(minimum, k, &active, &curvature)
 }
 
-/// What sizes cost that no muscle has.
+/// Penalty for sizes beyond the plausible range.
 fn penalty(prepared: &Prepared, theta: &[f64]) -> f64 {
     let beyond = |(index, size): (usize, Option<Size>)| {
         let size = size.filter(|_| !prepared.nuisance[index])?;
@@ -323,7 +330,7 @@ fn penalty(prepared: &Prepared, theta: &[f64]) -> f64 {
     roles.into_iter().enumerate().filter(|(index, _)| free.contains(index)).filter_map(beyond).sum()
 }
 
-/// Square of a column of the Jacobian.
+/// Squared norm of a column of the Jacobian.
 fn column_square(minimum: &Minimum, k: usize, column: usize) -> f64 {
     (0..k).map(|row| minimum.r[row * k + column].powi(2)).sum()
 }
@@ -344,7 +351,7 @@ fn log_determinant(minimum: &Minimum, k: usize, active: &[usize], curvature: &[f
     own + 2.0 * scale.iter().map(|s| s.ln()).sum::<f64>()
 }
 
-/// For each number of a model: how it is a size of its effect, if it is one.
+/// For each parameter of a model, its size description if it is a size of an effect.
 pub(crate) fn roles(model: &Model) -> Vec<Option<Size>> {
     let mut roles = vec![None; model.parameters().len()];
     for chosen in model.effects() {
@@ -361,7 +368,8 @@ pub(crate) fn roles(model: &Model) -> Vec<Option<Size>> {
     roles
 }
 
-/// The numbers of an effect that linear sizes stand for: where a fit starts. Several, where the effect isn't in proportion to its number.
+/// Starts of a fit: parameters of an effect from the sizes of the linear approximation. There are several if
+/// the effect isn't proportional to its parameter.
 pub(crate) fn starts(
     sensitivity: &Sensitivity,
     effect: &Arc<dyn Effect>,
@@ -384,11 +392,11 @@ pub(crate) fn starts(
             let place = size.copy * cards.len() + size.place;
             let card = &cards[size.place];
             let deviation = match size.secant {
-                // F = c v^2 and the secant says c step: v^2 = deviation step.
+                // For F = c v^2 the secant estimates c step, so v^2 = deviation step.
                 Some(step) if *variant == 1 => (deviation * step).abs().sqrt().copysign(step),
                 _ => *deviation,
             };
-            // Not quite off: there a derivative may vanish.
+            // Not exactly off, where a derivative may vanish.
             let least = 1e-3 * size.scale * if size.sign == Sign::Negative { -1.0 } else { 1.0 };
             let moved = if deviation == 0.0 { least } else { deviation };
             values[place] = (size.off + moved).clamp(card.low, card.high);
@@ -433,7 +441,7 @@ mod tests {
         let without = context.confirm(&base, &[], None, &[]).unwrap();
         let with = context.confirm(&base, &[Arc::clone(offset)], None, &[]).unwrap();
         let found = with.log_evidence - without.log_evidence;
-        // The sum of squares is a parabola of the offset.
+        // The sum of squares is a parabola in the offset.
         let model = base.with(offset, None).unwrap();
         let size = roles(&model)[0].unwrap();
         let exact = base.evaluate(&record, &[], &Wanted::default()).unwrap().force;

@@ -1,4 +1,4 @@
-//! Diagnosis: the noise first, then what is missing, step by step, with an honest word on how sure that is.
+//! Diagnosis: the noise first, then the missing effects, step by step, with the confidence of the answer.
 
 use bulge_measurements::Data;
 use bulge_model::Model;
@@ -33,31 +33,31 @@ use crate::diagnosis::write::{Findings, document};
 use crate::error::InferenceError;
 use crate::progress::Progress;
 
-/// Times that rows without a state are left out.
+/// Most times that rows without a state are left out.
 const MOST_LEFT_OUT: usize = 8;
 
-/// Times that an accepted effect gives way to a better one, or to none.
+/// Most times that an accepted effect is replaced by a better one or removed.
 const MOST_CHANGES: usize = 3;
 
-/// What is diagnosed, besides muscle and data.
+/// Options of a diagnosis, besides muscle and data.
 #[derive(Debug, Clone)]
 pub struct DiagnoseOptions {
-    /// Effects that the base has (`--with`), known ones, catalogue and law.
+    /// Effects that the base has (`--with`), known effects, catalogue and law.
     pub base: Options,
-    /// Names of the effects that are looked for; none: all of the catalogue.
+    /// Names of the effects that are looked for; none means the whole catalogue.
     pub among: Option<Vec<String>>,
-    /// RMS misfit that doesn't matter \[N\]: it can take claims away, and makes none.
+    /// RMS misfit that doesn't matter \[N\]. It can withdraw claims, but never adds one.
     pub tolerance_n: Option<f64>,
     /// Seed of all random numbers.
     pub seed: u64,
-    /// What the next experiment may use; what these data used, where nothing is stated.
+    /// Limits of the next experiment; the ranges of these data if nothing is stated.
     pub limits: NextLimits,
-    /// Who is told how far it is.
+    /// Callbacks for the progress.
     pub progress: Progress,
 }
 
 impl DiagnoseOptions {
-    /// The whole catalogue, no tolerance, seed 1, nobody to tell.
+    /// The whole catalogue, no tolerance, seed 1, no progress callbacks.
     #[must_use]
     pub fn new(base: Options) -> Self {
         Self {
@@ -71,18 +71,19 @@ impl DiagnoseOptions {
     }
 }
 
-/// Which physical effect is missing in the model of a muscle, by the data.
+/// Finds the physical effect that is missing in the model of a muscle.
 ///
-/// Data that are too few are no error: the verdict is then [`crate::Verdict::CannotTell`], with the reason.
+/// Too few data are no error: the verdict is then [`crate::Verdict::CannotTell`], with the reason.
 ///
 /// # Errors
-/// See [`InferenceError`]: no rows at all, a muscle that doesn't match, an effect that doesn't fit the muscle or the data.
+/// See [`InferenceError`]: no rows at all, a muscle that doesn't match, an effect that doesn't suit the
+/// muscle or the data.
 pub fn diagnose(
     data: &Data,
     muscle: &Muscle,
     options: &DiagnoseOptions,
 ) -> Result<Diagnosis, InferenceError> {
-    // On a thread of the pool: small evaluations aren't handed over to it one by one.
+    // On a thread of the pool, so that small evaluations aren't handed over to it one by one.
     rayon::scope(|_| {
         let doubt = Doubt::of(muscle);
         let found = answered(data, [muscle, &doubt.doubted], options)?;
@@ -100,7 +101,7 @@ pub fn diagnose(
     })
 }
 
-/// The answer on a muscle, as `[stated, doubted]`.
+/// The answer for a muscle, given as `[stated, doubted]`.
 fn answered(
     data: &Data,
     muscles: [&Muscle; 2],
@@ -134,13 +135,13 @@ fn diagnosed(
     Ok(diagnosis.without(&analysis, &used))
 }
 
-/// What is found on the rows at which a base has a state, and those rows.
+/// The result of `find` on the rows at which the base has a state, and those rows.
 pub(crate) fn where_it_has_a_state<T>(
     analysis: &Analysis<'_>,
     base: &mut Climbed,
     mut find: impl FnMut(&mut Climbed, &[bool]) -> Result<T, Stop>,
 ) -> Result<(T, Vec<bool>), InferenceError> {
-    // Of rows without a state the base says nothing: what the catalogue could say there, nothing could be compared with.
+    // Without a state of the base there is no force to compare a catalogue effect with.
     let mut used = vec![false; analysis.record.len()];
     for row in analysis.with_state(&[&base.force]) {
         used[row] = true;
@@ -162,7 +163,7 @@ pub(crate) fn where_it_has_a_state<T>(
 }
 
 impl Diagnosis {
-    /// The same with a word on rows that count, and on which the base says nothing.
+    /// Adds a warning about rows that count but have no state in the base.
     fn without(mut self, analysis: &Analysis<'_>, used: &[bool]) -> Self {
         let rows: Vec<usize> = analysis.rows().filter(|row| !used[*row]).collect();
         if !rows.is_empty() {
@@ -188,7 +189,7 @@ fn on_rows(
     progress.at(0.1, "the noise");
     let model = analysis.base_with_effects().map_err(|error| analysis.about(error))?;
     let averaged_data = averaged_data(analysis, base, used, options)?;
-    // Of many rows it is large, and the means have it.
+    // The forces of many rows are large, and the means are used from here on.
     base.force = Vec::new();
     let Some(law) = &averaged_data.law else {
         let rows = averaged_data.record.len();
@@ -203,7 +204,8 @@ fn on_rows(
     };
     let first = Fits::after(None);
     let mut search = searched(&averaged_data, &averaged_data.context(law, options, Some(&first)))?;
-    // The misfit of the base is in the first law as far as no smooth function follows it: about a better model the noise is better known.
+    // The first law includes the part of the base's misfit that no smooth function follows. The residuals of
+    // a better model give a better law.
     let again = averaged_data_again(analysis, &search, &averaged_data, used, options);
     let second = Fits::after(Some(&first));
     let (averaged_data, context) = match again.as_ref().and_then(|again| Some((again, again.law.as_ref()?))) {
@@ -224,7 +226,7 @@ fn on_rows(
     concluded(analysis, (&context, averaged_data), &model, search, options)
 }
 
-/// Classes, confidence and the ladder of what a search has found.
+/// Classes, confidence and the ladder for the result of a search.
 fn concluded(
     analysis: &Analysis<'_>,
     (context, averaged_data): (&Context<'_>, &AveragedData),
@@ -235,6 +237,7 @@ fn concluded(
     let progress = &options.progress;
     progress.at(0.6, "rivals");
     let mut judged = classes(context, model, &search);
+    // The rivals may show that an effect can be dropped or swapped; the classes are then judged again.
     for _ in 0..MOST_CHANGES {
         let last = &search.stages[search.stages.len() - 1];
         let better = judged.iter().enumerate().find_map(|(place, j)| {

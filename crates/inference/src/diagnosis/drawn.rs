@@ -1,9 +1,9 @@
-//! The forms that the data want of a model's effects, as expressions that a file of effects can hold.
+//! Fitted forms of a model's effects, as expressions for a file of user-defined effects.
 //!
 //! ```text
 //! s + B c = size (E(x, y) + direction O(x, y)),   x, y contraction and pressure over their ranges, held beyond them
 //! ```
-//! E and O are polynomials of the least degree that follows the form as closely as the data know it.
+//! E and O are polynomials of the lowest degree that follows the form as closely as the data determine it.
 
 use bulge_effects::{Effect, Form, Mechanism};
 use bulge_measurements::Data;
@@ -25,29 +25,31 @@ use crate::diagnosis::setpoints::setpoints;
 use crate::dot::dot;
 use crate::error::InferenceError;
 
-/// Highest degree over contraction and pressure together, and over the pressure alone: the form errors have 4 and 2 on top of what a formula has.
+/// Highest total degree in contraction and pressure, and highest degree in the pressure. The form errors have
+/// 4 and 2, on top of those of a formula.
 const DEGREES: [usize; 2] = [7, 3];
-/// What an expression may miss, as a part of the noise of a reading: many rows see a tenth.
+/// Allowed error of an expression relative to the noise of a reading; a tenth would show in many rows.
 const UNSEEN: f64 = 0.05;
-/// Part of what may be missed that the smallest coefficients may add up to: they only make a formula long.
+/// Fraction of the allowed error that the smallest coefficients may add up to when they are dropped to
+/// shorten the formula.
 const TINY: f64 = 0.2;
-/// An expression that misses more than this part of the effect (RMS) is another effect.
+/// An expression with an RMS error above this fraction of the effect counts as another effect.
 const ANOTHER: f64 = 0.5;
-/// Singular values below this part of the largest are rounding.
+/// Singular values below this fraction of the largest one are rounding errors.
 const ROUNDING: f64 = 1e-10;
-/// Half of the 95 % interval in standard deviations.
+/// Half-width of the 95 % interval in standard deviations.
 const SURE: f64 = 1.96;
-/// The size of a written effect may be that many times what it was.
+/// Largest ratio of a written effect's size to the fitted one.
 const LARGEST: f64 = 5.0;
 
-/// The forms of a model's effects by some data.
+/// Forms of a model's effects that some data want.
 #[derive(Debug, Clone, Serialize)]
 pub struct DrawnForms {
     /// RMS error with the formulas of the catalogue, on means of rows \[N\].
     pub rmse_n: f64,
-    /// The same with the forms that the data want \[N\].
+    /// RMS error with the fitted forms, on means of rows \[N\].
     pub bent_rmse_n: f64,
-    /// One for each effect that was asked for.
+    /// One form for each requested effect.
     pub forms: Vec<DrawnForm>,
 }
 
@@ -56,22 +58,22 @@ pub struct DrawnForms {
 pub struct DrawnForm {
     /// The effect.
     pub effect: String,
-    /// How much the data bend its formula, where and with which standard deviation; none where the formula holds, or is exact.
+    /// The form error, its location and its standard deviation; none if the formula holds or is exact.
     pub form_error: Option<FormErrorResult>,
-    /// Name of the effect that is written; none where none is.
+    /// Name of the effect that is written; none if none is.
     pub written: Option<String>,
-    /// RMS of what its expression misses of the form \[N\].
+    /// RMS difference between the expression and the form \[N\].
     pub missed_n: Option<f64>,
     /// In a sentence: what is written, or why nothing is.
     pub says: String,
-    /// The effect in a file of effects; empty where none is written.
+    /// The effect as an entry of an effects file; empty if none is written.
     pub toml: String,
 }
 
-/// Fits effects with their form errors, and writes the forms that the data want as effects of one's own.
+/// Fits effects with their form errors, and writes the fitted forms as user-defined effects.
 ///
 /// # Errors
-/// As [`crate::diagnose`]; rows too few to know their noise are an error here.
+/// As [`crate::diagnose`]. Too few rows for estimating the noise are an error here.
 pub fn drawn_forms(data: &Data, muscle: &Muscle, options: &Options) -> Result<DrawnForms, InferenceError> {
     rayon::scope(|_| {
         let options = DiagnoseOptions::new(options.clone());
@@ -109,7 +111,7 @@ pub fn drawn_forms(data: &Data, muscle: &Muscle, options: &Options) -> Result<Dr
 }
 
 impl DrawnForm {
-    /// Of an effect that isn't written.
+    /// The result for an effect that isn't written.
     fn none(effect: &Arc<dyn Effect>, why: &str) -> Self {
         let effect = effect.card().name.to_owned();
         let says = format!("{effect} is not written: {why}");
@@ -185,7 +187,7 @@ impl Context<'_> {
         }
     }
 
-    /// A name that the catalogue doesn't have.
+    /// A name that isn't in the catalogue yet.
     fn free_name(&self, name: &str) -> String {
         let first = format!("{name}-bent");
         let mut free = first.clone();
@@ -203,7 +205,7 @@ fn rms(values: &[f64]) -> f64 {
     (dot(values, values) / values.len().max(1) as f64).sqrt()
 }
 
-/// Contraction and pressure over their ranges, and the direction, row by row.
+/// Scaled contraction and pressure and the direction of each row.
 struct State {
     /// Ends of contraction and pressure, in SI.
     ends: [[f64; 2]; 2],
@@ -236,7 +238,7 @@ impl State {
         self.ends[axis][1] > self.ends[axis][0]
     }
 
-    /// x or y of a formula.
+    /// The variable x or y as an expression.
     fn text(&self, axis: usize) -> String {
         let (name, unit) = [("eps", ""), ("p", " [Pa]")][axis];
         let [low, high] = self.ends[axis];
@@ -247,15 +249,15 @@ impl State {
     }
 }
 
-/// A polynomial over contraction and pressure, and one that turns its sign with the direction.
+/// A polynomial in contraction and pressure, and one that changes sign with the direction.
 struct Expression {
-    /// (whether it turns with the direction, degree over contraction, degree over pressure), coefficient.
+    /// (whether the sign changes with the direction, degree in contraction, degree in pressure), coefficient.
     terms: Vec<((bool, usize, usize), f64)>,
     missed_n: f64,
 }
 
 impl Expression {
-    /// The shortest that misses less than `unseen` (RMS) of these forces; else the closest.
+    /// The shortest expression with an RMS error below `unseen` of these forces; otherwise the closest one.
     fn of(state: &State, whole: &[f64], unseen: f64) -> Self {
         let parts: &[&[bool]] = if state.direction.iter().any(|d| *d != 0.0) {
             &[&[false], &[true], &[false, true]]
@@ -288,7 +290,8 @@ impl Expression {
         best.unwrap_or_else(|| Self { terms: Vec::new(), missed_n: rms(whole) })
     }
 
-    /// Of these terms; the smallest that together change less than `tiny` \[N\] are 0.
+    /// The fit with these terms. The smallest coefficients, which together change less than `tiny` \[N\], are
+    /// set to 0.
     fn fitted(state: &State, whole: &[f64], basis: Vec<(bool, usize, usize)>, tiny: f64) -> Option<Self> {
         let power =
             |axis: usize, row: usize, n: usize| (0..n).fold(1.0, |sum, _| sum * state.scaled[axis][row]);
@@ -305,7 +308,7 @@ impl Expression {
         order.sort_by(|a, b| found[*a].abs().total_cmp(&found[*b].abs()));
         let mut dropped = 0.0;
         for place in order {
-            // No term is larger than its coefficient: x and y lie within -1 and 1.
+            // No term is larger than its coefficient, because x and y lie within -1 and 1.
             dropped += found[place].abs();
             if dropped > tiny {
                 break;
@@ -316,14 +319,14 @@ impl Expression {
         Some(Self { terms: basis.into_iter().zip(found.iter().copied()).collect(), missed_n })
     }
 
-    /// As a formula of the parameter `size`, which is `size` now \[N\].
+    /// The expression as a formula of the parameter `size`, whose fitted value is `size` \[N\].
     fn text(&self, state: &State, size: f64) -> String {
         let polynomial = |turns: bool| -> Option<String> {
             let of =
                 |power: usize| self.terms.iter().filter(move |((t, _, j), _)| *t == turns && *j == power);
             let rows: Vec<String> = (0..=DEGREES[1])
                 .map(|j| {
-                    // Horner's scheme: few operations, and no exponents to read.
+                    // Horner's scheme needs few operations and no exponents.
                     of(j).rev().fold(String::new(), |inner, (_, c)| {
                         let (c, x) = (c / size, state.text(0));
                         match (c == 0.0, inner.is_empty()) {
@@ -347,7 +350,7 @@ impl Expression {
     }
 }
 
-/// An effect in a file of effects, below the drawing that it follows, with its interval.
+/// An entry of an effects file, with the form that it follows and the interval in comments.
 fn file(
     effect: &Arc<dyn Effect>,
     name: &str,

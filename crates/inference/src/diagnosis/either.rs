@@ -1,14 +1,14 @@
-//! Structure or slow noise: a misfit that noise explains no worse is no evidence that something is missing.
+//! Structure or slow noise: a misfit that noise explains equally well is no evidence for a missing effect.
 //!
-//! A saturated model follows slow noise, and the law of what it leaves then knows too little of it. The same readings have another explanation: the base is right, and their noise is
-//! what it leaves. Both are weighed by their likelihood, the model's own numbers integrated out (Patterson and Thompson 1971):
+//! A saturated model follows slow noise, so the law of its residuals underestimates that noise. The same
+//! readings have another explanation: the base is right, and its residuals are noise. Both are weighed by
+//! their likelihood, with the model's own parameters integrated out (Patterson and Thompson 1971):
 //!
 //! ```text
 //! noise:      ln p(y | K_0),                 K_0 the law of what the base leaves
 //! structure:  ln p(y | K) + ln Z,            K the law of what a saturated model leaves, Z the larger of the evidence of named effects and of a smooth misfit
 //! ```
-//! What repeats from cycle to cycle is
-//! no noise: K_0 is bounded by it, as K is.
+//! A misfit that repeats from cycle to cycle isn't noise: it bounds K_0 as it bounds K.
 
 use bulge_model::{Model, ModelError};
 
@@ -23,8 +23,8 @@ use crate::noise::law::{NoiseLaw, NoiseSource};
 use crate::noise::restricted_likelihood::log_likelihood;
 use crate::noise::whitening::Whitening;
 
-/// Where a search took for structure what is chance, or as likely noise of the base, it becomes the search that found nothing: by the law and the whitening that are given back, if
-/// the noise is another.
+/// If a search took chance for structure, or noise of the base that is as likely, replaces it by a search
+/// without findings. Returns the law and the whitening if they are others than before.
 pub(crate) fn quieter(
     context: &Context<'_>,
     averaged_data: &AveragedData,
@@ -37,7 +37,7 @@ pub(crate) fn quieter(
     }
     let Some(law) = noise_of_base(context, averaged_data, search)? else { return Ok(None) };
     let all = vec![true; context.record.len()];
-    // Both were made of this record: there is nothing to go wrong.
+    // This can't fail, because both belong to this record.
     let Ok(whitening) = Whitening::new(&law, context.record, &all, averaged_data.input_variances()) else {
         return Ok(None);
     };
@@ -51,7 +51,8 @@ pub(crate) fn quieter(
     Ok(Some((law, whitening)))
 }
 
-/// The law of the noise under which the base explains the readings, where that is as likely as a structure; none where it isn't.
+/// The noise law under which the base explains the readings, if that is as likely as a structure; otherwise
+/// none.
 fn noise_of_base(
     context: &Context<'_>,
     averaged_data: &AveragedData,
@@ -79,7 +80,7 @@ fn noise_of_base(
     Ok((noise >= saturated + named.max(smooth)).then_some(law))
 }
 
-/// Whether a smooth misfit that nobody thought of is less likely than none, though a test is surprised by it.
+/// Whether a smooth unknown misfit is less likely than none although a test rejects the model.
 fn is_chance(search: &Search) -> bool {
     let [only] = &search.stages[..] else { return false };
     !only.adequate

@@ -1,10 +1,12 @@
-//! Exchange: a set of effects that the search passed by, reached by adding or exchanging one effect at a time.
+//! Exchange: reaches sets of effects that the search passed by, by adding or exchanging one effect at a time.
 //!
-//! The search adds one effect after the other, and the first was chosen while all others were still in the misfit: a formula that bends far enough takes their
-//! place for good. From the best set that was fitted this goes to the best neighbour, one effect more, less or another, until none is better, as stepwise regression with
-//! exchange does (Efroymson 1960; Miller, *Subset Selection in Regression*, 2002). Of 39 tests with three effects (forms suite, seed 71) it found the right set
-//! 17 times, the search alone 5 times; of 120 tests with two and three effects of a fresh seed (73) the
-//! program with it had 62 right, the one before 59.
+//! The search adds one effect after the other, and chooses the first one while all others are still in the
+//! misfit: a formula with a large form error may then take their place for good. Starting from the best
+//! fitted set, the exchange moves to the best neighbour (one effect more, less or another) until none is
+//! better, like stepwise regression with exchange (Efroymson 1960; Miller, *Subset Selection in Regression*,
+//! 2002). In 39 tests with three effects (forms suite, seed 71) it found the right set 17 times, the search
+//! alone 5 times. In 120 tests with two and three effects of a fresh seed (73), the program got 62 right with
+//! the exchange and 59 without it.
 
 use bulge_effects::Effect;
 use bulge_model::Model;
@@ -20,20 +22,20 @@ use crate::diagnosis::linearised_model::{Context, LinearisedModel};
 use crate::diagnosis::search::{MOST_EFFECTS, Search, names};
 use crate::diagnosis::stage::Stage;
 
-/// Effects that are fitted on top of each set: those that explain most in linear approximation.
+/// Number of effects that are fitted on top of each set, chosen by what they explain in linear approximation.
 const MOVES: usize = 4;
-/// Exchanges at most.
+/// Most exchanges.
 const STEPS: usize = 6;
 
-/// Effects with their fit.
+/// A set of effects with its fit.
 struct Set {
     effects: Vec<Arc<dyn Effect>>,
     confirmed: Confirmed,
-    /// Log evidence with the log priors of the effects, over that of the base.
+    /// Log evidence including the log priors of the effects, relative to the base.
     value: f64,
 }
 
-/// Sets of effects that are fitted, by their sorted names, and stages that were linearised on the way.
+/// Fitted sets of effects by their sorted names, and stages that were linearised on the way.
 struct Sets<'a> {
     base: &'a Stage,
     known: BTreeMap<Vec<String>, Set>,
@@ -41,7 +43,7 @@ struct Sets<'a> {
 }
 
 impl<'a> Sets<'a> {
-    /// All that a search has fitted.
+    /// All sets that a search has fitted.
     fn of(search: &'a Search) -> Self {
         let mut sets = Self { base: &search.stages[0], known: BTreeMap::new(), stages: BTreeMap::new() };
         for stage in &search.stages {
@@ -65,7 +67,8 @@ impl<'a> Sets<'a> {
         }
     }
 
-    /// The best set that is one effect more, less or another than `here`, or `here` itself.
+    /// The best set that differs from `here` by at most one effect more, less or exchanged; it may be `here`
+    /// itself.
     fn best_beside(&self, here: &[String]) -> Option<&Vec<String>> {
         let is_beside = |names: &Vec<String>| {
             let common = names.iter().filter(|name| here.contains(name)).count();
@@ -81,7 +84,7 @@ fn log_prior(linear: &LinearisedModel, effect: &Arc<dyn Effect>) -> f64 {
     place.map_or(0.0, |place| effect_log_prior(linear, place))
 }
 
-/// Each set with one effect less.
+/// Each subset with one effect less.
 fn with_one_less(effects: &[Arc<dyn Effect>]) -> Vec<Vec<Arc<dyn Effect>>> {
     let without = |place| {
         let mut others = effects.to_vec();
@@ -92,7 +95,8 @@ fn with_one_less(effects: &[Arc<dyn Effect>]) -> Vec<Vec<Arc<dyn Effect>>> {
 }
 
 impl Context<'_> {
-    /// Replaces the last model of a search by a better one that it passed by, where the last doesn't explain the data by its formulas as they are.
+    /// Replaces the last model of a search by a better one that it passed by, if the last one doesn't explain
+    /// the data by its formulas alone.
     pub(crate) fn exchange(&self, base: &Model, search: &mut Search) {
         let last = &search.stages[search.stages.len() - 1];
         if last.adequate && last.confirmed.form.log_evidence <= RULE.bent {
@@ -109,7 +113,7 @@ impl Context<'_> {
         }
     }
 
-    /// Fits what lies beside the best set, and goes on from the best of that.
+    /// Fits the neighbours of the best set, and continues from the best of them.
     fn walk(&self, base: &Model, search: &Search, sets: &mut Sets<'_>) {
         let value = |set: &Set| set.value;
         let best = sets.known.iter().max_by(|a, b| value(a.1).total_cmp(&value(b.1)));
@@ -130,7 +134,7 @@ impl Context<'_> {
         }
     }
 
-    /// Fits the best effects on top of others, whose fit begins at that of a `parent`.
+    /// Fits the best effects on top of `effects`, whose own fit starts at that of a `parent`.
     fn fit_beside(
         &self,
         base: &Model,
@@ -177,7 +181,8 @@ impl Context<'_> {
         }
     }
 
-    /// The stage of the best set that is clearly better than the last of the search, and explains by formulas what that explained by bending them.
+    /// The stage of the best set that is clearly better than the last one of the search, and explains by
+    /// formulas what the latter explained by form errors.
     fn better(&self, search: &Search, sets: &Sets<'_>) -> Option<Stage> {
         let last = &search.stages[search.stages.len() - 1];
         let own = names(last.added.iter());
@@ -200,7 +205,7 @@ impl Context<'_> {
 }
 
 impl Sets<'_> {
-    /// Whether each effect explains more than the last digits of the formulas beside it, which may be a little wrong.
+    /// Whether each effect explains more than a small error of the formulas beside it could.
     fn each_counts(&self, set: &Set) -> bool {
         with_one_less(&set.effects).iter().filter_map(|others| self.known.get(&names(others.iter()))).all(
             |others| {
@@ -222,7 +227,8 @@ mod tests {
     use bulge_muscles::preset;
     use bulge_numerics::Random;
 
-    /// Two loops of 40 rows at 2 and 3 bar, with noise of 1 N, of which a model without effects is off by `hidden`.
+    /// Two loops of 40 rows at 2 and 3 bar, with noise of 1 N and the misfit `hidden` of a model without
+    /// effects.
     fn record(base: &Model, hidden: impl Fn(&Moment) -> f64) -> Record {
         let at = |i: u32| {
             let (up, place) = (i % 40 < 20, if i % 40 < 20 { i % 40 } else { 39 - i % 40 });
@@ -239,7 +245,7 @@ mod tests {
         record.with_force(force)
     }
 
-    /// Families that an exchange ends with, after a search that ended with the effects `last`.
+    /// Families that an exchange ends with, if the search ended with the effects `last`.
     fn exchanged(last: &[&str], hidden: impl Fn(&Moment) -> f64) -> Vec<String> {
         let catalogue = Catalogue::builtin();
         let base = Model::new(&preset("ppam-2-r16").unwrap());
@@ -264,7 +270,8 @@ mod tests {
 
     #[test]
     fn effects_that_a_search_passed_by_are_found() {
-        // Friction of 10 N alike at all pressures and an offset; the search had ended with friction in proportion to the pressure.
+        // Friction of 10 N at all pressures and an offset; the search had ended with friction proportional to
+        // the pressure.
         let hidden = |moment: &Moment| -10.0 * moment.direction - 20.0;
         assert_eq!(exchanged(&["pressure-friction"], hidden), ["coulomb-friction", "force-offset"]);
     }

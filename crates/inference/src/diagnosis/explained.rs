@@ -1,4 +1,5 @@
-//! What to plot of a diagnosis: the misfit before each step and what the step explains of it, and the misfit that is left.
+//! Curves of a diagnosis: the misfit before each step, the part that the step explains, and the remaining
+//! misfit.
 
 use bulge_model::Record;
 
@@ -20,7 +21,7 @@ struct Cell {
     rows: Vec<usize>,
 }
 
-/// All cells with rows, level by level and direction by direction.
+/// All cells with rows, by level and direction.
 fn cells(record: &Record, levels: &Levels) -> Vec<Cell> {
     let moments = record.moments();
     let [low, high] = moments
@@ -48,12 +49,12 @@ fn mean(rows: &[usize], value: impl Fn(usize) -> f64) -> f64 {
     rows.iter().map(|row| value(*row)).sum::<f64>() / rows.len() as f64
 }
 
-/// Cells of one curve each.
+/// The cells of each curve.
 fn curves(cells: &[Cell]) -> impl Iterator<Item = &[Cell]> {
     cells.chunk_by(|a, b| a.level == b.level && a.direction.total_cmp(&b.direction).is_eq())
 }
 
-/// What a step from one model to the next explains.
+/// The part of the misfit that a step from one model to the next explains.
 pub(crate) fn explained(effect: &str, record: &Record, before: &[f64], after: &[f64]) -> ExplainedStep {
     let levels = Levels::of(record, &vec![true; record.len()]);
     let cells = cells(record, &levels);
@@ -67,7 +68,7 @@ pub(crate) fn explained(effect: &str, record: &Record, before: &[f64], after: &[
     ExplainedStep { effect: effect.to_owned(), curves: curves(&cells).map(curve).collect() }
 }
 
-/// An effect by its formula, and as the data bend it.
+/// An effect by its formula, and with its fitted form error.
 pub(crate) fn bent_curves(record: &Record, bent: &Bent) -> Vec<BentCurve> {
     let levels = Levels::of(record, &vec![true; record.len()]);
     let cells = cells(record, &levels);
@@ -85,7 +86,8 @@ pub(crate) fn bent_curves(record: &Record, bent: &Bent) -> Vec<BentCurve> {
     curves(&cells).map(curve).collect()
 }
 
-/// The systematic misfit that a model leaves: the smooth functions that it can't follow, with their standard deviation.
+/// The systematic misfit of a model: the smooth functions that it can't follow, with their standard
+/// deviation.
 pub(crate) fn surface(record: &Record, linear: &LinearisedModel) -> Vec<SurfaceCurve> {
     let levels = Levels::of(record, &vec![true; record.len()]);
     let cells = cells(record, &levels);

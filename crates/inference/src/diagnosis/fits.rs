@@ -1,7 +1,8 @@
-//! Fits that were made of the readings, by their effects: none is made twice.
+//! A cache of fits by their effects, so that none is made twice.
 //!
-//! A pair that was tried on the base is the same model as its second effect on top of its first, and the rivals of one named effect are tried beside the others
-//! of the search. Fits of the same readings with another noise are not the same, but end near each other: there others begin.
+//! A pair that was tried on the base is the same model as its second effect on top of its first, and the
+//! rivals of one named effect are tried beside the other effects of the search. Fits of the same readings
+//! under another noise law differ, but end near each other and serve as starts.
 
 use bulge_effects::Effect;
 use std::collections::BTreeMap;
@@ -9,21 +10,22 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::diagnosis::confirm::Confirmed;
 
-/// Fits under one noise law. They are added when all that were made side by side have ended, so that none depends on which ended first.
+/// Fits under one noise law. Fits that run in parallel are added after all of them have ended, so that the
+/// result doesn't depend on which ended first.
 #[derive(Debug, Default)]
 pub(crate) struct Fits<'b> {
     made: Mutex<BTreeMap<Vec<String>, Confirmed>>,
-    /// Those under another law.
+    /// Fits under another law.
     before: Option<&'b Fits<'b>>,
 }
 
-/// Names of effects in the order in which the model has them.
+/// Names of effects in the order of the model.
 fn names(effects: &[Arc<dyn Effect>]) -> Vec<String> {
     effects.iter().map(|effect| effect.card().name.to_owned()).collect()
 }
 
 impl<'b> Fits<'b> {
-    /// None, after those under another law.
+    /// An empty cache that refers to fits under another law.
     pub(crate) fn after(before: Option<&'b Fits<'b>>) -> Self {
         Self { made: Mutex::default(), before }
     }
@@ -33,7 +35,8 @@ impl<'b> Fits<'b> {
         self.made.lock().unwrap_or_else(PoisonError::into_inner).get(&names(effects)).cloned()
     }
 
-    /// A fit of these effects in any order, of this law first: a model with the same numbers about.
+    /// A fit of these effects in any order, preferably under this law. Its parameters are approximately those
+    /// wanted.
     pub(crate) fn near(&self, effects: &[Arc<dyn Effect>]) -> Option<Confirmed> {
         let mut asked = names(effects);
         asked.sort_unstable();
@@ -50,7 +53,7 @@ impl<'b> Fits<'b> {
         found.or_else(|| self.before?.near(effects))
     }
 
-    /// Keeps the lower of two fits of the same model, one with these effects in any order.
+    /// Keeps the lower one of two fits of the same model; `effects` may be in any order.
     pub(crate) fn add(&self, effects: &[Arc<dyn Effect>], confirmed: &Confirmed) {
         let mut made = self.made.lock().unwrap_or_else(PoisonError::into_inner);
         let of_model = confirmed.prepared.model.effects().iter().map(|chosen| chosen.effect.card().name);

@@ -1,11 +1,12 @@
-//! How much the formulas of a model's effects are bent by the data, and what that is worth.
+//! Size of the form errors of a model's effects, and the evidence for them.
 //!
 //! ```text
 //! y = F(theta) + B D c + noise,   c ~ N(0, 1),   D the standard deviations of the form errors by effect and kind
 //! S = P K^-1/2 B,   z = P K^-1/2 (y - F),   M = 1 + D S'S D,   b = D S'z
 //! ln Z_form = ln Z + b' M^-1 b/2 - ln|M|/2 + sum ln(prior(sd)/prior(0)),   chi^2_form = chi^2 - b' M^-1 b,   c = M^-1 b
 //! ```
-//! The standard deviations are those of the largest evidence, by coordinate ascent over a few levels. Where all are 0 the formulas are taken as exact.
+//! The standard deviations maximise the evidence over a few levels, by coordinate ascent. If all are 0, the
+//! formulas are taken as exact.
 
 use bulge_effects::Effect;
 use nalgebra::{Cholesky, DMatrix, DVector};
@@ -16,11 +17,13 @@ use crate::diagnosis::decision_rule::RULE;
 use crate::diagnosis::space::{Space, norm, orthogonal};
 use crate::dot::dot;
 
-/// Times that each standard deviation is chosen anew beside the others.
+/// Passes of the coordinate ascent.
 const ROUNDS: usize = 2;
-/// Log evidence that a form error may lose where a form is drawn: of levels that are as likely the largest, so that its interval holds what the data leave open.
+/// Log evidence that a form error may lose when a form is drawn. The largest of the equally likely levels is
+/// taken, so that the interval covers what the data leave open.
 const AS_LIKELY: f64 = 1.0;
-/// A direction in which form errors move the readings by a smaller part of their variance says nothing.
+/// A direction in which form errors move the readings by less than this fraction of their variance is
+/// negligible.
 const NOTHING: f64 = 0.01;
 
 /// The form error of one effect.
@@ -29,20 +32,22 @@ pub(crate) struct Bent {
     pub(crate) effect: Arc<dyn Effect>,
     /// Standard deviations by [`Kind`].
     pub(crate) sd: [f64; 4],
-    /// How much of the effect is bent: |S c|/|K^-1/2 s|.
+    /// Relative size of the form error: |S c|/|K^-1/2 s|.
     pub(crate) part: f64,
-    /// What the effect changes by its formula \[N\].
+    /// Change of the force by the effect's formula \[N\].
     pub(crate) change: Vec<f64>,
-    /// What bending it changes of the model's force \[N\], all numbers refitted, and its standard deviation.
+    /// Change of the model's force by the form error \[N\], with all parameters refitted, and its standard
+    /// deviation.
     pub(crate) bending: Vec<f64>,
     pub(crate) bending_sd: Vec<f64>,
-    /// What the effect itself changes as the data want it \[N\], and its standard deviation with that of its numbers.
+    /// Change of the force by the effect with its form error \[N\], and its standard deviation including that
+    /// of its parameters.
     pub(crate) drawn: Vec<f64>,
     pub(crate) drawn_sd: Vec<f64>,
 }
 
 impl Bent {
-    /// Standard deviation of any of its form errors.
+    /// Whether any of its form errors has a standard deviation above 0.
     pub(crate) fn may_bend(&self) -> bool {
         self.sd.iter().any(|sd| *sd > 0.0)
     }
@@ -51,9 +56,9 @@ impl Bent {
 /// The form errors of a model.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct FormError {
-    /// Log evidence over that of the exact formulas.
+    /// Log evidence relative to the exact formulas.
     pub(crate) log_evidence: f64,
-    /// Fall of the square of the misfit.
+    /// Decrease of the squared misfit.
     pub(crate) fall: f64,
     pub(crate) effects: Vec<Bent>,
     /// Columns of kin, for models with the same effects.
@@ -63,43 +68,44 @@ pub(crate) struct FormError {
 /// A form error of one standard deviation in a principal direction.
 #[derive(Debug, Clone)]
 pub(crate) struct FormDirection {
-    /// What it changes in each of the effects \[N\].
+    /// Its change of each effect \[N\].
     by_effect: Vec<Vec<f64>>,
-    /// What it changes \[N\].
+    /// Its change of the force \[N\].
     pub(crate) values: Vec<f64>,
-    /// The same whitened, outside of the model's tangents; those of several directions are orthogonal to each other.
+    /// The same, whitened and outside the model's tangents. Different directions are orthogonal to each
+    /// other.
     pub(crate) white: Vec<f64>,
 }
 
 impl FormDirection {
-    /// Whether it moves the readings by more than a small part of the noise.
+    /// Whether it moves the readings by more than a small fraction of the noise.
     pub(crate) fn is_seen(&self) -> bool {
         dot(&self.white, &self.white) > NOTHING
     }
 }
 
-/// All columns of a model, whitened and without what its numbers can do.
+/// All columns of a model, whitened and orthogonalised against its tangents.
 struct Columns {
-    /// Place of the effect, kind.
+    /// Index of the effect, and kind.
     of: Vec<(usize, usize)>,
     gram: DMatrix<f64>,
     along: DVector<f64>,
-    /// The same of the columns in newtons.
+    /// Gram matrix of the columns in newtons.
     raw_gram: DMatrix<f64>,
-    /// Lengths of the effects, whitened and in newtons.
+    /// Norms of the effects, whitened and in newtons.
     lengths: Vec<[f64; 2]>,
-    /// Standard deviations that form errors may have, and how likely each is.
+    /// Levels of the standard deviation, with their prior probabilities.
     levels: &'static [(f64, f64)],
 }
 
 impl Columns {
-    /// Those whose standard deviations aren't 0, with these.
+    /// Columns with a nonzero standard deviation, with that standard deviation.
     fn chosen(&self, sds: &[[f64; 4]]) -> Vec<(usize, f64)> {
         let sd = |i: usize| sds[self.of[i].0][self.of[i].1];
         (0..self.of.len()).map(|i| (i, sd(i))).filter(|(_, sd)| *sd > 0.0).collect()
     }
 
-    /// M, factored, and b.
+    /// The Cholesky factor of M, and b.
     fn solved(&self, chosen: &[(usize, f64)]) -> Option<(Cholesky<f64, nalgebra::Dyn>, DVector<f64>)> {
         let k = chosen.len();
         let inner = DMatrix::from_fn(k, k, |i, j| {
@@ -110,7 +116,8 @@ impl Columns {
         Some((inner.cholesky()?, right))
     }
 
-    /// Log evidence, fall of the square of the misfit, and how much each effect is bent; none if one is bent by more than an effect may be.
+    /// Log evidence, decrease of the squared misfit, and relative form error of each effect; none if one of
+    /// them is larger than allowed.
     fn evidence(&self, sds: &[[f64; 4]]) -> Option<(f64, f64, Vec<f64>)> {
         let chosen = self.chosen(sds);
         let prior = |sd: f64| {
@@ -143,7 +150,8 @@ impl Columns {
         allowed.then_some((log, fall, seen))
     }
 
-    /// Standard deviations by effect and kind of the largest evidence, and what [`Columns::evidence`] says of them; where forms are drawn the largest that are as likely.
+    /// Standard deviations by effect and kind that maximise the evidence, and the result of
+    /// [`Columns::evidence`] for them. If forms are drawn, the largest equally likely ones.
     fn likeliest(&self, bendings: &[Bending], to_draw: bool) -> (Vec<[f64; 4]>, (f64, f64, Vec<f64>)) {
         let levels_of = |effect: &Arc<dyn Effect>| {
             let largest = effect.card().form.largest_error() * if to_draw { RULE.drawn } else { 1.0 };
@@ -151,6 +159,7 @@ impl Columns {
         };
         let mut sds = vec![[0.0; 4]; bendings.len()];
         let mut best = (0.0, 0.0, vec![0.0; bendings.len()]);
+        // Coordinate ascent, one standard deviation at a time, in at most `ROUNDS` rounds.
         for _ in 0..ROUNDS {
             let before = sds.clone();
             for (effect, bending) in bendings.iter().enumerate() {
@@ -173,6 +182,7 @@ impl Columns {
                 break;
             }
         }
+        // Raises each standard deviation as long as the evidence stays within `AS_LIKELY` of the best.
         if to_draw {
             let likeliest = best.0;
             for (effect, bending) in bendings.iter().enumerate() {
@@ -192,7 +202,7 @@ impl Columns {
     }
 }
 
-/// All products of columns with each other.
+/// Gram matrix of some columns.
 fn gram(columns: &[&[f64]]) -> DMatrix<f64> {
     let half = DMatrix::from_fn(columns.len(), columns.len(), |i, j| {
         if i <= j { dot(columns[i], columns[j]) } else { 0.0 }
@@ -201,7 +211,9 @@ fn gram(columns: &[&[f64]]) -> DMatrix<f64> {
 }
 
 impl FormError {
-    /// Of the effects of a model with these columns, to compare it with others or, `to_draw`, to draw their forms; `space` is without the model's tangents, `misfit` whitened, `whiten` whitens a column \[N\].
+    /// Form errors of the effects of a model with these columns, for comparison with other models or, if
+    /// `to_draw`, for drawing their forms. `space` excludes the model's tangents, `misfit` is whitened, and
+    /// `whiten` whitens a column \[N\].
     pub(crate) fn of(
         bendings: &[Bending],
         space: &Space,
@@ -218,6 +230,7 @@ impl FormError {
             lengths.push([length, norm(&bending.change)]);
             for (kind, column) in &bending.columns {
                 let mut seen = whiten(column);
+                // A column of kind `Kin` is scaled to the length of the effect's own change.
                 let scale =
                     if *kind == Kind::Kin { length / norm(&seen).max(f64::MIN_POSITIVE) } else { 1.0 };
                 for value in &mut seen {
@@ -255,8 +268,8 @@ impl FormError {
         (Self { log_evidence, fall, effects, kin }, directions)
     }
 
-    /// The same with what the data make of the formulas, row by row; `misfit` is whitened, `tangents` are those of the model's numbers, and `owner` says
-    /// of each the effect that it is a number of.
+    /// Adds the fitted form errors row by row. `misfit` is whitened, `tangents` are those of the model's
+    /// parameters, and `owner` names the effect that each belongs to.
     pub(crate) fn row_by_row(
         mut self,
         directions: &[FormDirection],
@@ -282,7 +295,7 @@ impl FormError {
                 let values = &direction.by_effect[place];
                 without(values, &whiten(values), &all)
             });
-            // The numbers of the effect follow the bending of all.
+            // The parameters of the effect are refitted to the form errors of all effects.
             let (moved, mut sd) =
                 sums(&mut |direction| without(&direction.by_effect[place], &whiten(&direction.values), &own));
             for (row, sd) in sd.iter_mut().enumerate() {
@@ -295,7 +308,7 @@ impl FormError {
         self
     }
 
-    /// The same without what it is row by row.
+    /// Drops the results row by row.
     pub(crate) fn in_short(mut self) -> Self {
         for effect in &mut self.effects {
             let rows = [&mut effect.change, &mut effect.bending, &mut effect.bending_sd];
@@ -307,7 +320,7 @@ impl FormError {
     }
 }
 
-/// What numbers, `known` as orthonormal columns \[N\] and whitened, leave of a column when they are refitted.
+/// The column after refitting the parameters; `known` are their orthonormal columns, in newtons and whitened.
 fn without(values: &[f64], white: &[f64], known: &[(Vec<f64>, Vec<f64>)]) -> Vec<f64> {
     let mut left = values.to_vec();
     for (raw, unit) in known {
@@ -316,8 +329,9 @@ fn without(values: &[f64], white: &[f64], known: &[(Vec<f64>, Vec<f64>)]) -> Vec
     left
 }
 
-/// Sum of the directions as the data want them, row by row, and the standard deviation: their coordinates are independent, c = t'z/(1 + |t|^2) with the variance
-/// 1/(1 + |t|^2). `values` says what a direction changes \[N\].
+/// Sum of the fitted directions row by row, and its standard deviation. Their coordinates are independent: c
+/// = t'z/(1 + |t|^2) with the variance 1/(1 + |t|^2). `values` gives the change of the force by a direction
+/// \[N\].
 fn sums(
     directions: &[FormDirection],
     misfit: &[f64],
@@ -337,7 +351,7 @@ fn sums(
 }
 
 impl Columns {
-    /// The principal directions of the form errors: orthogonal.
+    /// The orthogonal principal directions of the form errors.
     fn directions(&self, white: &[Vec<f64>], raw: &[(&[f64], f64)], sds: &[[f64; 4]]) -> Vec<FormDirection> {
         let chosen = self.chosen(sds);
         let k = chosen.len();
@@ -391,7 +405,7 @@ mod tests {
         Bending { effect, change, columns, kin: Arc::default() }
     }
 
-    /// ln N(z; 0, 1 + B D^2 B') - ln N(z; 0, 1) outside of the tangents, by the dense matrix.
+    /// ln N(z; 0, 1 + B D^2 B') - ln N(z; 0, 1) outside the tangents, from the dense matrix.
     fn dense(white: &[Vec<f64>], sds: &[f64], z: &[f64]) -> f64 {
         let n = z.len();
         let covariance = DMatrix::from_fn(n, n, |i, j| {
@@ -409,7 +423,7 @@ mod tests {
         let tangents = columns(1, 3);
         let space = Space::without(&tangents);
         let bent = bending("coulomb-friction", &[Kind::State, Kind::State, Kind::Turn], 5, 30.0);
-        // Bent by the first and the third column, and noise.
+        // Form errors in the first and the third column, plus noise.
         let mut misfit = columns(9, 1).remove(0);
         for ((value, a), c) in misfit.iter_mut().zip(&bent.columns[0].1).zip(&bent.columns[2].1) {
             *value += 0.2 * a - 0.15 * c;
@@ -426,7 +440,7 @@ mod tests {
         let expected =
             dense(&white, &own, &space.outside(&misfit)) + sd.iter().map(|sd| prior(*sd)).sum::<f64>();
         assert!((found.log_evidence - expected).abs() < 1e-9, "{} {expected}", found.log_evidence);
-        // No other levels are likelier.
+        // No other levels are more likely.
         for state in RULE.form_errors {
             for turn in RULE.form_errors {
                 let own: Vec<f64> = bent
@@ -438,7 +452,7 @@ mod tests {
                 assert!(other <= expected + 1e-9 || found.effects[0].part > 0.3, "{state:?} {turn:?}");
             }
         }
-        // As further tangents the directions take away what the form errors do.
+        // As additional tangents, the directions remove what the form errors explain.
         let whole: f64 = dot(&space.outside(&misfit), &space.outside(&misfit));
         let mut beside = space.clone();
         beside.leave_out(&directions.iter().map(|d| &d.white[..]).collect::<Vec<_>>());
@@ -498,7 +512,7 @@ mod tests {
         let expected = space.outside(&column);
         let bent = &found.effects[0];
         for ((b, e), sd) in bent.bending.iter().zip(&expected).zip(&bent.bending_sd) {
-            // 0.1 with the standard deviation of one number: 1/|column|.
+            // 0.1 within the standard deviation of one parameter, 1/|column|.
             assert!((b - 0.1 * e).abs() < 4.0 * e.abs() / norm(&expected) + 1e-9, "{b} {e}");
             let level = bent.sd[Kind::State as usize];
             let exact = level * e.abs() / (1.0 + (level * norm(&expected)).powi(2)).sqrt();
@@ -517,7 +531,7 @@ mod tests {
         for ((value, a), c) in misfit.iter_mut().zip(&loose.columns[0].1).zip(&loose.columns[2].1) {
             *value += 0.1 * a - 0.07 * c;
         }
-        // The numbers are fitted.
+        // The parameters are fitted.
         let misfit = space.outside(&misfit);
         let own: Vec<Vec<f64>> = loose.columns.iter().map(|(_, column)| column.clone()).collect();
         let (found, directions) = FormError::of(&[loose], &space, &misfit, &same, false);

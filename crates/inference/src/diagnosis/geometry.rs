@@ -1,13 +1,16 @@
-//! The geometry that a diagnosis rests on: which numbers are doubtful, where the data move them, and what a better ruler would settle.
+//! The geometry behind a diagnosis: which numbers are uncertain, where the data move them, and which
+//! measurement would settle them.
 //!
-//! A number of which the muscle file states no width has the one that such muscles have ([`Muscle::with_usual_widths`]), and is fitted along within it. A braid of which no
-//! wall is stated gets a nominal one, so that rubber can be looked for: a force shows modulus times thickness only.
+//! A number without a stated width gets the usual width for such muscles ([`Muscle::with_usual_widths`]) and
+//! is fitted along within it. A braid without a stated wall gets a nominal one, so that rubber can be looked
+//! for: the force only shows modulus times thickness.
 //!
 //! ```text
 //! departure = d' C^-1 d,    d = found - stated,  C the covariance of the numbers beside all others
 //! ```
-//! From 4 sigma on, the answer on exact geometry is asked for too. A number that the data want more than three usual widths away is one that no such muscle has: the doubt
-//! then stands in for something else, and the answer is that on the geometry as stated.
+//! From 4 sigma on, the diagnosis is repeated with exact geometry. No such muscle has a number that is more
+//! than three usual widths away: the uncertainty then absorbs something else, and the answer for the geometry
+//! as stated is given.
 
 use bulge_effects::{Catalogue, Mechanism};
 use bulge_model::{ModelParameter, Wanted, Warm};
@@ -24,53 +27,54 @@ use crate::fit::nuisance::is_geometry;
 use crate::fit::problem::free;
 use crate::noise::law::NoiseSource;
 
-/// Sigmas and widths from which a number is said to have moved.
+/// Sigmas and widths from which a number is reported as moved.
 const MOVED: [f64; 2] = [2.0, 0.3];
 
-/// How doubtful the geometry is.
+/// Uncertainty of the geometry.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct Geometry {
-    /// In words; empty where the file states all widths, and the wall.
+    /// In words; empty if the file states all widths and the wall.
     pub says: String,
     /// Numbers with a width.
     pub doubtful: Vec<DoubtfulNumber>,
-    /// Numbers that the file doesn't state, and that were assumed.
+    /// Numbers that the file doesn't state and that were assumed.
     pub assumed: Vec<AssumedNumber>,
-    /// RMS error of the base with the geometry, the rig and everything else as stated \[N\].
+    /// RMS error of the base with geometry, rig and everything else as stated \[N\].
     pub as_stated_rmse_n: Option<f64>,
-    /// Square of the distance between the geometry that was found and the stated one, in sigmas.
+    /// Squared distance between the fitted and the stated geometry, in sigmas.
     pub departure: f64,
-    /// The answer with exact numbers instead of usual widths, where the data are far from those; none where they are not.
+    /// The answer with exact numbers instead of usual widths, if the data move them far; otherwise none.
     pub if_exact: Option<OtherAnswer>,
-    /// The answer with usual widths, where the geometry is taken as stated because they would not do; none where it is taken as doubtful.
+    /// The answer with usual widths, if the geometry is taken as stated because the data exceed those widths;
+    /// otherwise none.
     pub if_doubtful: Option<OtherAnswer>,
 }
 
-/// A number of the geometry with its doubt.
+/// A number of the geometry with its uncertainty.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct DoubtfulNumber {
     /// Its key in the muscle file.
     pub number: String,
     /// Value as stated, in `unit`.
     pub value: f64,
-    /// One standard deviation.
+    /// Standard deviation, in `unit`.
     pub width: f64,
-    /// The unit of all.
+    /// Unit of all values.
     pub unit: &'static str,
-    /// Whether the file states no width: then it is the one that such muscles have.
+    /// Whether the file states no width, so that the usual one is taken.
     pub by_default: bool,
-    /// What the data make of it; none if the force doesn't depend on it by itself.
+    /// The value after the fit; none if the force doesn't depend on this number by itself.
     pub found: Option<MovedNumber>,
 }
 
-/// A doubtful number after the fit.
+/// An uncertain number after the fit.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct MovedNumber {
-    /// Value.
+    /// Fitted value.
     pub value: f64,
-    /// Standard deviation; none if the data and the width don't determine it.
+    /// Standard deviation; none if data and width don't determine it.
     pub sd: Option<f64>,
-    /// How far it is from the stated value, in widths.
+    /// Distance from the stated value, in widths.
     pub widths: f64,
 }
 
@@ -81,18 +85,18 @@ pub struct AssumedNumber {
     pub number: &'static str,
     /// Value in `unit`.
     pub value: f64,
-    /// The unit.
+    /// Unit of the value.
     pub unit: &'static str,
 }
 
-/// The answer if the doubtful numbers were exact, or the other way round.
+/// The answer if the uncertain numbers were exact, or the other way round.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct OtherAnswer {
     /// The verdict.
     pub verdict: Verdict,
     /// Names of the effects that would be missing.
     pub missing: Vec<String>,
-    /// Whether that is another answer.
+    /// Whether the answer differs.
     pub differs: bool,
 }
 
@@ -116,14 +120,14 @@ fn names(diagnosis: &Diagnosis) -> Vec<String> {
     diagnosis.missing.iter().map(|missing| missing.effect.clone()).collect()
 }
 
-/// A muscle with the doubt of what its file doesn't state.
+/// A muscle with the uncertainty of the numbers that its file doesn't state.
 pub(crate) struct Doubt {
-    /// With usual widths.
+    /// The muscle with usual widths.
     pub(crate) doubted: Muscle,
-    /// With exact numbers instead.
+    /// The muscle with exact numbers instead.
     pub(crate) exact: Muscle,
     added: Vec<Parameter>,
-    /// The wall that was assumed \[m\].
+    /// The assumed wall \[m\].
     wall: Option<f64>,
 }
 
@@ -136,7 +140,8 @@ impl Doubt {
         Self { exact: added.iter().fold(doubted.clone(), sure), doubted, added, wall }
     }
 
-    /// The diagnosis that counts, after one on the doubted geometry: `answer_on` exact geometry is asked for where another is to be expected.
+    /// The final diagnosis, given one with usual widths. `answer_on` exact geometry is called if another
+    /// answer may be expected.
     pub(crate) fn settled<E>(
         &self,
         mut doubtful: Diagnosis,
@@ -154,7 +159,8 @@ impl Doubt {
             return Ok(doubtful);
         }
         let mut exact = answer_on(&self.exact)?;
-        // What counts is whether there was an answer, and not how much of it matters.
+        // Take the exact geometry if its diagnosis got as far as an answer, whatever a tolerance says about
+        // it.
         if is_beyond && exact.noise.law.source != NoiseSource::Instruments {
             let if_doubtful = Some(OtherAnswer::of(&doubtful, &exact));
             exact.geometry = Geometry { if_doubtful, ..doubtful.geometry };
@@ -181,7 +187,7 @@ impl Doubt {
     }
 }
 
-/// What rubber of which only modulus times thickness is known was found with.
+/// The modulus times thickness of the rubber that was found, if only this product is known.
 fn rubber(diagnosis: &Diagnosis, catalogue: &Catalogue, wall: f64) -> String {
     let is_modulus = |missing: &Missing, name: &str| {
         let effect = catalogue.find(&missing.fitted).ok()?;
@@ -252,7 +258,7 @@ impl Geometry {
         }
     }
 
-    /// The measurement that decides: of the number that moved furthest, to a third of that.
+    /// The decisive measurement: of the number that moved furthest, to a third of its move.
     fn ruler(&self) -> Option<String> {
         let moved =
             self.doubtful.iter().filter(|n| n.by_default).filter_map(|n| Some((n, n.found.as_ref()?)));
@@ -284,21 +290,21 @@ impl DoubtfulNumber {
     }
 }
 
-/// One number of the fit that stands for one of the geometry.
+/// A parameter of the fit that represents a number of the geometry.
 struct Fitted {
     parameter: Parameter,
-    /// Place among the free numbers.
+    /// Index among the free parameters.
     place: usize,
-    /// Value and stated value, in SI of the parameter.
+    /// Fitted and stated value, in the SI unit of the parameter.
     value: f64,
     stated: f64,
-    /// From the coordinates of the search to SI of the parameter.
+    /// Derivative of the parameter in SI by the coordinate of the search.
     per_coordinate: f64,
     /// Distance in coordinates.
     distance: f64,
 }
 
-/// The geometry as a model has it.
+/// The geometry of a model.
 pub(crate) fn geometry(analysis: &Analysis<'_>, stage: &Stage) -> Geometry {
     let muscle = analysis.muscle;
     let fitted = fitted(muscle, stage);
@@ -344,7 +350,7 @@ fn fitted(muscle: &Muscle, stage: &Stage) -> Vec<Fitted> {
         else {
             continue;
         };
-        // Of specimens that differ, the first stands for all.
+        // If specimens differ, the first one represents all.
         if found.iter().any(|f| f.parameter == parameter) {
             continue;
         }
@@ -366,7 +372,8 @@ fn fitted(muscle: &Muscle, stage: &Stage) -> Vec<Fitted> {
     found
 }
 
-/// The number of the geometry that a number of an effect stands for, as `(parameter, offset, factor)`: parameter = offset + factor number.
+/// The number of the geometry that an effect's parameter represents, as `(parameter, offset, factor)`:
+/// parameter = offset + factor number.
 fn stands_for(muscle: &Muscle, number: &ModelParameter, is_nuisance: bool) -> Option<(Parameter, f64, f64)> {
     let stated = |parameter| muscle.get(parameter);
     match number.effect.as_str() {
@@ -393,11 +400,11 @@ fn departure(stage: &Stage, fitted: &[Fitted]) -> f64 {
     let of = |i: usize, j: usize| covariance[fitted[i].place * all + fitted[j].place];
     let distance = DVector::from_iterator(some, fitted.iter().map(|f| f.distance));
     let found = DMatrix::from_fn(some, some, of).cholesky().map(|c| distance.dot(&c.solve(&distance)));
-    // A number that a bound holds has no covariance, and is as far as it can be.
+    // A number held at a bound has no covariance; it counts as infinitely far away.
     found.filter(|square| square.is_finite()).unwrap_or(f64::MAX)
 }
 
-/// RMS error of the base with nothing fitted \[N\].
+/// RMS error of the base without any fit \[N\].
 fn as_stated(analysis: &Analysis<'_>) -> Option<f64> {
     let model = analysis.base(0).ok()?;
     let counting = Warm::of_rows(&analysis.used.mask);

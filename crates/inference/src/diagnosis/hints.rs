@@ -1,4 +1,5 @@
-//! What a misfit looks like that no effect explains, in words: where it is largest, how it goes with pressure, whether it turns with the direction, what comes nearest.
+//! Description of a misfit that no effect explains: where it is largest, how it depends on the pressure,
+//! whether it changes sign with the direction, and which effect comes nearest.
 
 use bulge_model::Record;
 
@@ -10,12 +11,12 @@ use bulge_muscles::units::significant;
 
 /// Bins of the contraction in which levels are compared.
 const BINS: usize = 12;
-/// A share from which a variable is spoken of.
+/// Share from which a variable is mentioned.
 const MUCH: f64 = 0.3;
-/// Chance below which it is.
+/// Largest p-value at which it is mentioned.
 const CLEAR: f64 = 0.01;
 
-/// Sentences about the misfit that is left.
+/// Sentences about the remaining misfit.
 pub(crate) fn hints(record: &Record, linear: &LinearisedModel, located: &[Located]) -> Vec<String> {
     let misfit = linear.systematic(&linear.z);
     let mut found = Vec::new();
@@ -64,7 +65,7 @@ fn largest(record: &Record, misfit: &[f64]) -> Option<String> {
     ))
 }
 
-/// The power of the pressure: levels as multiples of their common shape over the contraction.
+/// Exponent of the pressure: levels as multiples of their common shape over the contraction.
 fn exponent(record: &Record, misfit: &[f64]) -> Option<String> {
     let levels = Levels::of(record, &vec![true; record.len()]);
     if levels.len() < 2 || levels.mean.iter().any(|p| *p <= 0.0) {
@@ -103,7 +104,7 @@ fn exponent(record: &Record, misfit: &[f64]) -> Option<String> {
             "it changes its form with the pressure: no power of the pressure describes it".to_owned(),
         );
     }
-    // A straight line through the logarithms.
+    // Regression line through the logarithms.
     let points: Vec<(f64, f64)> = levels.mean.iter().zip(&multiples).map(|(p, m)| (p.ln(), m.ln())).collect();
     let n = points.len() as f64;
     let (x, y) = points.iter().fold((0.0, 0.0), |(x, y), p| (x + p.0 / n, y + p.1 / n));

@@ -1,4 +1,5 @@
-//! One or two effects that may explain a misfit, the best first, with what they would explain in linear approximation.
+//! Hypotheses of one or two effects for a misfit, best first, with what they would explain in linear
+//! approximation.
 
 use bulge_model::Model;
 use rayon::prelude::*;
@@ -8,25 +9,26 @@ use crate::diagnosis::confirm::{Confirmed, starts};
 use crate::diagnosis::decision_rule::RULE;
 use crate::diagnosis::linearised_model::LinearisedModel;
 
-/// Hypotheses whose linear evidence is this much below the best are not fitted.
+/// Hypotheses whose linear evidence is this far below the best are not fitted.
 const FITTED: f64 = 12.0;
 /// Most single effects and most pairs that are fitted.
 const MOST: [usize; 2] = [8, 6];
-/// Forms from which a fit of an effect starts.
+/// Number of forms from which a fit of an effect starts.
 const FORMS: usize = 2;
-/// A fall of the square of the misfit beyond which tangents say little: then usual numbers are starts too, and the best of each kind are fitted.
+/// Decrease of the squared misfit beyond which the linear approximation is poor: usual parameters are then
+/// starts too, and the best hypotheses of each kind are fitted.
 pub(crate) const FAR: f64 = 200.0;
 
 /// One or two effects, with what they would explain in linear approximation.
 #[derive(Debug, Clone)]
 pub(crate) struct Hypothesis {
-    /// Places in the linearised model's list of effects.
+    /// Indices in the linearised model's list of effects.
     pub(crate) effects: Vec<usize>,
-    /// Log evidence with the log priors of the effects, over that of the model without them.
+    /// Log evidence including the log priors of the effects, relative to the model without them.
     pub(crate) log_evidence: f64,
-    /// Fall of the square of the misfit.
+    /// Decrease of the squared misfit.
     pub(crate) gain: f64,
-    /// Starting numbers of a fit.
+    /// Starting parameters of a fit.
     pub(crate) starts: Vec<Vec<f64>>,
 }
 /// A hypothesis after its fit.
@@ -35,10 +37,11 @@ pub(crate) struct Tried {
     pub(crate) hypothesis: Hypothesis,
     /// The fit; none if it failed.
     pub(crate) confirmed: Option<Confirmed>,
-    /// Log evidence of the fit with those log priors, over that of the model before.
+    /// Log evidence of the fit including those log priors, relative to the model before.
     pub(crate) log_evidence: f64,
 }
-/// Log of the prior chance of an effect: families are equally likely; the head of a family has half of its chance, the other members share the rest.
+/// Log prior probability of an effect: families are equally likely; the head of a family has half of its
+/// probability, and the other members share the rest.
 pub(crate) fn effect_log_prior(linear: &LinearisedModel, effect: usize) -> f64 {
     let effects = &linear.sensitivities.effects;
     let shown = |place: usize| linear.candidates.iter().any(|c| c.effect == place);
@@ -51,7 +54,7 @@ pub(crate) fn effect_log_prior(linear: &LinearisedModel, effect: usize) -> f64 {
     let of_family = -(families.len().max(1) as f64).ln();
     let heads = (0..effects.len()).filter(|i| shown(*i) && effects[*i].effect.card().name == own).count();
     let is_head = effects[effect].effect.card().name == own;
-    // Of two that are the same on these data, the one that takes less to be seen.
+    // Of two effects that are indistinguishable on these data, prefer the one with fewer requirements.
     let simple =
         if effects[effect].effect.card().needs == bulge_effects::Needs::Time { -RULE.simpler } else { 0.0 };
     of_family
@@ -80,7 +83,7 @@ pub(crate) fn hypotheses(linear: &LinearisedModel, model: &Model, room: usize) -
     all
 }
 
-/// Every effect with the forms that suit best.
+/// Every effect in its best forms.
 pub(crate) fn singles(linear: &LinearisedModel, model: &Model) -> Vec<Hypothesis> {
     let mut found: Vec<Hypothesis> = Vec::new();
     for effect in 0..linear.sensitivities.effects.len() {
@@ -114,7 +117,7 @@ fn starts_of(linear: &LinearisedModel, model: &Model, candidate: &Candidate, siz
     starts(&linear.sensitivities.sensitivities[candidate.sensitivity], effect, model, sizes)
 }
 
-/// Every pair of effects of different families, at the forms that suit best together.
+/// Every pair of effects of different families, in the forms that fit best together.
 fn pairs(linear: &LinearisedModel, model: &Model) -> Vec<Hypothesis> {
     let effects = &linear.sensitivities.effects;
     let family = |candidate: &Candidate| effects[candidate.effect].effect.card().family;
@@ -130,7 +133,7 @@ fn pairs(linear: &LinearisedModel, model: &Model) -> Vec<Hypothesis> {
                     continue;
                 }
                 let together = explained(&[a, b], &linear.z);
-                // A pair of which one does nothing is no pair.
+                // A pair with an effect of size 0 is a single effect.
                 if together.sizes.contains(&0.0) {
                     continue;
                 }
@@ -151,7 +154,7 @@ fn pairs(linear: &LinearisedModel, model: &Model) -> Vec<Hypothesis> {
         if kept.iter().any(|h| places.iter().all(|place| h.effects.contains(place))) {
             continue;
         }
-        // What explains more alone comes first.
+        // Try the candidates that explain more alone first.
         let alone = |place: usize| all[place].explains(&linear.z).gain;
         let (first, second) = if alone(i) >= alone(j) { (i, j) } else { (j, i) };
         let chosen = [&all[first], &all[second]];

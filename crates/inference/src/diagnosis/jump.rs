@@ -1,10 +1,12 @@
-//! A jump within a sweep: a clamp that slipped, a cell that was knocked, an amplifier that changed its range. To a law of slow noise it is noise.
+//! Detects a jump within a sweep: a clamp that slipped, a cell that was knocked, an amplifier that changed
+//! its range. A law of slow noise would take it for noise.
 //!
 //! ```text
 //! z(k) = <s, e>/|s|,    s = K^-1/2 (1 from row k to the end of its sweep) outside of the model's numbers,    e the whitened misfit outside of them
 //! chance = 1 - (1 - erfc(|z|/(L sqrt 2)))^M,    L the level of all M of them by their median, at least 1
 //! ```
-//! It is the likelihood ratio of one jump against the noise (Page 1955; Basseville and Nikiforov 1993), the noise being coloured as it was found.
+//! z is the likelihood-ratio statistic of one jump in the estimated coloured noise (Page 1955; Basseville and
+//! Nikiforov 1993).
 
 use bulge_model::Record;
 use rayon::prelude::*;
@@ -15,27 +17,27 @@ use crate::diagnosis::space::Space;
 use crate::median::median;
 use crate::noise::whitening::Whitening;
 
-/// Rows beside the ends of a sweep and beside its turns where a jump is not told from what happens there.
+/// Rows next to the ends of a sweep and to its turns, where a jump can't be distinguished from end effects.
 const EDGE: usize = 5;
-/// Rows below which the level is not known.
+/// Fewest rows for estimating the level.
 const FEWEST: usize = 60;
-/// Places that are tried at most: each costs the whitening of a column.
+/// Most positions that are tried, because each requires whitening a column.
 const MOST: usize = 1500;
-/// Part of a jump's square that the model's numbers must leave it.
+/// Fraction of a jump's square that must remain outside the model's tangents.
 const OWN: f64 = 0.1;
-/// Median of the size of a standard normal number.
+/// Median of |x| for a standard normal x.
 const MEDIAN_SIZE: f64 = 0.674_489_750_196_081_7;
 
-/// A jump in what a model leaves.
+/// A jump in the residuals of a model.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Jump {
-    /// First row after it.
+    /// First row after the jump.
     pub(crate) row: usize,
     /// Its size \[N\].
     pub(crate) newtons: f64,
 }
 
-/// The clearest jump, if chance hardly gives one. `left` is the whitened misfit, row by row.
+/// The clearest jump, if it is significant. `left` is the whitened misfit, row by row.
 pub(crate) fn jump(record: &Record, whitening: &Whitening, space: &Space, left: &[f64]) -> Option<Jump> {
     let places = places(record);
     if !record.is_path() || places.len() < FEWEST || whitening.rows() != record.len() {
@@ -49,13 +51,13 @@ pub(crate) fn jump(record: &Record, whitening: &Whitening, space: &Space, left: 
     (chance(z / level, sizes.len()) < RULE.jump).then_some(found)
 }
 
-/// How often the largest of many normal numbers is as large as z.
+/// Probability that the largest of `places` normal variables exceeds z in absolute value.
 fn chance(z: f64, places: usize) -> f64 {
     let single = erfc(z.abs() / std::f64::consts::SQRT_2);
     -(places as f64 * (-single).ln_1p()).exp_m1()
 }
 
-/// Rows at which a jump could be seen, with the end of their sweep.
+/// Rows at which a jump could be detected, with the end of their sweep.
 fn places(record: &Record) -> Vec<(usize, usize)> {
     let moments = record.moments();
     let is_smooth = |row: usize| {
@@ -73,13 +75,13 @@ fn places(record: &Record) -> Vec<(usize, usize)> {
     places.into_iter().step_by(stride).collect()
 }
 
-/// The jump at a row with its size in standard deviations; none where the model's numbers could make it.
+/// The jump at a row, with its size in standard deviations; none if the model's parameters could absorb it.
 fn score(whitening: &Whitening, space: &Space, left: &[f64], (row, end): (usize, usize)) -> (Jump, f64) {
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     let mut column = vec![0.0; whitening.rows()];
     column[row..end].fill(1.0);
     let mut white = whitening.whitened(column);
-    // Rows for the priors of numbers follow those of the readings.
+    // Rows for the priors of parameters follow those of the readings.
     white.resize(left.len(), 0.0);
     let outside = space.outside_of_left_out(&white);
     let square = dot(&outside, &outside);
@@ -115,13 +117,14 @@ mod tests {
         Record::from_moments((0..600).map(moment).collect(), vec![0.0; 600], sweeps).unwrap()
     }
 
-    /// What is found in white noise of 1 N with slow noise of 2 N, and a jump of a size from row 200 to the end of the second stroke.
+    /// The jump found in white noise of 1 N and slow noise of 2 N with a jump of a given size from row 200 to
+    /// the end of the second stroke.
     fn found(record: &Record, size: f64, seed: u64) -> Option<Jump> {
         let mut law = NoiseLaw::white(1.0, NoiseSource::Saturated, 1e6, String::new());
         (law.correlated_n, law.time) = (2.0, Some(CorrelationTime::Seconds(20.0)));
         let whitening = Whitening::new(&law, record, &[true; 600], &[]).unwrap();
         let mut random = Random::new(seed, 0);
-        // A chain of the correlation time, started anew in each sweep.
+        // A Markov chain with the correlation time, restarted in each sweep.
         let (kept, mut slow) = ((-0.5_f64 / 20.0).exp(), 0.0);
         let mut noise = Vec::new();
         for moment in record.moments() {
@@ -146,7 +149,7 @@ mod tests {
 
     #[test]
     fn the_largest_of_many_is_large_more_often() {
-        // Two-sided beyond 5: 5.733e-7.
+        // Two-sided probability beyond 5: 5.733e-7.
         assert!((chance(-5.0, 1) / 5.733_031e-7 - 1.0).abs() < 1e-6);
         assert!((chance(5.0, 100) / 5.732_868e-5 - 1.0).abs() < 1e-5);
     }

@@ -1,14 +1,17 @@
-//! Lack of fit by near replicates (Christensen 1989): rows of different strokes in about the same state are measurements of about the same force. What they miss in
-//! common repeats, whatever its shape, and is no noise.
+//! Lack of fit by near replicates (Christensen 1989): rows of different strokes in about the same state
+//! measure about the same force. A misfit that they have in common repeats, whatever its shape, and isn't
+//! noise.
 //!
 //! ```text
 //! e = P K^-1/2 (y - F),    T = e' W e = sum over cells of ((sum of e)^2 - sum over strokes of (sum of its e)^2)/rows of the cell
 //! I = T f/(e' e),          f = rows - numbers                                                               (Moran 1950; Cliff and Ord 1981)
 //! ```
-//! W couples rows of one cell that are of different strokes, and no row with itself: I doesn't depend on the size of the noise, nor on its tails. Cells are parts of the
-//! range of contraction (of pressure, at held length), in three widths, each also moved by half of it; of one level and direction, of one level, and of one direction. Each of the
-//! eighteen is compared with Pearson's third distribution of its first three moments; their chances are combined by Cauchy's distribution (Liu and Xie 2020), which holds
-//! however they depend on each other.
+//! W couples rows of one cell that belong to different strokes, and no row with itself, so that I depends
+//! neither on the size of the noise nor on its tails. Cells are parts of the range of contraction (of
+//! pressure, at held length) in three widths, each also shifted by half a cell; they contain rows of one
+//! level and direction, of one level, or of one direction. Each of these eighteen statistics is compared with
+//! a Pearson type III distribution of the same first three moments. Their p-values are combined by the Cauchy
+//! combination test (Liu and Xie 2020), which holds for any dependence between them.
 
 use bulge_model::Record;
 use nalgebra::DMatrix;
@@ -20,34 +23,37 @@ use crate::diagnosis::setpoints::setpoints;
 use crate::diagnosis::strokes::{Point, Stroke, strokes};
 use crate::dot::dot;
 
-/// Cells over the range.
+/// Numbers of cells over the range.
 const CELLS: [f64; 3] = [5.0, 16.0, 50.0];
-/// Parts of a cell by which they are moved.
+/// Shifts of the cells, as fractions of a cell.
 const MOVED: [f64; 2] = [0.0, 0.5];
-/// Part of the range next to a turn in which rows of both directions are near in time too, and their noise may be.
+/// Fraction of the range next to a turn that is left out: rows of both directions are close in time there,
+/// and their noise may be correlated.
 const TURN: f64 = 0.06;
-/// tr W^2 below which so few rows are near replicates that they say nothing.
+/// Least tr W^2; below, there are too few near replicates.
 const ENOUGH: f64 = 20.0;
-/// Skewness below which a distribution is normal.
+/// Skewness below which the normal distribution is used.
 const EVEN: f64 = 1e-3;
 
-/// Which strokes are near replicates of each other.
+/// What near replicates have in common.
 #[derive(Clone, Copy)]
 enum Alike {
-    /// Of one level and direction.
+    /// Level and direction.
     Both,
     Level,
     Direction,
 }
 
-/// Rows of one state, stroke by stroke.
+/// Rows of one state, grouped by stroke.
 type Cell = Vec<Vec<usize>>;
 
-/// How often chance alone gives near replicates that miss as much in common; none if there are too few of them.
+/// p-value of the common misfit of near replicates; none if there are too few of them.
 ///
-/// `left` is the whitened misfit outside of `tangents`, which are orthonormal; both have rows for priors behind those of the record.
+/// `left` is the whitened misfit orthogonal to `tangents`, which are orthonormal. Both have rows for priors
+/// after those of the record.
 pub(crate) fn lack_of_fit(record: &Record, left: &[f64], tangents: &[Vec<f64>]) -> Option<f64> {
-    // Readings that went wrong alike would else lie in one cell: at the ends of the range that looks like physics.
+    // Use the set points: readings with the same error would otherwise share a cell, and at the ends of the
+    // range that looks like physics.
     let strokes = strokes(&setpoints(record));
     let rows = left.len();
     let columns = DMatrix::from_fn(rows, tangents.len(), |row, column| tangents[column][row]);
@@ -64,7 +70,7 @@ pub(crate) fn lack_of_fit(record: &Record, left: &[f64], tangents: &[Vec<f64>]) 
     combined(&chances)
 }
 
-/// Cells with rows of two strokes or more.
+/// Cells with rows of at least two strokes.
 fn cells(strokes: &[Stroke], alike: Alike, count: f64, moved: f64) -> Vec<Cell> {
     let mut found: BTreeMap<_, Cell> = BTreeMap::new();
     for stroke in strokes {
@@ -88,7 +94,7 @@ fn cells(strokes: &[Stroke], alike: Alike, count: f64, moved: f64) -> Vec<Cell> 
     found.into_values().filter(|cell| cell.len() > 1).collect()
 }
 
-/// The points of a stroke that are not next to its turns.
+/// The points of a stroke away from its turns.
 fn inner(points: &[Point]) -> &[Point] {
     let (Some(low), Some(high)) = (points.first(), points.last()) else { return points };
     let first = points.partition_point(|point| point.place < low.place + TURN);
@@ -123,7 +129,7 @@ fn traces(cells: &[Cell]) -> [f64; 2] {
     sums
 }
 
-/// Traces of P W, of its square and of its third power; the columns are Q.
+/// Traces of P W, of its square and of its third power; `columns` is Q.
 fn traces_outside(cells: &[Cell], columns: &DMatrix<f64>) -> [f64; 3] {
     let [two, three] = traces(cells);
     let image = |of: &DMatrix<f64>| {
@@ -141,7 +147,8 @@ fn traces_outside(cells: &[Cell], columns: &DMatrix<f64>) -> [f64; 3] {
     ]
 }
 
-/// Mean, second and third moment of I from those traces: of e' W e under normal noise, over those of e' e, which doesn't depend on the ratio.
+/// Mean, second and third moment of I from those traces: the moments of e' W e under normal noise over those
+/// of e' e, because I is independent of e' e.
 fn moments([one, two, three]: [f64; 3], freedom: f64) -> [f64; 3] {
     let (k2, k3) = (2.0 * two, 8.0 * three);
     let second = (k2 + one * one) * freedom / (freedom + 2.0);
@@ -149,7 +156,7 @@ fn moments([one, two, three]: [f64; 3], freedom: f64) -> [f64; 3] {
     [one, second, third]
 }
 
-/// How often chance gives as large a statistic of these cells.
+/// p-value of the statistic of these cells.
 fn chance(cells: &[Cell], left: &[f64], columns: &DMatrix<f64>) -> Option<f64> {
     let freedom = (left.len() - columns.ncols()) as f64;
     if traces(cells)[0] < ENOUGH || freedom < 1.0 {
@@ -162,7 +169,7 @@ fn chance(cells: &[Cell], left: &[f64], columns: &DMatrix<f64>) -> Option<f64> {
     beyond((found - mean) / sd, skewness)
 }
 
-/// How often a number of mean 0 and variance 1 is larger, with a skewness: Pearson's third distribution.
+/// Upper tail probability of a variable of mean 0 and variance 1 with a given skewness (Pearson type III).
 fn beyond(value: f64, skewness: f64) -> Option<f64> {
     if !(value.is_finite() && skewness.is_finite()) {
         return None;
@@ -174,7 +181,7 @@ fn beyond(value: f64, skewness: f64) -> Option<f64> {
     Gamma::new(shape, 1.0).ok().map(|gamma| gamma.sf((shape + value * shape.sqrt()).max(0.0)))
 }
 
-/// Chances of tests that depend on each other as that of one.
+/// Combines the p-values of dependent tests into one.
 fn combined(chances: &[f64]) -> Option<f64> {
     use std::f64::consts::PI;
     let bounded = chances.iter().map(|p| p.clamp(1e-15, 1.0 - 1e-9));
@@ -206,7 +213,7 @@ mod tests {
         Record::from_moments(moments, vec![0.0; 960], sweeps).unwrap()
     }
 
-    /// Orthonormal tangents of polynomials in contraction and pressure, and a column without them.
+    /// Orthonormal tangents from polynomials in contraction and pressure, and a column orthogonal to them.
     fn tangents(record: &Record) -> Vec<Vec<f64>> {
         let mut units: Vec<Vec<f64>> = Vec::new();
         for k in 0..6 {
@@ -237,7 +244,7 @@ mod tests {
 
     #[test]
     fn traces_are_those_of_whole_matrices() {
-        // Three cells of 2 to 4 strokes, two rows alone.
+        // Three cells of 2 to 4 strokes, and two single rows.
         let cells: Vec<Cell> = vec![
             vec![vec![0, 1], vec![2]],
             vec![vec![3], vec![4, 5], vec![6, 7, 8]],
@@ -260,19 +267,19 @@ mod tests {
 
     #[test]
     fn a_ratio_that_is_always_one_has_no_other_moments() {
-        // With P itself in the place of W, I is the number of degrees of freedom whatever the noise.
+        // With P itself in place of W, I equals the number of degrees of freedom for any noise.
         for freedom in [1.0, 4.0, 300.0_f64] {
             let found = moments([freedom; 3], freedom);
             for (power, found) in (1..).zip(found) {
                 assert!((found / freedom.powi(power) - 1.0).abs() < 1e-12, "{power}: {found}");
             }
         }
-        // A gamma distribution of the shape 4 has the skewness 1: P(x > 4 + 2 u) by its closed form.
+        // A gamma distribution with shape 4 has skewness 1; P(x > 4 + 2 u) has a closed form.
         let x = 4.0 + 2.0 * 1.5_f64;
         let closed = (-x).exp() * (1.0 + x + x * x / 2.0 + x.powi(3) / 6.0);
         assert!((beyond(1.5, 1.0).unwrap() - closed).abs() < 1e-12);
         assert!((beyond(1.644_853_626_951_472_2, 0.0).unwrap() - 0.05).abs() < 1e-9);
-        // Of equal chances the combination is that chance.
+        // The combination of equal p-values is that p-value.
         assert!((combined(&[0.02; 7]).unwrap() - 0.02).abs() < 1e-12);
     }
 
@@ -282,7 +289,7 @@ mod tests {
         let units = tangents(&record);
         let cells = cells(&strokes(&record), Alike::Both, 16.0, 0.0);
         let columns = DMatrix::from_fn(960, units.len(), |row, column| units[column][row]);
-        // Chances of draws are uniform, in the tail too.
+        // p-values under the null hypothesis are uniform, in the tail too.
         let draws = 4000;
         let chances: Vec<f64> = (0..draws)
             .into_par_iter()
@@ -306,7 +313,7 @@ mod tests {
             });
             alarms.count()
         };
-        // 12 expected; Cauchy's combination is exact in the far tail only.
+        // 12 expected; the Cauchy combination is exact in the far tail only.
         let found = [rate(&|noise| 3.0 * noise), rate(&|noise| noise * noise.abs())];
         assert!(found.iter().all(|count| (3..=26).contains(count)), "{found:?}");
     }
@@ -315,7 +322,8 @@ mod tests {
     fn what_repeats_is_seen_whatever_its_shape() {
         let record = record();
         let units = tangents(&record);
-        // Of 8 sigma in all, 0.26 a row: a ripple that no smooth function follows, an event of the way back, a step.
+        // 8 sigma in total, 0.26 per row: a ripple that no smooth function follows, an event of the return
+        // stroke, a step.
         let shapes: [fn(&Moment) -> f64; 3] = [
             |m| (260.0 * m.contraction).sin(),
             |m| f64::from(m.direction < 0.0) * (-((m.contraction - 0.06) / 0.004).powi(2)).exp(),

@@ -1,4 +1,5 @@
-//! A model at its best numbers, seen from where the rest of the catalogue stands: the misfit that is left, and what each effect could do about it.
+//! A model linearised at its best parameters, with the misfit and what each effect of the catalogue could
+//! explain of it.
 
 use bulge_effects::Catalogue;
 use bulge_model::{ModelError, Record};
@@ -22,9 +23,9 @@ use crate::noise::law::NoiseLaw;
 use crate::noise::whitening::Whitening;
 use crate::progress::Progress;
 
-/// A row whose stated standard deviation is that many times the usual one hardly counts.
+/// Rows whose stated standard deviation exceeds the usual one by this factor count as uncertain.
 const DOUBTFUL: f64 = 2.0;
-/// Smooth functions for at most this part of the rows that count as independent.
+/// Most smooth functions, as a fraction of the effective number of rows.
 const PART: f64 = 0.25;
 
 /// Everything that stays the same while models are tried.
@@ -34,18 +35,18 @@ pub(crate) struct Context<'a> {
     /// Means of rows, with their forces.
     pub(crate) record: &'a Record,
     pub(crate) whitening: &'a Whitening,
-    /// The noise of the means.
+    /// The noise law of the means.
     pub(crate) law: &'a NoiseLaw,
-    /// White noise of a single reading, with that of inputs which no data sheet states \[N\].
+    /// White noise of a single reading, including input noise that no data sheet states \[N\].
     pub(crate) row_n: f64,
     pub(crate) seed: u64,
-    /// Looks for these effects only.
+    /// Tests only these effects.
     pub(crate) only: Option<&'a [String]>,
-    /// Asks nothing of the misfit: there are no readings, or nothing is looked for.
+    /// Skips the tests of the misfit, because there are no readings or nothing is looked for.
     pub(crate) is_planned: bool,
-    /// Draws forms: they may be wrong by more than where models are compared.
+    /// For drawing forms: form errors may be larger than in comparisons of models.
     pub(crate) to_draw: bool,
-    /// Who hears of the work.
+    /// Callbacks for the progress.
     pub(crate) progress: &'a Progress,
     /// Columns of kin that are known already.
     pub(crate) kin: Option<&'a Kin>,
@@ -53,17 +54,18 @@ pub(crate) struct Context<'a> {
     pub(crate) fits: Option<&'a Fits<'a>>,
 }
 
-/// A smooth function outside what the model's numbers can do.
+/// A smooth function, orthogonalised against the model's tangents.
 #[derive(Debug, Clone)]
 pub(crate) struct Direction {
     pub(crate) variable: Variable,
     /// Unit vector in coordinates.
     pub(crate) unit: Vec<f64>,
-    /// The function \[N\] that goes with one standard deviation of its coordinate.
+    /// Change of the force for one standard deviation of its coordinate \[N\].
     pub(crate) values: Vec<f64>,
 }
 
-/// A model at its numbers, whitened: its tangents and what it misses. Priors of its numbers are further rows.
+/// A model at its parameters, whitened: its tangents and its misfit. Priors of its parameters are additional
+/// rows.
 struct Whitened {
     tangent: Tangents,
     priors: usize,
@@ -72,24 +74,24 @@ struct Whitened {
     misfit: Vec<f64>,
 }
 
-/// The misfit of a model, and all candidates, in coordinates.
+/// A model's misfit and all candidates, in coordinates.
 pub(crate) struct LinearisedModel {
     pub(crate) sensitivities: Sensitivities,
     pub(crate) candidates: Vec<Candidate>,
     pub(crate) smooth: Vec<Direction>,
     /// The coordinates.
     pub(crate) space: Space,
-    /// Number of priors of numbers and form errors, the last rows of every column.
+    /// Number of priors of parameters and form errors, the last rows of every column.
     pub(crate) priors: usize,
-    /// One standard deviation of the offset of each sweep, in coordinates; none if the law has no offsets.
+    /// One standard deviation of the offset of each sweep, in coordinates; empty if the law has no offsets.
     pub(crate) offsets: Vec<Vec<f64>>,
-    /// How much the formulas of the model's effects are bent.
+    /// Form errors of the model's effects.
     pub(crate) form: FormError,
-    /// What form errors of one standard deviation change, in their principal directions \[N\].
+    /// Form errors of one standard deviation in their principal directions \[N\].
     pub(crate) bent: Vec<Vec<f64>>,
     /// The misfit in coordinates.
     pub(crate) z: Vec<f64>,
-    /// The misfit whitened, row by row, then that of priors.
+    /// The whitened misfit row by row, followed by that of the priors.
     white: Vec<f64>,
     /// Force of the model at the means \[N\].
     pub(crate) force: Vec<f64>,
@@ -97,7 +99,7 @@ pub(crate) struct LinearisedModel {
 
 #[cfg(test)]
 impl<'a> Context<'a> {
-    /// White noise of a size that the law says, seed 1, the whole catalogue.
+    /// A context with white noise as in the law, seed 1 and the whole catalogue.
     pub(crate) fn plain(
         catalogue: &'a Catalogue,
         record: &'a Record,
@@ -124,7 +126,7 @@ impl<'a> Context<'a> {
 }
 
 impl Context<'_> {
-    /// A model at the numbers `theta`, whitened.
+    /// A model at parameters `theta`, whitened.
     fn whitened(&self, prepared: &Prepared, theta: &[f64]) -> Result<Whitened, ModelError> {
         let tangent = Tangents::of(prepared, theta, self.record)?;
         let priors: Vec<(usize, f64, f64)> = tangent
@@ -147,14 +149,14 @@ impl Context<'_> {
         Ok(Whitened { tangent, priors: priors.len(), white, misfit })
     }
 
-    /// A column whitened, with zeros for so many priors.
+    /// A whitened column, with a zero for each of `priors` priors.
     pub(crate) fn white(&self, column: &[f64], priors: usize) -> Vec<f64> {
         let mut white = self.whitening.whitened(column.to_vec());
         white.resize(column.len() + priors, 0.0);
         white
     }
 
-    /// How much the formulas of a model's effects are bent at the numbers `theta`.
+    /// Form errors of a model's effects at parameters `theta`.
     pub(crate) fn form_error(&self, prepared: &Prepared, theta: &[f64]) -> Result<FormError, ModelError> {
         if !may_bend(prepared) {
             return Ok(FormError::default());
@@ -163,7 +165,8 @@ impl Context<'_> {
         Ok(self.bent(prepared, theta, &whitened, &Space::without(&whitened.white)).0)
     }
 
-    /// What form errors of one standard deviation change in a model at the numbers `theta`, in their principal directions \[N\].
+    /// Form errors of one standard deviation in their principal directions, for a model at parameters `theta`
+    /// \[N\].
     pub(crate) fn form_directions(&self, prepared: &Prepared, theta: &[f64]) -> Vec<Vec<f64>> {
         let Ok(whitened) = self.whitened(prepared, theta) else { return Vec::new() };
         let (_, bent) = self.bent(prepared, theta, &whitened, &Space::without(&whitened.white));
@@ -182,7 +185,7 @@ impl Context<'_> {
         FormError::of(&bendings, space, &whitened.misfit, &whiten, self.to_draw)
     }
 
-    /// A model with the numbers `theta`.
+    /// Linearises a model at parameters `theta`.
     pub(crate) fn linearised(
         &self,
         prepared: &Prepared,
@@ -251,8 +254,8 @@ impl Context<'_> {
         self.record.sweeps().iter().map(of).collect()
     }
 
-    /// Smooth functions, the smoothest first, each without those before it and without what the model's own numbers and form errors can do: `known`, orthonormal
-    /// columns \[N\] and whitened.
+    /// Smooth functions, the smoothest first, each orthogonalised against those before it and against the
+    /// model's tangents and form errors, `known` as orthonormal columns in newtons and whitened.
     fn directions(
         &self,
         mut known: Vec<(Vec<f64>, Vec<f64>)>,
@@ -279,7 +282,7 @@ impl Context<'_> {
         found
     }
 
-    /// Rows that hardly count, because their direction is in doubt: what a function would be there is not known from them.
+    /// Rows of uncertain direction. They have little weight, so a function isn't determined there.
     fn doubtful(&self) -> Vec<usize> {
         let Some(sd) = self.record.force_sd() else { return Vec::new() };
         let usual = median(&mut sd.to_vec());
@@ -288,17 +291,17 @@ impl Context<'_> {
 }
 
 impl LinearisedModel {
-    /// The place of an effect in the list of sensitivities.
+    /// The index of an effect in the list of sensitivities.
     pub(crate) fn place(&self, name: &str) -> Option<usize> {
         self.sensitivities.effects.iter().position(|one| one.effect.card().name == name)
     }
 
-    /// Square of the misfit that smooth functions follow; as many as there are of them by chance alone.
+    /// Squared misfit along the smooth functions; its expectation under chance is their number.
     pub(crate) fn structure(&self) -> f64 {
         self.smooth.iter().map(|d| dot(&d.unit, &self.z).powi(2)).sum()
     }
 
-    /// What the smooth functions make of a misfit in coordinates, row by row \[N\].
+    /// The part of a misfit in coordinates that lies along the smooth functions, row by row \[N\].
     pub(crate) fn systematic(&self, z: &[f64]) -> Vec<f64> {
         let mut sum = vec![0.0; self.force.len()];
         for direction in &self.smooth {
@@ -310,17 +313,17 @@ impl LinearisedModel {
         sum
     }
 
-    /// How often chance gives near replicates that miss as much in common; none if there are too few of them.
+    /// p-value of the common misfit of near replicates; none if there are too few of them.
     pub(crate) fn lack_of_fit(&self, record: &Record) -> Option<f64> {
         lack_of_fit(record, &self.space.outside_of_left_out(&self.white), self.space.left_out())
     }
 
-    /// The period \[s\] of an oscillation in what is left; none if there is none.
+    /// The period \[s\] of an oscillation in the residuals; none if there is none.
     pub(crate) fn oscillation(&self, record: &Record) -> Option<f64> {
         oscillation(record, &self.space.outside_of_left_out(&self.white))
     }
 
-    /// A jump within a sweep in what is left; none if there is none.
+    /// A jump within a sweep in the residuals; none if there is none.
     pub(crate) fn jump(&self, context: &Context<'_>) -> Option<Jump> {
         jump(context.record, context.whitening, &self.space, &self.space.outside_of_left_out(&self.white))
     }
@@ -329,7 +332,7 @@ impl LinearisedModel {
         self.smooth.iter().map(|direction| direction.unit.clone()).collect()
     }
 
-    /// What the misfit of a right model would be drawn from.
+    /// The distribution of a right model's misfit.
     pub(crate) fn chance_of<'a>(&'a self, context: &'a Context<'_>) -> Chance<'a> {
         Chance {
             coordinates: self.z.len(),
@@ -340,7 +343,7 @@ impl LinearisedModel {
         }
     }
 
-    /// How often chance alone gives as much misfit: by the screen and by the smooth test.
+    /// The null distribution, and the p-values of the screen and of the smooth test.
     pub(crate) fn chance(&self, context: &Context<'_>) -> (Null, [f64; 2]) {
         let units = self.units();
         let found = Statistics::of(&self.z, &self.candidates, &units);

@@ -1,4 +1,4 @@
-//! The systematic part of what a model leaves: how large in newtons, and on what it depends.
+//! The systematic part of a model's residuals: its size in newtons, and the variables on which it depends.
 
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
@@ -13,7 +13,8 @@ const DRAWS: usize = 400;
 
 /// RMS of the systematic misfit \[N\], and its 95 % interval.
 ///
-/// The smooth functions that the model can't follow have the coordinates z_j, each with the variance 1; what they add up to has on average sum |f_j|^2 more than the truth.
+/// The smooth functions that the model can't follow have the coordinates z_j with variance 1 each; the mean
+/// square of their sum exceeds the true one by sum |f_j|^2 in expectation.
 pub(crate) fn misfit(linear: &LinearisedModel, seed: u64) -> (f64, [f64; 2]) {
     let n = linear.force.len() as f64;
     let coordinates: Vec<f64> = linear.smooth.iter().map(|d| dot(&d.unit, &linear.z)).collect();
@@ -49,8 +50,8 @@ pub(crate) fn misfit(linear: &LinearisedModel, seed: u64) -> (f64, [f64; 2]) {
     (found, [at(25).min(found), at(975).max(found)])
 }
 
-/// On which variables the misfit depends: share of the excess over chance, and how often chance alone gives as much (Holm 1979), the largest share
-/// first.
+/// Variables on which the misfit depends: share of the excess over chance, and p-value (Holm 1979), the
+/// largest share first.
 pub(crate) fn located(linear: &LinearisedModel) -> Vec<Located> {
     let mut found: Vec<(Variable, f64, f64, f64)> = Vec::new();
     for variable in Variable::ALL {

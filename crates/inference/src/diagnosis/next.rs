@@ -1,4 +1,5 @@
-//! The next experiment: the protocol within the user's limits that best separates the rivals left, and how often to repeat it; or the honest answer that none does.
+//! The next experiment: the protocol within the user's limits that best separates the remaining rivals, and
+//! the number of repeats; or the answer that none does.
 //!
 //! ```text
 //! d^2 after R repeats = d^2 of the data at hand + R d^2 of the protocol,    d the sigmas between the named effect and its nearest rival after refitting
@@ -21,12 +22,12 @@ use crate::noise::law::{CorrelationTime, NoiseLaw};
 use crate::noise::whitening::Whitening;
 use crate::protocol::bench::{Block, Path, Protocol, ReadingNoise};
 
-/// Most repeats that anybody is asked for.
+/// Most repeats of a proposal.
 const MOST_REPEATS: usize = 20;
 /// Rows of each sweep of a proposal.
 const ROWS: u32 = 60;
 
-/// What the next experiment may use; what the data used, where nothing is stated.
+/// Limits of the next experiment; the ranges of the data if nothing is stated.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct NextLimits {
     /// Least and largest pressure \[Pa\].
@@ -35,7 +36,7 @@ pub struct NextLimits {
     pub contraction: Option<[f64; 2]>,
 }
 
-/// How proposals say their number of pressures.
+/// The number of pressures as it appears in proposals.
 const COUNTS: [&str; 8] = [
     ", at two pressures",
     " at the lowest and the highest pressure",
@@ -52,10 +53,10 @@ const MOST_PRESSURE: f64 = 1e8;
 const CONTRACTIONS: [f64; 2] = [-1.0, 0.6];
 
 impl NextLimits {
-    /// Whether a bench can keep within them.
+    /// Checks whether a bench can keep within the limits.
     ///
     /// # Errors
-    /// The name of the limit that none can, and what is wrong with it.
+    /// The name of the impossible limit, and what is wrong with it.
     pub fn check(&self) -> Result<(), (&'static str, String)> {
         let [least, most] = CONTRACTIONS;
         if let Some([low, high]) = self.pressure_pa
@@ -80,17 +81,17 @@ impl NextLimits {
     }
 }
 
-/// The limits that hold.
+/// The limits in effect.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Limits {
     pressure_pa: [f64; 2],
     contraction: [f64; 2],
-    /// Seconds of one loop of the data.
+    /// Period of one loop of the data \[s\].
     period_s: f64,
 }
 
 impl Limits {
-    /// Those stated, else those of a record.
+    /// The stated limits, completed by the ranges of a record.
     pub(crate) fn of(record: &Record, stated: NextLimits) -> Self {
         let range = |of: &dyn Fn(&bulge_effects::Moment) -> f64| {
             record
@@ -102,7 +103,7 @@ impl Limits {
         let levels = Levels::of(record, &vec![true; record.len()]);
         let [low, high] = range(&|m| m.pressure);
         let kept = [levels.mean.first().copied().unwrap_or(low), levels.mean.last().copied().unwrap_or(high)];
-        // Cycles count on from sweep to sweep.
+        // The cycle number continues from sweep to sweep.
         let mut periods: Vec<f64> = record
             .sweeps()
             .iter()
@@ -128,7 +129,7 @@ impl Limits {
         if low == high { format!("at {low} bar") } else { format!("between {low} and {high} bar") }
     }
 
-    /// A proposal in words, without its number of pressures where only one may be used.
+    /// A proposal in words, without its number of pressures if only one may be used.
     fn without_count(&self, says: &str) -> String {
         let one = self.pressures(2).len() == 1;
         let counts = COUNTS.iter().find(|counts| one && says.contains(**counts));
@@ -144,15 +145,15 @@ impl Limits {
     }
 }
 
-/// A named effect with its class and the two models that differ by it.
+/// A named effect with its class, and the two models with and without it.
 pub(crate) struct Judged {
     pub(crate) class: Class,
     pub(crate) confidence: Confidence,
-    /// With the effect, and without it.
+    /// The model with the effect, and the one without it.
     pub(crate) models: Option<(Confirmed, Confirmed)>,
 }
 
-/// A protocol with a name.
+/// A protocol with its description.
 struct Proposal {
     says: &'static str,
     protocol: Protocol,
@@ -165,10 +166,10 @@ impl Proposal {
     }
 }
 
-/// What experiments can be made.
+/// The experiments to choose from.
 fn proposals(limits: &Limits) -> Vec<Proposal> {
     let [low, high] = limits.contraction;
-    // A loop must have a range; where the force has no bound at rest the model says so itself.
+    // A loop needs a range. If the force is unbounded at rest, evaluating the model reports it.
     let whole = [low, high.max(low + 0.01)];
     let block = |pressures: usize, contraction: [f64; 2], path: Path, period: f64, cycles: u32| Block {
         path,
@@ -233,7 +234,7 @@ fn proposals(limits: &Limits) -> Vec<Proposal> {
     .collect()
 }
 
-/// Experiments in which the length is held and the pressure goes to and fro.
+/// Experiments at held length in which the pressure rises and falls.
 fn filled(limits: &Limits, whole: [f64; 2]) -> Vec<Proposal> {
     let slow = limits.period_s;
     let one = |says, blocks: Vec<Block>| Proposal { says, protocol: Protocol::new(blocks) };
@@ -263,7 +264,8 @@ fn filled(limits: &Limits, whole: [f64; 2]) -> Vec<Proposal> {
     ]
 }
 
-/// The experiment that best separates the effects of the first class that holds several; none if every class is decided.
+/// The experiment that best separates the effects of the first class with several members; none if every
+/// class is decided.
 pub(crate) fn next_experiment(
     context: &Context<'_>,
     judged: &[Judged],
@@ -285,14 +287,14 @@ pub(crate) fn next_experiment(
         .map(|rival| (rival.effect.card().name.to_owned(), rival.separation))
         .collect();
     let names: Vec<String> = rivals.iter().map(|(name, _)| name.clone()).collect();
-    // A law of friction says nothing certain of what it does while all stands still: holds decide nothing about it.
+    // A friction law is uncertain during standstill, so tests with holds decide nothing about it.
     let is_friction = open.class.effect.card().signature.parity == Parity::Odd;
     let tests = proposals(limits).into_iter().filter(|proposal| !(is_friction && proposal.holds()));
     let tried = tests.filter_map(|test| {
         let sigmas = separations(context, with, without, (&named, &names), &test.protocol)?;
         Some((Told::by(test.says, &rivals, &sigmas)?, test.protocol))
     });
-    // Of tests that tell the same the first stands.
+    // Among equally good tests the first one is chosen.
     let best = tried.reduce(|best, other| if other.0.is_better(&best.0) { other } else { best });
     let separate = open.class.effect.card().separate;
     let nearest = |rivals: &[&(String, f64)]| {
@@ -338,7 +340,7 @@ pub(crate) fn next_experiment(
     })
 }
 
-/// The noise of the data at hand, as far as another test has it: a correlation over rows means nothing there.
+/// The noise of the data at hand, as far as it applies to another test: a correlation over rows doesn't.
 fn noise_of(context: &Context<'_>, protocol: &Protocol) -> ReadingNoise {
     let seconds = match context.law.time {
         Some(CorrelationTime::Seconds(time)) if !protocol.is_static() => Some(time),
@@ -358,19 +360,20 @@ fn noise_of(context: &Context<'_>, protocol: &Protocol) -> ReadingNoise {
     }
 }
 
-/// What a proposed test tells from the named effect.
+/// How well a proposed test separates the rivals from the named effect.
 struct Told<'a> {
     says: &'static str,
-    /// Rivals, and how far they are in the data at hand.
+    /// The rivals that it separates, with their separation in the data at hand.
     rivals: Vec<&'a (String, f64)>,
-    /// Times that the test must be made to tell all of them.
+    /// Number of repeats that separates all of them.
     repeats: f64,
-    /// Sigmas to the nearest of them after that, the data at hand counted.
+    /// Separation of the nearest one in sigmas after the repeats, including the data at hand.
     after: f64,
 }
 
 impl<'a> Told<'a> {
-    /// What a test tells that may be repeated, by the sigmas between the named effect and each rival; none if that is nothing.
+    /// The result of a test that may be repeated, from the sigmas between the named effect and each rival;
+    /// none if it separates no rival.
     fn by(says: &'static str, rivals: &'a [(String, f64)], sigmas: &[f64]) -> Option<Self> {
         let is_told = |((_, at_hand), sigma): &(&(String, f64), &f64)| {
             **sigma > 0.0 && repeats(*at_hand, **sigma) <= MOST_REPEATS as f64
@@ -383,7 +386,8 @@ impl<'a> Told<'a> {
         Some(Self { says, rivals: told.into_iter().map(|(rival, _)| rival).collect(), repeats, after })
     }
 
-    /// Whether it tells more rivals, or as many in fewer repeats, or as fast and further.
+    /// Whether it separates more rivals, or as many in fewer repeats, or as many in as few with a larger
+    /// separation.
     fn is_better(&self, other: &Self) -> bool {
         let number = self.rivals.len().cmp(&other.rivals.len());
         let faster = other.repeats.total_cmp(&self.repeats);
@@ -391,7 +395,8 @@ impl<'a> Told<'a> {
     }
 }
 
-/// How often a test must be made that tells rivals by `sigma`, which `at_hand` are in the data at hand.
+/// Number of repeats of a test that separates a rival by `sigma`; `at_hand` is the separation in the data at
+/// hand.
 fn repeats(at_hand: f64, sigma: f64) -> f64 {
     ((RULE.separation.powi(2) - at_hand.powi(2)).max(0.0) / (sigma * sigma)).ceil().max(1.0)
 }
@@ -400,7 +405,8 @@ fn listed(names: &[String]) -> String {
     names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
 }
 
-/// Sigmas between an effect and each of its rivals in a planned test; none if the test can't be made with this muscle.
+/// Sigmas between an effect and each of its rivals in a planned test; none if the test is impossible with
+/// this muscle.
 fn separations(
     context: &Context<'_>,
     with: &Confirmed,
@@ -426,7 +432,8 @@ fn separations(
     };
     let record = record.with_force(prediction.force);
     let whitening = Whitening::new(&law, &record, &vec![true; record.len()], &variances).ok()?;
-    // Coordinates are those of what is looked for: without the effect itself, most of its signal would have none.
+    // Coordinates span the candidates only. Without the effect itself among them, most of its signal would be
+    // lost.
     let only: Vec<String> = rivals.iter().chain([named]).cloned().collect();
     let planned = Context {
         record: &record,
@@ -439,7 +446,7 @@ fn separations(
     let linear = planned.linearised(&without.prepared, &without.theta).ok()?;
     let signal = planned.signal(with, &linear).ok()?;
     let beside = planned.beside(&linear, &signal, &[]);
-    // What can't act in the test is not told by it.
+    // A rival that can't act in the test isn't separated by it.
     let of = |name: &String| linear.place(name).map_or(0.0, |place| beside.separation(&linear, place));
     Some(rivals.iter().map(of).collect())
 }
@@ -466,14 +473,15 @@ mod tests {
         let by = |says, sigmas: [f64; 3]| Told::by(says, &rivals, &sigmas);
         let two = by("two", [2.0, 0.0, 0.8]).unwrap();
         assert_eq!(two.rivals.iter().map(|rival| rival.0.as_str()).collect::<Vec<_>>(), ["near", "far"]);
-        // The far one takes ceil((3.29^2 - 2.5^2)/0.8^2) = 8 times, the near one ceil((3.29^2 - 0.5^2)/2^2) = 3.
+        // The far one takes ceil((3.29^2 - 2.5^2)/0.8^2) = 8 repeats, the near one ceil((3.29^2 - 0.5^2)/2^2)
+        // = 3.
         assert!((two.repeats - 8.0).abs() < 1e-12);
         assert!((two.after - (2.5_f64.powi(2) + 8.0 * 0.64).sqrt()).abs() < 1e-12);
-        // Twenty times 0.7^2 are less than 3.29^2.
+        // Twenty times 0.7^2 is less than 3.29^2.
         assert!(by("none", [0.7, 0.7, 0.2]).is_none());
-        // By a hair: 3.29^2 is 10.8241, so 3.29 tells at once and 3.28 doesn't.
+        // Just at the limit: 3.29 sigma takes one repeat, 3.28 sigma takes two.
         assert!((repeats(0.0, 3.29) - 1.0).abs() < 1e-12 && (repeats(0.0, 3.28) - 2.0).abs() < 1e-12);
-        // More rivals go before fewer repeats, and those before a larger distance.
+        // More rivals are preferred to fewer repeats, and those to a larger separation.
         let one = by("one", [9.0, 0.7, 0.1]).unwrap();
         assert!(two.is_better(&one) && !one.is_better(&two));
         let further = by("further", [2.0, 0.0, 0.9]).unwrap();

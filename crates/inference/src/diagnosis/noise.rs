@@ -1,4 +1,5 @@
-//! The noise law of a record, found before any candidate is looked at, and then frozen: what a saturated model leaves, or repeats, or the data sheets.
+//! The noise law of a record, estimated before any candidate is tested and then kept fixed: from the
+//! residuals of a saturated model, from repeats, or from the data sheets.
 
 use bulge_effects::Catalogue;
 use bulge_measurements::PureError;
@@ -17,38 +18,39 @@ use crate::median::median;
 use crate::noise::inputs::{Scatter, input_noise};
 use crate::noise::law::{NoiseLaw, NoiseSource};
 
-/// Independent columns of the saturated model, as a part of the rows: of effects, and of all.
-/// Along a path fewer: a model with many numbers follows correlated noise, and takes it away.
+/// Most independent columns of the saturated model relative to the rows: for effects here, for all columns in
+/// the next constant. Fewer along a path, because a model with many parameters follows correlated noise and
+/// hides it.
 const EFFECTS_PART: [f64; 2] = [0.22, 0.08];
 const ALL_PART: [f64; 2] = [0.4, 0.15];
-/// Most independent columns: with many rows more of them only cost time.
+/// Most independent columns; with many rows, more of them only cost time.
 const MOST: usize = 160;
-/// Columns that there are in any case, if there are rows enough.
+/// Columns that are allowed in any case, if there are enough rows.
 const FEW: f64 = 40.0;
-/// An effect of which less than this part is new is one of those before.
+/// An effect is skipped if less than this fraction of it is new.
 const ALIKE: f64 = 0.01;
-/// A column of which less than this part is new adds nothing.
+/// A column is skipped if less than this fraction of it is new.
 const NEW: f64 = 1e-4;
-/// Part of a column that is rounding.
+/// A remainder below this fraction of a column is rounding error.
 const ROUNDING: f64 = 1e-9;
-/// Degrees of freedom below which data sheets are better than what is left.
+/// Degrees of freedom below which data sheets are better than the residuals.
 const FEWEST: f64 = 8.0;
-/// Degrees of freedom from which repeats of a static map are the noise.
+/// Degrees of freedom from which repeats of a static map determine the noise.
 const ENOUGH_REPEATS: f64 = 15.0;
 
-/// What the law is found from.
+/// The data for estimating the law.
 pub(crate) struct Source<'a> {
     pub(crate) catalogue: &'a Catalogue,
     pub(crate) muscle: &'a Muscle,
     /// Means of rows, with their forces.
     pub(crate) record: &'a Record,
-    /// Of the means \[N^2\], from noise of pressure and contraction.
+    /// Variances of the means from noise of pressure and contraction \[N^2\].
     pub(crate) input_variances: &'a [f64],
     /// Derivatives of the force by contraction and pressure at the means.
     pub(crate) slopes: [&'a [f64]; 2],
-    /// How many readings each mean has.
+    /// Number of readings in each mean.
     pub(crate) counts: &'a [f64],
-    /// Variances by which the means differ for other reasons \[N^2\].
+    /// Variances in which the means differ for other reasons \[N^2\].
     pub(crate) unequal: &'a [f64],
     /// Scatter of the readings of each mean.
     pub(crate) within: &'a [Option<Scatter>],
@@ -56,8 +58,9 @@ pub(crate) struct Source<'a> {
 }
 
 impl Source<'_> {
-    /// The law, under a base model with the numbers `theta`, and the variances that come on top of it from noise of the inputs: those stated, else those that
-    /// the scatter shows. None if nothing is known of the noise.
+    /// The law under a base model with parameters `theta`, and the additional variances from noise of the
+    /// inputs: the stated ones, or else those that the scatter shows. None if nothing is known about the
+    /// noise.
     pub(crate) fn law(
         &self,
         prepared: &Prepared,
@@ -68,7 +71,7 @@ impl Source<'_> {
             self.pure_error.filter(|p| !self.record.is_path() && p.degrees_of_freedom >= ENOUGH_REPEATS)
         {
             let says = format!("repeated points, {:.0} degrees of freedom", pure.degrees_of_freedom);
-            // What the inputs scatter is in it.
+            // The scatter of the repeats includes noise of the inputs.
             let most = self.counts.iter().copied().fold(1.0, f64::max);
             let sd_n = pure.sd_n / most.sqrt();
             let law = NoiseLaw::white(sd_n, NoiseSource::Repeats, pure.degrees_of_freedom, says);
@@ -99,7 +102,7 @@ impl Source<'_> {
                     (0..n).flat_map(|i| design.iter().map(move |column| column[i])).collect();
                 let law = NoiseLaw::estimate(self.record, &vec![true; n], &inputs, &rows, residual).ok()?;
                 let cycles = BetweenCycles::of(self.record, residual);
-                // The median: rows whose direction is in doubt have a variance of their own.
+                // Use the median, because rows of uncertain direction have a large variance of their own.
                 let law = match cycles {
                     Some(cycles) => cycles.bounds(law, median(&mut inputs.clone())),
                     None => law,
@@ -116,9 +119,10 @@ impl Source<'_> {
     }
 }
 
-/// The saturated model as orthonormal columns: within the sweeps what the base can do, smooth functions, and what effects could do besides; from sweep
-/// to sweep only what is set: pressure, specimen, temperature, and the clock. More than that from sweep to sweep is an offset of the sweep: with a rich
-/// model there too nothing would be left to find offsets from.
+/// The saturated model as orthonormal columns. Within the sweeps it contains the tangents of the base,
+/// columns of the effects, and smooth functions; between sweeps only what is set: pressure, specimen,
+/// temperature, and the clock. Any other difference between sweeps is an offset: with a rich model between
+/// sweeps as well, no degrees of freedom would remain for the offsets.
 fn saturated(record: &Record, tangents: &[Vec<f64>], effects: &[&Vec<f64>]) -> Vec<Vec<f64>> {
     let n = record.len() as f64;
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "numbers of columns")]
@@ -131,8 +135,8 @@ fn saturated(record: &Record, tangents: &[Vec<f64>], effects: &[&Vec<f64>]) -> V
     for tangent in tangents {
         enter_new(&mut space, &within(record, tangent));
     }
-    // What is least like all before enters first, so that few columns stand for many effects.
-    // A column, and what of it is new.
+    // Greedy choice: the column with the largest new part enters first, so that few columns represent many
+    // effects. Each entry is a column and its new part.
     let mut left: Vec<(Vec<f64>, Vec<f64>)> = effects
         .iter()
         .map(|column| {
@@ -159,11 +163,11 @@ fn saturated(record: &Record, tangents: &[Vec<f64>], effects: &[&Vec<f64>]) -> V
     space.into_units()
 }
 
-/// A column less its mean over each sweep.
+/// A column without its mean over each sweep.
 fn within(record: &Record, column: &[f64]) -> Vec<f64> {
     let mut left = column.to_vec();
     if !record.is_path() {
-        // In a static map a sweep is no run: there are no offsets to be told.
+        // The sweeps of a static map are no runs and have no offsets.
         return left;
     }
     for sweep in record.sweeps() {
@@ -174,13 +178,14 @@ fn within(record: &Record, column: &[f64]) -> Vec<f64> {
         }
     }
     if norm(&left) <= ROUNDING * norm(column) {
-        // What is the same all along each sweep leaves only rounding: a direction of its own, and the wrong one.
+        // A column that is constant within each sweep leaves only rounding errors, which would give a
+        // spurious direction.
         left.fill(0.0);
     }
     left
 }
 
-/// What is set from sweep to sweep.
+/// Columns of what is set from sweep to sweep.
 fn between(record: &Record) -> Vec<Vec<f64>> {
     let kept = setpoints(record);
     let levels = Levels::of(record, &vec![true; record.len()]).len();

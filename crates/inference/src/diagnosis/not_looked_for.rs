@@ -1,21 +1,22 @@
-//! What could not be looked for in the data and could be the answer.
+//! Effects that could not be tested on the data but may be missing.
 
 use bulge_effects::{Catalogue, Mechanism, Needs};
 use serde::Serialize;
 
 use crate::diagnosis::document::{Diagnosis, Verdict};
 
-/// An effect that these data can't show apart from others, and that could be what is missing.
+/// An effect that these data can't show separately, but that may be missing.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct NotLookedFor {
     /// Its name.
     pub effect: String,
-    /// Why it could not be looked for.
+    /// Why it could not be tested.
     pub why: String,
 }
 
-/// Effects that could not be looked for and whose absence matters: those of the mechanism of a named effect or of one in its class, and all where the verdict is
-/// *unknown*. Where the model explains the data, nothing is wanting.
+/// Effects that could not be tested and whose absence matters: those with the mechanism of a named effect or
+/// of one in its class, and all of them if the verdict is *unknown*. If the model explains the data, the list
+/// is empty.
 pub(crate) fn not_looked_for(diagnosis: &Diagnosis, catalogue: &Catalogue) -> Vec<NotLookedFor> {
     let mechanism = |name: &str| catalogue.find(name).ok().map(|effect| effect.card().mechanism);
     let named: Vec<Mechanism> = diagnosis
@@ -27,7 +28,7 @@ pub(crate) fn not_looked_for(diagnosis: &Diagnosis, catalogue: &Catalogue) -> Ve
     let matters = |name: &str| {
         let Ok(effect) = catalogue.find(name) else { return false };
         let card = effect.card();
-        // Of one specimen, a difference between specimens explains nothing.
+        // With a single specimen, a difference between specimens explains nothing.
         card.needs != Needs::Specimens
             && match diagnosis.verdict {
                 Verdict::Unknown => true,

@@ -1,11 +1,13 @@
-//! What chance alone does: the largest score of the whole catalogue, and the adaptive smooth test, by parametric bootstrap in the coordinates of the screen.
+//! Null distributions: the largest score of the whole catalogue and the adaptive smooth test, by parametric
+//! bootstrap in the coordinates of the screen.
 //!
 //! ```text
 //! screen:  max over effects of the score S_e, as the normal quantile that chi^2 with as many degrees of freedom has (Wilson and Hilferty 1931)
 //! smooth:  max over K of (|z_1|^2 + .. + |z_K|^2 - K)/sqrt(2 K)    (Fan 1996: adaptive Neyman), the smoothest functions first
 //! ```
-//! Under the model alone z is standard normal, times the ratio of the true to the estimated noise: chi^2 with the degrees of freedom of the noise law. Signs, correlated
-//! candidates and the number of candidates are all in the draw.
+//! Under the model alone, z is standard normal times the ratio of the true to the estimated noise, which
+//! follows from chi^2 with the degrees of freedom of the noise law. The draws account for sign constraints,
+//! correlations between candidates, and the number of candidates.
 
 use rayon::prelude::*;
 
@@ -14,11 +16,11 @@ use crate::dot::dot;
 use crate::noise::offset_belief::OffsetBelief;
 use bulge_numerics::Random;
 
-/// Draws.
+/// Number of draws.
 const DRAWS: usize = 2000;
-/// Draws from one stream of random numbers.
+/// Draws per random stream.
 const PER_STREAM: usize = 100;
-/// Numbers of smooth functions that are looked at together.
+/// Numbers of smooth functions K of the smooth test.
 const TOGETHER: [usize; 8] = [2, 4, 8, 12, 16, 24, 32, 48];
 
 /// Both statistics of one data set.
@@ -30,7 +32,7 @@ pub(crate) struct Statistics {
     pub(crate) smooth: f64,
 }
 
-/// What the misfit of a right model is drawn from.
+/// The distribution of a right model's misfit.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Chance<'a> {
     /// Number of coordinates.
@@ -39,14 +41,15 @@ pub(crate) struct Chance<'a> {
     pub(crate) freedom: f64,
     /// One standard deviation of the offset of each sweep, in coordinates.
     pub(crate) offsets: &'a [Vec<f64>],
-    /// That standard deviation \[N\].
+    /// The standard deviation of the offsets \[N\].
     pub(crate) offset_n: f64,
-    /// How large it may be in truth.
+    /// Distribution of their true standard deviation.
     pub(crate) beliefs: &'a [OffsetBelief],
 }
 
 impl Chance<'_> {
-    /// The misfit of a right model, in coordinates. Noise may be larger than the law says, as it was estimated; offsets from few sweeps may be much larger.
+    /// Draws the misfit of a right model, in coordinates. The true noise may exceed its estimate, and offsets
+    /// estimated from few sweeps may be much larger.
     pub(crate) fn draw(&self, random: &mut Random) -> Vec<f64> {
         let scale = noise_ratio(random, self.freedom);
         let mut z: Vec<f64> = (0..self.coordinates).map(|_| scale * random.normal()).collect();
@@ -70,7 +73,7 @@ impl Chance<'_> {
     }
 }
 
-/// The distribution of both under chance, sorted.
+/// Null distributions of both statistics, sorted.
 #[derive(Debug, Clone)]
 pub(crate) struct Null {
     screen: Vec<f64>,
@@ -78,7 +81,7 @@ pub(crate) struct Null {
 }
 
 impl Statistics {
-    /// Of the coordinates z; `smooth` are orthonormal directions, the smoothest first.
+    /// The statistics of coordinates z; `smooth` are orthonormal directions, the smoothest first.
     pub(crate) fn of(z: &[f64], candidates: &[Candidate], smooth: &[Vec<f64>]) -> Self {
         let score = |c: &Candidate| quantile(c.explains(z).gain, c.columns.len());
         Self {
@@ -89,7 +92,7 @@ impl Statistics {
 }
 
 impl Null {
-    /// Of the catalogue and the smooth functions.
+    /// The null distributions for the catalogue and the smooth functions.
     pub(crate) fn of(chance: &Chance<'_>, candidates: &[Candidate], smooth: &[Vec<f64>], seed: u64) -> Self {
         let drawn: Vec<Statistics> = (0..DRAWS.div_ceil(PER_STREAM))
             .into_par_iter()
@@ -108,7 +111,7 @@ impl Null {
         Self { screen: sorted(&|s| s.screen), smooth: sorted(&|s| s.smooth) }
     }
 
-    /// How often chance alone gives as much or more: of the screen and of the smooth test.
+    /// p-values of the screen and of the smooth test.
     pub(crate) fn chance(&self, found: &Statistics) -> [f64; 2] {
         let part = |sorted: &[f64], value: f64| {
             let above = sorted.len() - sorted.partition_point(|v| *v < value);
@@ -118,14 +121,15 @@ impl Null {
     }
 }
 
-/// Estimated over true standard deviation is sqrt(chi^2/freedom): what z is then too large by.
+/// The ratio of the true to the estimated standard deviation, by which z is too large; the inverse is
+/// sqrt(chi^2/freedom).
 pub(crate) fn noise_ratio(random: &mut Random, freedom: f64) -> f64 {
     let freedom = freedom.max(1.0);
     let part = 2.0 / (9.0 * freedom);
     (1.0 - part + random.normal() * part.sqrt()).max(0.05).powf(-1.5)
 }
 
-/// The normal quantile of a chi^2 of `freedom` degrees of freedom.
+/// The normal quantile that corresponds to chi^2 with `freedom` degrees of freedom.
 pub(crate) fn quantile(square: f64, freedom: usize) -> f64 {
     let k = freedom.max(1) as f64;
     let part = 2.0 / (9.0 * k);
@@ -168,7 +172,8 @@ mod tests {
     }
 
     impl Null {
-        /// Score of a single effect that chance exceeds somewhere in the catalogue with this probability: a square of sigmas.
+        /// The score of a single effect (squared sigmas) that chance exceeds somewhere in the catalogue with
+        /// probability alpha.
         fn score_at(&self, alpha: f64) -> f64 {
             let place = ((1.0 - alpha) * (self.screen.len() - 1) as f64).round();
             #[expect(
@@ -177,7 +182,7 @@ mod tests {
                 reason = "a place in the list"
             )]
             let w = self.screen[place as usize];
-            // Back from the quantile to chi^2 of one degree of freedom.
+            // Back from the quantile to chi^2 with one degree of freedom.
             (1.0 - 2.0 / 9.0 + w * (2.0_f64 / 9.0).sqrt()).max(0.0).powi(3)
         }
     }
@@ -188,11 +193,11 @@ mod tests {
         let null = Null::of(&white(1e9), &candidates, &[], 1);
         // P(max z_i^2 < x) = erf(sqrt(x/2))^10: 95 % at x = 7.84.
         assert!((null.score_at(0.05) - 7.84).abs() < 0.6, "{}", null.score_at(0.05));
-        // Of one sign: half as many.
+        // With one sign only, half as many exceed a score.
         let signed: Vec<Candidate> = (0..10).map(|i| axis(i, Sign::Positive)).collect();
         let one_sided = Null::of(&white(1e9), &signed, &[], 1).score_at(0.05);
         assert!((one_sided - 6.58).abs() < 0.6, "{one_sided}");
-        // Noise that is hardly known: more.
+        // With poorly known noise the threshold is higher.
         assert!(Null::of(&white(8.0), &candidates, &[], 1).score_at(0.05) > 9.0);
     }
 
@@ -211,7 +216,7 @@ mod tests {
                 *count += usize::from(p < 0.1);
             }
         }
-        // 200 expected, standard deviation 13, and 14 of the bootstrap itself.
+        // 200 expected, with a standard deviation of 13, and of 14 for the bootstrap itself.
         assert!(below.iter().all(|count| (130..=270).contains(count)), "{below:?}");
     }
 

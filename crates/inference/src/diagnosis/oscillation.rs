@@ -1,27 +1,31 @@
-//! An oscillation of its own, of a valve, a supply or an amplifier: a line in the spectrum of what a model leaves. A law of slow noise takes its power away and leaves the line.
+//! Detects an oscillation of a valve, a supply or an amplifier as a line in the spectrum of a model's
+//! residuals. A law of slow noise would absorb its power but leave the line.
 //!
 //! ```text
 //! P(f) = |sum over rows of e exp(2 pi i f t)|^2/(sum of e^2)                                      (Lomb 1976; Scargle 1982)
 //! chance = 1 - (1 - exp(-P/L))^M,    L the level of the spectrum around f, M frequencies
 //! ```
-//! e are whitened misfits outside of the model's numbers. Under noise P/L has an exponential distribution, whatever the distribution of single readings and however the noise is coloured:
-//! L is what neighbouring frequencies have, by their median.
+//! e are the whitened residuals orthogonal to the model's tangents. Under noise, P/L has an exponential
+//! distribution, whatever the distribution of single readings and the colour of the noise: L is the median
+//! level of neighbouring frequencies.
 
 use bulge_model::Record;
 
 use crate::diagnosis::decision_rule::RULE;
 use crate::median::median;
 
-/// Frequencies in one of the record's own, 1/(its time).
+/// Frequencies per natural spacing of the record, 1/duration.
 const FINER: usize = 2;
-/// Periods in the record below which it is a drift.
+/// A line with fewer periods in the record counts as drift.
 const DRIFT: usize = 3;
-/// Frequencies on either side that say how high the spectrum is: the larger level counts, as slow noise is higher at low ones.
+/// Neighbouring frequencies on either side for the level of the spectrum. The larger level counts, because
+/// slow noise is stronger at low frequencies.
 const NEIGHBOURS: [usize; 2] = [150, 60];
-/// Rows below which there is no spectrum.
+/// Fewest rows for a spectrum.
 const FEWEST: usize = 60;
 
-/// The period \[s\] of an oscillation that chance hardly gives; none without time, or where there is none. `left` is the whitened misfit, row by row.
+/// The period \[s\] of a significant oscillation; none without time, or if there is none. `left` is the
+/// whitened misfit, row by row.
 pub(crate) fn oscillation(record: &Record, left: &[f64]) -> Option<f64> {
     let clock: Vec<f64> = record.moments().iter().map(|m| m.clock).collect();
     let rows = clock.len();
@@ -36,7 +40,8 @@ pub(crate) fn oscillation(record: &Record, left: &[f64]) -> Option<f64> {
         return None;
     }
     let unit = 1.0 / (FINER as f64 * whole);
-    // Up to half of the readings' own frequency; no more of them than there are readings, where pauses make the time long.
+    // Up to half the sampling frequency, with a limit proportional to the number of readings, because pauses
+    // make the duration long.
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a number of frequencies")]
     let last = ((0.5 / (step * unit)) as usize).min(FINER * 4 * rows);
     let begin = FINER * DRIFT;
@@ -46,8 +51,9 @@ pub(crate) fn oscillation(record: &Record, left: &[f64]) -> Option<f64> {
     let power = spectrum(&clock.iter().map(|t| t - first).collect::<Vec<_>>(), left, unit, begin..last);
     let level_among = |place: usize, neighbours: usize| {
         let around = place.saturating_sub(neighbours)..(place + neighbours + 1).min(power.len());
-        // The line itself and its flanks are no level.
+        // The line itself and its flanks don't belong to the level.
         let others = around.filter(|other| other.abs_diff(place) > FINER);
+        // The median of an exponential distribution is ln 2 times its mean.
         median(&mut others.map(|other| power[other]).collect::<Vec<f64>>()) / std::f64::consts::LN_2
     };
     let level =
@@ -59,7 +65,8 @@ pub(crate) fn oscillation(record: &Record, left: &[f64]) -> Option<f64> {
     (chance < RULE.oscillation).then(|| 1.0 / (unit * (begin + place) as f64))
 }
 
-/// The spectrum at multiples of a frequency; a phasor of each row is turned on from one to the next.
+/// The spectrum at multiples of a frequency. Each row's phasor is rotated from one multiple to the next,
+/// which saves sines and cosines.
 fn spectrum(time: &[f64], left: &[f64], unit: f64, multiples: std::ops::Range<usize>) -> Vec<f64> {
     let turn = |t: &f64, multiple: f64| (std::f64::consts::TAU * unit * multiple * t).sin_cos();
     let mut phasors: Vec<(f64, f64)> = time.iter().map(|t| turn(t, multiples.start as f64)).collect();
@@ -98,7 +105,7 @@ mod tests {
         Record::from_moments((0..900).map(moment).collect(), vec![0.0; 900], sweeps).unwrap()
     }
 
-    /// White noise and a hum of a size.
+    /// White noise with an oscillation of a given size.
     fn left(record: &Record, size: f64, period: f64, seed: u64) -> Vec<f64> {
         let mut random = Random::new(seed, 0);
         let hum = |m: &Moment| size * (std::f64::consts::TAU * m.clock / period).sin();
@@ -119,7 +126,7 @@ mod tests {
     fn noise_has_no_line_more_often_than_it_may() {
         let record = record();
         let found = (0..300).filter(|seed| oscillation(&record, &left(&record, 0.0, 1.0, *seed)).is_some());
-        // One in five thousand may.
+        // One in five thousand may have a line.
         assert!(found.count() <= 2);
     }
 

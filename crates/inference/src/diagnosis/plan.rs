@@ -1,4 +1,5 @@
-//! Before measuring: what a test would show, and which effects it could not tell apart. Needs no data: the scores of the screen without the misfit.
+//! Planning before measuring: what a test would show, and which effects it could not distinguish. No data are
+//! needed: the scores of the screen are evaluated without a misfit.
 //!
 //! ```text
 //! detection limit A_min = 3.3/|s_e|,    confusability rho = |cos angle(s_e, s_e')|,    s_e = P K^-1/2 dF/dA_e
@@ -25,11 +26,11 @@ use crate::progress::NOBODY;
 use crate::protocol::bench::Protocol;
 use bulge_model::Wanted;
 
-/// Sigmas at which an effect is seen: one error in a thousand.
+/// Sigmas at which an effect is detected: one error in a thousand.
 pub(crate) const SEEN: f64 = 3.3;
-/// Cosine from which two effects are told of.
+/// Cosine from which two effects are reported as similar.
 const ALIKE: f64 = 0.9;
-/// Sigmas that are rounding.
+/// Signals below this many sigmas are rounding errors.
 const NOTHING: f64 = 1e-3;
 /// Most pairs that are listed.
 const MOST_PAIRS: usize = 40;
@@ -37,7 +38,7 @@ const MOST_PAIRS: usize = 40;
 /// What a test would show.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Plan {
-    /// `bulge.plan/1`.
+    /// Name and version of the document: `bulge.plan/1`.
     pub schema: &'static str,
     /// Name of the muscle.
     pub muscle: String,
@@ -49,72 +50,73 @@ pub struct Plan {
     pub pressure_pa: [f64; 2],
     /// Least and largest contraction.
     pub contraction: [f64; 2],
-    /// The noise that is assumed.
+    /// The assumed noise.
     pub noise: NoiseLaw,
-    /// All effects, the best visible first.
+    /// All effects, the most visible first.
     pub effects: Vec<PlannedEffect>,
-    /// Pairs that this test can hardly tell apart, the most alike first.
+    /// Pairs that this test can hardly distinguish, the most similar first.
     pub confused: Vec<ConfusedPair>,
     /// What a reader should know.
     pub warnings: Vec<String>,
 }
 
-/// What a test says of one effect.
+/// What a test would show of one effect.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct PlannedEffect {
     /// Its name.
     pub effect: String,
-    /// The family it counts under.
+    /// The family that it belongs to.
     pub family: String,
-    /// Name of the number that says how large it is.
+    /// Name of the parameter that measures its size.
     pub parameter: String,
-    /// Least deviation of that number that is seen (3.3 sigma), in `unit`; none if the test can't show the effect.
+    /// Smallest deviation of that parameter that is detected (3.3 sigma), in `unit`; none if the test can't
+    /// show the effect.
     pub detection_limit: Option<f64>,
-    /// The unit.
+    /// Unit of the limit.
     pub unit: String,
     /// RMS change of the force at that limit \[N\].
     pub detection_limit_n: Option<f64>,
-    /// Sigmas of a deviation of the usual size.
+    /// Signal of a deviation of the usual size, in sigmas.
     pub usual_sigma: f64,
-    /// Part of the effect that the rig's and the muscle's own uncertainties can compensate.
+    /// Fraction of the effect that uncertainties of the rig and the muscle can compensate.
     pub compensation: f64,
     /// Why the test can't show it, if so.
     pub why: Option<String>,
 }
 
-/// Two effects that look alike in a test.
+/// Two effects that look similar in a test.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ConfusedPair {
-    /// The two.
+    /// Names of the two effects.
     pub effects: [String; 2],
     /// Cosine of the angle between them.
     pub cosine: f64,
-    /// Sigmas between the two, each at its usual size: the smaller of both ways round.
+    /// Sigmas between the two, each at its usual size: the smaller value of both directions.
     pub sigma: f64,
-    /// How many repeats tell them apart (3.29 sigma); none if no number does.
+    /// Number of repeats that separates them (3.29 sigma); none if no number does.
     pub repeats: Option<f64>,
     /// The experiment that separates them, from the catalogue.
     pub separate: String,
 }
 
-/// A planned record with everything to whiten it.
+/// A planned record with its whitening.
 pub(crate) struct Planned {
     pub(crate) record: Record,
     pub(crate) law: NoiseLaw,
     pub(crate) whitening: Whitening,
 }
 
-/// What a protocol would show of a muscle with the effects that are known.
+/// What a protocol would show of a muscle with its known effects.
 ///
 /// # Errors
-/// If a number of the protocol isn't possible, or the muscle has no equilibrium there.
+/// If a number of the protocol is impossible, or if the muscle has no equilibrium there.
 pub fn plan(
     muscle: &Muscle,
     known: &[(Arc<dyn Effect>, Vec<f64>)],
     catalogue: &Catalogue,
     protocol: &Protocol,
 ) -> Result<Plan, InferenceError> {
-    // As a diagnosis of these data would have it.
+    // Usual widths, as in a diagnosis of these data.
     let (muscle, doubtful) = &muscle.clone().with_usual_widths();
     let (muscle, specimens) = &protocol.specimens_of(muscle)?;
     let model = known_model(muscle, known, specimens)?;
@@ -170,7 +172,8 @@ pub(crate) fn known_model(
 }
 
 impl Planned {
-    /// The rows of a protocol as a model would fill them, with the noise that the protocol states (or the muscle's instruments).
+    /// The rows of a protocol with the forces of a model, and the noise that the protocol (or else the
+    /// muscle's instruments) states.
     pub(crate) fn of(model: &Model, theta: &[f64], protocol: &Protocol) -> Result<Self, InferenceError> {
         let record = protocol.moments_within(model, theta)?;
         let readings = Wanted { parameters: Vec::new(), readings: true };
@@ -210,7 +213,8 @@ impl Planned {
     }
 }
 
-/// The noise of a protocol; where it states none, that of the load cell; where nobody states any, 1 % of full scale.
+/// The noise of a protocol; if it states none, that of the load cell; if that is missing too, 1 % of full
+/// scale.
 fn law_of(protocol: &Protocol, muscle: &Muscle, force: &[f64]) -> NoiseLaw {
     let noise = &protocol.noise;
     let stated = muscle.instruments().force.map_or(0.0, |force| force.noise());
@@ -233,7 +237,7 @@ fn law_of(protocol: &Protocol, muscle: &Muscle, force: &[f64]) -> NoiseLaw {
     }
 }
 
-/// The form of an effect that is usual: the middle one.
+/// The usual form of an effect: the middle one.
 fn usual(linear: &LinearisedModel, effect: usize) -> Option<&Candidate> {
     let forms: Vec<&Candidate> = linear.candidates.iter().filter(|c| c.effect == effect).collect();
     forms.get(forms.len() / 2).copied()
@@ -249,7 +253,7 @@ fn effects(linear: &LinearisedModel, rows: usize, muscle: &Muscle) -> Vec<Planne
         let unit = number.map_or(("", 1.0), |n| (n.unit, n.factor));
         let per_size = candidate.map_or(0.0, |c| c.detectability(1.0));
         let range = number.map(|n| n.of(muscle)).map_or(f64::INFINITY, |n| n.high - n.low);
-        // Beyond the bounds of the number it is no limit: the test can't show the effect.
+        // A limit beyond the bounds of the parameter means that the test can't show the effect.
         let limit = (per_size > 0.0).then(|| SEEN / per_size).filter(|limit| *limit <= range);
         let column =
             candidate.and_then(|c| linear.sensitivities.sensitivities[c.sensitivity].columns.first());
@@ -273,7 +277,7 @@ fn effects(linear: &LinearisedModel, rows: usize, muscle: &Muscle) -> Vec<Planne
     linear.sensitivities.effects.iter().enumerate().map(of).collect()
 }
 
-/// Pairs of different families that look alike.
+/// Similar effects of different families.
 fn confused(linear: &LinearisedModel) -> Vec<ConfusedPair> {
     let all: Vec<&Candidate> =
         (0..linear.sensitivities.effects.len()).filter_map(|effect| usual(linear, effect)).collect();

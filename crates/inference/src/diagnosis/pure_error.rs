@@ -1,13 +1,16 @@
-//! Pure error between cycles: what repeats from cycle to cycle is no noise, whatever a smooth model makes of it.
+//! Pure error between cycles: residuals that repeat from cycle to cycle are not noise, whatever a smooth
+//! model makes of them.
 //!
 //! ```text
 //! d = r_i - (1 - w) r_j - w r_(j+1),    s^2 = mean of d^2/(1 + (1 - w)^2 + w^2)
 //! ```
-//! r_i is a residual of one cycle, r_j and r_(j+1) its neighbours in contraction in another cycle, of the same specimen, level of pressure and direction; at held
-//! length they are neighbours in pressure, at the same length. Of a law,
-//! s^2 is white noise with that part of the correlated noise which has decayed since the other cycle. Cycles may differ by physics too (creep, softening): so
-//! the pure error bounds the noise from above, never from below. Sweeps that were run again at the same level bound the offsets of sweeps likewise, by half of the mean square
-//! of their mean differences: what is off at one pressure each time is a function of the pressure.
+//! r_i is a residual of one cycle; r_j and r_(j+1) are its neighbours in contraction in another cycle of the
+//! same specimen, pressure level and direction. At held length they are neighbours in pressure at the same
+//! length. Under a noise law, s^2 is the white noise plus the part of the correlated noise that has decayed
+//! since the other cycle. Cycles may also differ by physics (creep, softening), so the pure error bounds the
+//! noise from above, never from below. In the same way, repeated sweeps at one level bound the offsets, by
+//! half the mean square of their mean differences: an offset that recurs at a pressure is a function of the
+//! pressure.
 
 use bulge_model::Record;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
@@ -18,45 +21,48 @@ use crate::noise::law::{CorrelationTime, NoiseLaw};
 use crate::noise::offset_belief::rms;
 use crate::noise::whitening::moment_of;
 
-/// Neighbours further apart than this part of the range say nothing between them.
+/// Neighbours further apart than this fraction of the range are not interpolated.
 const NEAR: f64 = 0.1;
-/// Pairs from which the pure error is believed.
+/// Fewest pairs for an estimate.
 const ENOUGH: usize = 20;
-/// Pairs of two strokes of different sweeps from which a difference of the sweeps can be told: fewer share their neighbours, and their mean takes noise away with it.
+/// Fewest pairs between strokes of different sweeps. Fewer pairs share their neighbours, and subtracting
+/// their mean would remove noise as well.
 const FEWEST: usize = 6;
-/// Pairs of sweeps from which offsets are bounded, and the chance that they are larger than the bound.
+/// Fewest pairs of sweeps that bound the offsets; then the probability that the offsets are larger than the
+/// bound.
 const PAIRS: usize = 3;
 const LARGER: f64 = 0.05;
-/// Relative standard deviation of the pure error that is there however many pairs there are.
+/// Least relative standard deviation of the pure error, for any number of pairs.
 const SURE: f64 = 0.1;
-/// A correlated part beyond this multiple of the pure error repeats: it is no noise.
+/// A correlated part beyond this multiple of the pure error repeats and is not noise.
 const REPEATS: f64 = 1.5;
 
 /// Scatter of residuals between cycles.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct BetweenCycles {
-    /// Of one residual \[N^2\].
+    /// Variance of one residual \[N^2\].
     pub(crate) variance: f64,
-    /// Seconds (rows, without time) between the residuals of each pair.
+    /// Time lag between the residuals of each pair \[s\], or in rows without time.
     lags: Vec<f64>,
-    /// Seconds (rows) of all sweeps together.
+    /// Total duration of all sweeps \[s\], or in rows without time.
     span: f64,
-    /// Mean difference of each two sweeps that were run at the same level \[N\].
+    /// Mean difference of each pair of sweeps at the same level \[N\].
     offsets: Vec<f64>,
 }
 
-/// Differences of two sweeps: their sum and their number.
+/// Differences between two sweeps: their sum and their number.
 type Offsets = BTreeMap<[usize; 2], (f64, f64)>;
 
 impl BetweenCycles {
-    /// Of residuals \[N\], one for each row of a record; none if no cycle is repeated.
+    /// The scatter of residuals \[N\], one for each row of a record; none if no cycle is repeated.
     pub(crate) fn of(record: &Record, residual: &[f64]) -> Option<Self> {
         if !record.is_path() {
             return None;
         }
         let at = moment_of(record, seconds(record));
         let (mut sum, mut lags, mut offsets) = (0.0, Vec::new(), Offsets::new());
-        // Without the first of a sweep where there are others enough: it lacks the history of those after it.
+        // The first cycle of a sweep is left out if there are enough others, because its history differs from
+        // theirs.
         let mut alike: BTreeMap<_, Vec<Stroke>> = BTreeMap::new();
         for stroke in strokes(record).into_iter().filter(|stroke| !stroke.is_first) {
             alike.entry(stroke.state).or_default().push(stroke);
@@ -64,7 +70,7 @@ impl BetweenCycles {
         for strokes in alike.into_values() {
             let half = strokes.len() / 2;
             for (place, stroke) in strokes.iter().enumerate() {
-                // The next, and one that is far in time.
+                // Compare with the next stroke, and with one that is far in time.
                 let others = [place + 1, place + half.max(2)];
                 for other in others.iter().filter_map(|other| strokes.get(*other)) {
                     sum += compared(stroke, other, residual, &at, (&mut lags, &mut offsets));
@@ -83,7 +89,8 @@ impl BetweenCycles {
         })
     }
 
-    /// The law with no larger offsets than sweeps at the same level differ by: sizes beyond that are out.
+    /// Limits the offsets of a law to the differences between sweeps at the same level; larger sizes are
+    /// excluded.
     fn bounds_offsets(&self, mut law: NoiseLaw) -> NoiseLaw {
         let pairs = self.offsets.len();
         let Some(chi) = ChiSquared::new(pairs as f64).ok().filter(|_| pairs >= PAIRS && law.offset_n > 0.0)
@@ -112,9 +119,10 @@ impl BetweenCycles {
         law
     }
 
-    /// The law with no more noise than cycles differ by: its variances beyond that are misfit that repeats.
+    /// Limits the noise of a law to the differences between cycles; variance beyond that is misfit that
+    /// repeats.
     ///
-    /// `inputs` is the mean variance from noise of the inputs, which is in the scatter too \[N^2\].
+    /// `inputs` is the mean variance from noise of the inputs, which the scatter contains as well \[N^2\].
     pub(crate) fn bounds(&self, law: NoiseLaw, inputs: f64) -> NoiseLaw {
         let mut law = self.bounds_offsets(law);
         let time = law.time.map_or(1.0, CorrelationTime::value);
@@ -122,14 +130,14 @@ impl BetweenCycles {
         let part = self.lags.iter().map(decayed).sum::<f64>() / self.lags.len() as f64;
         let [white, correlated] = [law.white_n, law.correlated_n].map(|sd| sd * sd);
         let expected = white + inputs + correlated * part;
-        // Pairs within a correlation time say the same.
+        // Pairs within a correlation time are not independent.
         let slow = if correlated > white { self.span / (2.0 * time) } else { f64::INFINITY };
         let sure = SURE + 1.0 / (2.0 * slow.clamp(1.0, self.lags.len() as f64)).sqrt();
         if expected <= self.variance * (1.0 + 2.0 * sure) {
             return law;
         }
         let left = (self.variance - inputs).max(0.01 * self.variance);
-        // Neighbours know the white part; what is beyond the pure error repeats.
+        // The white part is known from neighbours; variance beyond the pure error repeats.
         let white = white.min(left);
         let rest = (left - white) / part.max(0.1);
         let refused = correlated > REPEATS * REPEATS * self.variance;
@@ -153,12 +161,13 @@ impl BetweenCycles {
     }
 }
 
-/// The unit in which lags are.
+/// The unit of the lags.
 fn seconds(record: &Record) -> Option<CorrelationTime> {
     record.has_time().then_some(CorrelationTime::Seconds(1.0))
 }
 
-/// Sum of squared differences between two strokes, in variances of one residual; the lags go to the list, and what two sweeps differ by to theirs.
+/// Sum of squared differences between two strokes, in variances of one residual. Appends the lags and the
+/// difference between the sweeps to their lists.
 fn compared(
     one: &Stroke,
     other: &Stroke,
@@ -184,7 +193,7 @@ fn compared(
     }
     let mut scale = 1.0;
     if one.sweep != other.sweep && found.len() >= FEWEST {
-        // Sweeps may be off as a whole.
+        // Sweeps may differ by an offset.
         let mean = found.iter().map(|f| f.0).sum::<f64>() / found.len() as f64;
         let differs = offsets.entry([one.sweep.min(other.sweep), one.sweep.max(other.sweep)]).or_default();
         let side = if one.sweep < other.sweep { 1.0 } else { -1.0 };
@@ -192,6 +201,7 @@ fn compared(
         for pair in &mut found {
             pair.0 -= mean;
         }
+        // The subtracted mean takes one degree of freedom.
         scale = found.len() as f64 / (found.len() as f64 - 1.0);
     } else if one.sweep != other.sweep {
         return 0.0;
@@ -207,7 +217,7 @@ mod tests {
     use bulge_effects::Moment;
     use bulge_numerics::Random;
 
-    /// Cycles of 80 rows in one sweep of 2 s steps.
+    /// Cycles of 80 rows in one sweep, with steps of 2 s.
     fn record(cycles: usize) -> Record {
         let moments: Vec<Moment> = (0..80 * cycles)
             .map(|i| {
@@ -309,8 +319,8 @@ mod tests {
 
     #[test]
     fn strokes_of_few_rows_say_nothing_about_noise() {
-        // Set points of three rows each, close enough for comparisons: the mean of three differences that share their neighbours
-        // takes most of the noise away.
+        // Set points of three rows each, close enough for comparisons: the mean of three differences with
+        // common neighbours would remove most of the noise.
         let moments: Vec<Moment> = (0..600)
             .map(|i| Moment {
                 direction: 1.0,
@@ -329,7 +339,8 @@ mod tests {
 
     #[test]
     fn noise_that_is_slow_stays_in_the_law() {
-        // Over 400 s, of which a cycle takes 160 s: the cycles differ by a part of it only.
+        // The correlation time is 400 s and a cycle takes 160 s, so the cycles differ by a part of the noise
+        // only.
         let truth = NoiseLaw {
             correlated_n: 3.0,
             time: Some(CorrelationTime::Seconds(400.0)),

@@ -1,4 +1,5 @@
-//! The rungs of a diagnosis: those of the effects by their formulas, then those of the effects as the data want them. Each rung that is shown lowers the error.
+//! The rungs of a diagnosis: the effects by their formulas, then with their fitted form errors. Each rung
+//! that is shown lowers the error.
 
 use crate::comparison::analysis::Analysis;
 use crate::comparison::document::Rung;
@@ -6,13 +7,13 @@ use crate::diagnosis::form_error::Bent;
 use crate::diagnosis::stage::Stage;
 use crate::error::InferenceError;
 
-/// What stands between the names of effects that were added together.
+/// Separator between the names of effects that were added together.
 pub(crate) const TOGETHER: &str = " + ";
-/// Part of an error below which a fall is none.
+/// Smaller relative decreases of an error count as none.
 const NOTHING: f64 = 1e-3;
 
-/// Joins each rung above the first `known` and the base that lowers the error by nothing with the one after it, and the last with the one before. An effect that stands
-/// alone stays.
+/// Joins each rung that doesn't lower the error with the next one, and the last such rung with the one
+/// before. The base and the first `known` rungs stay, as does a single effect.
 pub(crate) fn join_useless(ladder: &mut Vec<Rung>, known: usize) {
     let first = known + 1;
     let mut i = first;
@@ -34,16 +35,17 @@ pub(crate) fn join_useless(ladder: &mut Vec<Rung>, known: usize) {
     }
 }
 
-/// Effects that have the form that the data want, on top of those of the rungs before.
+/// A rung of effects that get their form errors, on top of the rungs before.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct BentRung {
-    /// Their names.
+    /// Names of the effects.
     pub(crate) effects: Vec<String>,
-    /// RMS error of the rows, measured - (formulas + bending) \[N\].
+    /// RMS error of the rows, measured - (formulas + form errors) \[N\].
     pub(crate) rmse_n: f64,
 }
 
-/// The rungs of the effects of a stage as the data want them, below an error of `above_n`; `groups` are the rows of each mean on which the stage was found.
+/// The rungs of a stage's effects with their form errors, below an error of `above_n`. `groups` are the rows
+/// of each mean on which the stage was found.
 pub(crate) fn bent_rungs(
     analysis: &Analysis<'_>,
     stage: &Stage,
@@ -65,9 +67,12 @@ pub(crate) fn bent_rungs(
     Ok(lowered(&bending, groups, &residual, above_n))
 }
 
-/// Rungs of effects that are bent one after the other, by name and bending of each mean \[N\]. What lowers nothing waits for the next one, and is no rung if nothing follows.
+/// Rungs of effects that get their form errors one after the other, from the name and the form error of each
+/// mean \[N\]. An effect that doesn't lower the error is joined with the next one, and dropped if none
+/// follows.
 ///
-/// Residuals of rows that don't count are no numbers. Rows in no mean, the later cycles of a long record, are taken to gain as much as the others.
+/// Residuals of rows that don't count are NaN. Rows that are in no mean, the later cycles of a long record,
+/// are assumed to improve as much as the others.
 fn lowered(
     bending: &[(&str, &[f64])],
     groups: &[Vec<usize>],
@@ -118,7 +123,7 @@ mod tests {
         let found = lowered(&bending, &groups, &residual, 3.0);
         assert_eq!(found.iter().map(|rung| rung.effects.concat()).collect::<Vec<_>>(), ["a", "b"]);
         assert!((found[0].rmse_n - one).abs() < 1e-12 && (found[1].rmse_n - both).abs() < 1e-12, "{found:?}");
-        // What lowers nothing alone is a rung together with what follows, and without that none.
+        // An effect that lowers nothing forms a rung with the next one, and none if nothing follows.
         let found = lowered(&bending, &groups, &residual, one);
         assert_eq!(found.len(), 1);
         assert_eq!(found[0].effects, ["a", "b"]);
@@ -130,7 +135,7 @@ mod tests {
     #[test]
     fn rows_that_are_in_no_mean_gain_as_much_as_the_others() {
         let found = lowered(&[("a", &[3.0])], &[vec![0, 1]], &[4.0, 2.0, 6.0, 0.0], 4.0);
-        // 14 on average; rows 0 and 1 go from 10 to 1.
+        // The mean square is 14; rows 0 and 1 go from 10 to 1.
         assert!((found[0].rmse_n - 5.0_f64.sqrt()).abs() < 1e-12, "{found:?}");
     }
 
@@ -158,7 +163,7 @@ mod tests {
         assert_eq!(joined(&[("", 9.0), ("a", 9.1), ("b", 3.0)], 0), ["base 9", "a + b 3"]);
         assert_eq!(joined(&[("", 9.0), ("a", 5.0), ("b", 5.0)], 0), ["base 9", "a + b 5"]);
         assert_eq!(joined(&[("", 9.0), ("a", 9.0), ("b", 9.0), ("c", 2.0)], 0), ["base 9", "a + b + c 2"]);
-        // What the base has is no rung to join, and an effect alone stays.
+        // Rungs of the base are never joined, and a single effect stays.
         assert_eq!(joined(&[("", 9.0), ("a", 9.0), ("b", 8.0)], 1), ["base 9", "a 9", "b 8"]);
         assert_eq!(joined(&[("", 9.0), ("a", 9.0)], 0), ["base 9", "a 9"]);
     }

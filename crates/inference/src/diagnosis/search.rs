@@ -1,4 +1,5 @@
-//! Add and swap: from the base to the set of effects that explains the data, one step after the other, with adequacy before and after each.
+//! Forward search: from the base to the set of effects that explains the data, step by step, with a test of
+//! adequacy before and after each step.
 
 use bulge_effects::Effect;
 use bulge_model::{Model, ModelError};
@@ -12,19 +13,21 @@ use crate::diagnosis::hypotheses::{FAR, Hypothesis, Tried, effect_log_prior, hyp
 use crate::diagnosis::linearised_model::Context;
 use crate::diagnosis::stage::{Stage, tempered};
 
-/// Effects that are added at most: a misfit that takes more is one that the catalogue doesn't hold.
+/// Most effects that are added: the catalogue doesn't explain a misfit that takes more.
 pub const MOST_EFFECTS: usize = 3;
-/// Part of the fall that the tangents say, from which they hold: then no other starts are needed.
+/// If a fit reaches this fraction of the predicted decrease, the linear approximation holds and no other
+/// starts are needed.
 const PROMISED: f64 = 0.95;
-/// A fall of the sum of squares from which a minimum is another one: half a unit of log evidence.
+/// Decrease of the sum of squares from which a minimum counts as another one: half a unit of log evidence.
 const LOWER: f64 = 1.0;
 
-/// A whole search: the base first, then each model that was accepted.
+/// A complete search: the base first, then each model that was accepted.
 pub(crate) struct Search {
     pub(crate) stages: Vec<Stage>,
-    /// The stage of which something that nobody thought of explains what is left better than the best effect: what was added after it is the nearest, and no claim.
+    /// The stage from which an unknown effect explains the rest better than the best known effect. Effects
+    /// added later are only the nearest ones, not claims.
     pub(crate) something_else: Option<usize>,
-    /// Models beside the way, each linearised.
+    /// Other linearised models that are not on the path.
     pub(crate) beside: Vec<Stage>,
 }
 
@@ -36,13 +39,13 @@ pub(crate) fn names<'e>(effects: impl Iterator<Item = &'e Arc<dyn Effect>>) -> V
 }
 
 impl Search {
-    /// The stage of these effects, in any order.
+    /// The stage with these effects, in any order.
     pub(crate) fn of_effects(&self, effects: &[Arc<dyn Effect>]) -> Option<&Stage> {
         let asked = names(effects.iter());
         self.stages.iter().chain(&self.beside).find(|stage| names(stage.added.iter()) == asked)
     }
 
-    /// Another model instead of the last one, and of those on the way to it that aren't on the way to this one.
+    /// Replaces the last model, and the models on the path to it that don't lead to the new one.
     pub(crate) fn replace_last(&mut self, stage: Stage) {
         let has = |effect: &Arc<dyn Effect>| {
             stage.added.iter().any(|other| other.card().name == effect.card().name)
@@ -53,22 +56,23 @@ impl Search {
     }
 }
 impl Context<'_> {
-    /// From the base model to the set of effects that explains the data, or to where nothing more helps.
+    /// Searches from the base model for the set of effects that explains the data, until nothing more helps.
     ///
-    /// `near` are numbers that the base is known to have about.
+    /// `near` are the approximate parameters of the base.
     pub(crate) fn search(&self, base: &Model, near: (&Model, &[f64])) -> Result<Search, ModelError> {
         let confirmed = self.confirm(base, &[], Some(near), &[])?;
         let mut stages = vec![self.stage(Vec::new(), confirmed)?];
         let mut again = false;
         let mut something_else = None;
         while let [.., stage] = &mut stages[..] {
-            // A form error may be another effect.
+            // A form error may hide another effect.
             let is_bent = stage.confirmed.form.log_evidence > RULE.bent;
             let room = MOST_EFFECTS - stage.added.len();
             if stage.adequate && !is_bent || room == 0 || something_else.is_some() {
                 break;
             }
             stage.tried = self.tried(base, stage, room);
+            // A trial found a lower minimum of the stage's own model: repeat the trials once from there.
             if !again && let Some(lower) = self.lower(base, stage) {
                 (*stage, again) = (lower, true);
                 continue;
@@ -79,7 +83,7 @@ impl Context<'_> {
             let next = next.map(|next| self.one_of(&stages, next));
             let stage = &stages[stages.len() - 1];
             let Some((next, stands_out, worth)) = next else {
-                // The screen alone, and no effect that is worth its price: chance.
+                // Only the screen rejects the model, and no effect is worth its prior cost: that is chance.
                 let adequacy = &stage.adequacy;
                 let is_chance =
                     !adequacy.smooth_fails() && !adequacy.fit_fails && adequacy.unsmooth.is_none();
@@ -88,7 +92,7 @@ impl Context<'_> {
                 }
                 break;
             };
-            // Where all that is left follows no smooth function, an effect that leaves it explains nothing.
+            // If the rest follows no smooth function, an effect that doesn't remove it explains nothing.
             if stage.adequacy.unsmooth.is_some() && !stage.adequate && next.adequacy.unsmooth.is_some() {
                 break;
             }
@@ -112,7 +116,8 @@ impl Context<'_> {
         Ok(Search { stages, something_else, beside: Vec::new() })
     }
 
-    /// The stage at a lower minimum of its model, where a fit with further effects came to one and left them off.
+    /// The stage at a lower minimum of its own model, if a fit with further effects reached one and set those
+    /// effects to zero.
     pub(crate) fn lower(&self, base: &Model, stage: &Stage) -> Option<Stage> {
         let effects = &stage.linear.sensitivities.effects;
         let is_idle = |tried: &&Tried| {
@@ -130,8 +135,9 @@ impl Context<'_> {
             .then(|| self.stage(stage.added.clone(), confirmed).ok())?
     }
 
-    /// The stage that a hypothesis leads to from the last of `stages`, and whether the step stands out of what remains; none if it isn't worth its price, or nothing
-    /// can be seen from there.
+    /// The stage that a hypothesis leads to from the last of `stages`, whether the step is significant
+    /// against the remaining misfit, and its log evidence. None if it isn't worth its prior cost, or if the
+    /// new model can't be linearised.
     fn step(&self, stages: &[Stage], tried: &Tried, confirmed: &Confirmed) -> Option<(Stage, bool, f64)> {
         let (base, stage) = (stages.first()?, stages.last()?);
         let worth = RULE.worth[usize::from(!stage.added.is_empty())];
@@ -148,13 +154,14 @@ impl Context<'_> {
         };
         let member = |one: &&Tried| matches!(&one.hypothesis.effects[..], [only] if new.len() > 1 && tried.hypothesis.effects.contains(only));
         let alone = stage.tried.iter().filter(member).filter_map(|one| one.confirmed.as_ref());
-        // Where the second of a pair only mends the formula of the first, there is one effect.
+        // If the second effect of a pair only corrects the formula of the first, take a single effect.
         if alone.into_iter().any(mends) {
             let best = ranked(&stage.tried).into_iter().find(|(one, _)| one.hypothesis.effects.len() == 1);
             return best.and_then(|(one, confirmed)| self.step(stages, one, confirmed));
         }
         let mends = !stage.added.is_empty() && mends(&stage.confirmed);
-        // No error of a formula: beside all that bends them it is seen, and nothing that nobody thought of would do as well.
+        // It isn't an error of a formula if its evidence holds beside all form errors and an unknown effect
+        // wouldn't do as well.
         let lead =
             tried.hypothesis.log_evidence.min(tried.log_evidence - stage.something_else() - RULE.no_bending);
         if mends && (new.len() > 1 || lead <= worth) {
@@ -166,12 +173,13 @@ impl Context<'_> {
         if mends && !next.adequate {
             return None;
         }
-        // Where something unknown remains, its scatter counts as noise: a step must stand out of that too.
+        // If something unknown remains, its scatter counts as noise, and the step must be significant against
+        // that too.
         let stands_out = tempered(tried.log_evidence, gain, next.scatter()) > worth;
         Some((next, stands_out, tried.log_evidence))
     }
 
-    /// Of a pair its better half, where something that nobody thought of does on top of it as well as the other half.
+    /// Replaces a pair by its better half if an unknown effect on top of that does as well as the other half.
     fn one_of(&self, stages: &[Stage], pair: (Stage, bool, f64)) -> (Stage, bool, f64) {
         let Some(stage) = stages.last().filter(|stage| pair.0.added.len() == stage.added.len() + 2) else {
             return pair;
@@ -197,7 +205,7 @@ impl Context<'_> {
         }
     }
 
-    /// The best hypotheses of a stage with so much `room` for further effects, each fitted.
+    /// The best hypotheses of a stage, each fitted; `room` is the number of effects that may still be added.
     fn tried(&self, base: &Model, stage: &Stage, room: usize) -> Vec<Tried> {
         let hypotheses = hypotheses(&stage.linear, &stage.confirmed.prepared.model, room);
         let (singles, pairs): (Vec<_>, Vec<_>) = hypotheses.into_iter().partition(|h| h.effects.len() == 1);
@@ -219,14 +227,14 @@ impl Context<'_> {
         tried
     }
 
-    /// Keeps a fit of a hypothesis on top of a stage.
+    /// Keeps the fit of a hypothesis on top of a stage.
     pub(crate) fn remember(&self, stage: &Stage, tried: &Tried) {
         if let (Some(fits), Some(confirmed)) = (self.fits, &tried.confirmed) {
             fits.add(&stage.with(&tried.hypothesis.effects), confirmed);
         }
     }
 
-    /// A hypothesis fitted on top of a stage.
+    /// Fits a hypothesis on top of a stage.
     pub(crate) fn fitted(&self, base: &Model, stage: &Stage, hypothesis: Hypothesis) -> Tried {
         let all = stage.with(&hypothesis.effects);
         let effects = &all[stage.added.len()..];
@@ -236,7 +244,7 @@ impl Context<'_> {
         let holds =
             |confirmed: &Confirmed| stage.confirmed.cost() - confirmed.cost() >= PROMISED * hypothesis.gain;
         let near = self.fits.and_then(|fits| fits.near(&all));
-        // The very same model needs no other fit.
+        // The same model needs no other fit.
         let again = self.fits.and_then(|fits| fits.of(&all)).or_else(|| {
             near.as_ref().and_then(|near| self.confirm(base, &all, Some(near.numbers()), &[]).ok())
         });
@@ -247,10 +255,11 @@ impl Context<'_> {
                 lower(again, found)
             }
         };
-        // The fit before has tried further starts already.
+        // The fit under the earlier noise law has tried further starts already.
         let is_far = hypothesis.gain > FAR && near.is_none() && !confirmed.as_ref().is_some_and(holds);
         if confirmed.is_none() || is_far {
-            // Far from where the tangents hold: usual numbers, and nearly none of them.
+            // Far from the validity of the linear approximation, start from the usual parameters and from a
+            // tenth of them.
             let further: Vec<Vec<f64>> = [1.0, 0.1]
                 .iter()
                 .map(|part| before.iter().copied().chain(Self::usual(base, effects, *part)).collect())
@@ -265,7 +274,7 @@ impl Context<'_> {
         Tried { hypothesis, confirmed, log_evidence }
     }
 
-    /// A part of the way from `off` to the usual numbers of effects.
+    /// A fraction `part` of the way from `off` to the usual parameters of effects.
     pub(crate) fn usual(base: &Model, effects: &[Arc<dyn Effect>], part: f64) -> Vec<f64> {
         let of = |effect: &Arc<dyn Effect>| {
             let copies = base.copies(effect.as_ref());
@@ -280,7 +289,7 @@ impl Context<'_> {
         effects.iter().flat_map(of).collect()
     }
 
-    /// Numbers of the effects that a stage has added, in order.
+    /// Parameters of the effects that a stage has added, in order.
     fn numbers_of(base: &Model, stage: &Stage) -> Vec<f64> {
         let names: Vec<&str> = stage.added.iter().map(|effect| effect.card().name).collect();
         let own = base.parameters().len();
@@ -293,7 +302,7 @@ impl Context<'_> {
     }
 }
 
-/// The lower of two minima.
+/// The lower one of two minima.
 fn lower(one: Option<Confirmed>, other: Option<Confirmed>) -> Option<Confirmed> {
     match (one, other) {
         (Some(a), Some(b)) => Some(if b.cost() < a.cost() { b } else { a }),
@@ -301,8 +310,8 @@ fn lower(one: Option<Confirmed>, other: Option<Confirmed>) -> Option<Confirmed> 
     }
 }
 
-/// Hypotheses that could be fitted, the best first; a pair counts for less, so that it is only taken if it is clearly better than a single effect, and so does what
-/// is won by bending formulas.
+/// Hypotheses that could be fitted, best first. A pair has a penalty, so that it must be clearly better than
+/// a single effect; so does evidence from form errors.
 fn ranked(tried: &[Tried]) -> Vec<(&Tried, &Confirmed)> {
     let mut list: Vec<(&Tried, &Confirmed)> =
         tried.iter().filter_map(|t| Some((t, t.confirmed.as_ref()?))).collect();
@@ -315,7 +324,7 @@ fn ranked(tried: &[Tried]) -> Vec<(&Tried, &Confirmed)> {
         let best = some.max_by(|a, b| worth(*a).total_cmp(&worth(*b)));
         best.map_or(0.0, |(_, confirmed)| confirmed.form.log_evidence)
     };
-    // Pairs are no better for being exact where one bent formula does as well.
+    // Pairs get no credit for exact formulas if one effect with a form error does as well.
     let exactness = RULE.by_bending * (best(0) - best(1)).max(0.0);
     let key = |one: &(&Tried, &Confirmed)| worth(*one) - if further(one.0) > 0 { exactness } else { 0.0 };
     let keys: Vec<f64> = list.iter().map(key).collect();

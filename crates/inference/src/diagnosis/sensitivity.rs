@@ -1,4 +1,5 @@
-//! How effects would show in a record: the change of the force by the size of each effect, at the numbers that a model has now.
+//! Sensitivities of a record to effects: the change of the force by the size of each effect, at the current
+//! parameters of a model.
 
 use bulge_effects::{Catalogue, Effect, Mechanism, ParameterCard, Stage};
 use bulge_model::{Model, ModelError, Record, Wanted, Warm};
@@ -10,42 +11,44 @@ use crate::diagnosis::tangents::Tangents;
 use crate::error::InferenceError;
 use crate::fit::nuisance::Prepared;
 
-/// Values of each number that is not a size (a distance, a time) at which an effect is looked at.
+/// Number of values of each parameter that is not a size (a distance, a time) at which an effect is
+/// evaluated.
 const GRID: usize = 5;
-/// Most points of such a grid where an effect has several such numbers.
+/// Most grid points for an effect with several such parameters.
 const MOST_POINTS: usize = 25;
-/// Part of the usual size at which an effect is looked at that does nothing in first order.
+/// Fraction of the usual size at which an effect without a first-order change is evaluated.
 const SECANT: f64 = 0.5;
-/// A derivative that changes less of the force per usual size than this part of full scale is taken for none.
+/// A derivative counts as zero if its change of the force per usual size is below this fraction of full
+/// scale.
 const NOTHING: f64 = 1e-9;
 
-/// One way in which an effect may show.
+/// One form of an effect.
 #[derive(Debug, Clone)]
 pub(crate) struct Sensitivity {
-    /// Place of the effect in [`Screened::effects`].
+    /// Index of the effect in [`Sensitivities::effects`].
     pub(crate) effect: usize,
-    /// All numbers of the effect (of one specimen), the sizes at `off`.
+    /// All parameters of the effect (of one specimen), with the sizes at `off`.
     pub(crate) values: Vec<f64>,
-    /// Its sizes; several for different sizes by direction, by specimen and so on.
+    /// Its sizes; there are several if they differ by direction, by specimen and so on.
     pub(crate) sizes: Vec<Size>,
-    /// Change of the force per size \[N per SI unit\], one column for each.
+    /// Change of the force per size \[N per SI unit\], one column for each size.
     pub(crate) columns: Vec<Vec<f64>>,
-    /// The effect is as it is, and not larger or smaller: its column is the change itself, and the size 1.
+    /// The effect has no continuous size: its column is the change itself, and its size is 1.
     pub(crate) whole: bool,
 }
 
-/// A number that says how large an effect is.
+/// A parameter that measures the size of an effect.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Size {
-    /// Place among the numbers of the effect.
+    /// Index among the parameters of the effect.
     pub(crate) place: usize,
-    /// Number of the specimen, where each has its own.
+    /// Index of the specimen, if each has its own.
     pub(crate) copy: usize,
-    /// Scale of the literature: the usual deviation from `off`, in SI.
+    /// Scale from the literature: the usual deviation from `off`, in SI.
     pub(crate) scale: f64,
-    /// Value at which it does nothing.
+    /// Value at which the effect vanishes.
     pub(crate) off: f64,
-    /// Which deviations from `off` can be.
+    /// Possible signs of the deviation from `off`.
     pub(crate) sign: Sign,
     /// Largest plausible deviation from `off`.
     pub(crate) plausible: f64,
@@ -53,14 +56,14 @@ pub(crate) struct Size {
     pub(crate) secant: Option<f64>,
 }
 
-/// Signs that a size can have.
+/// Possible signs of a size.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Sign {
-    /// Only more than `off`.
+    /// Only above `off`.
     Positive,
-    /// Only less.
+    /// Only below `off`.
     Negative,
-    /// Either.
+    /// Both.
     Any,
 }
 
@@ -68,19 +71,20 @@ pub(crate) enum Sign {
 #[derive(Debug, Clone)]
 pub(crate) struct Screened {
     pub(crate) effect: Arc<dyn Effect>,
-    /// Why it can't be looked for, if so.
+    /// Why it can't be tested, if so.
     pub(crate) untestable: Option<String>,
-    /// Whether the model has it already as a rig error within its data sheet: to be named, it must be larger than that.
+    /// Whether the model has it already as a rig error within its data sheet: to be named, it must be larger
+    /// than that.
     pub(crate) nuisance: bool,
 }
 
-/// All effects of the catalogue that the model doesn't have, and how they would show.
+/// All effects of the catalogue that the model doesn't have, and their sensitivities.
 pub(crate) struct Sensitivities {
     pub(crate) effects: Vec<Screened>,
     pub(crate) sensitivities: Vec<Sensitivity>,
 }
 
-/// Everything that the columns are taken from.
+/// The point at which the columns are evaluated.
 struct ExpansionPoint<'a> {
     prepared: &'a Prepared,
     theta: &'a [f64],
@@ -88,12 +92,13 @@ struct ExpansionPoint<'a> {
     /// Force of the model \[N\].
     force: &'a [f64],
     full_scale: f64,
-    /// What is remembered of its equilibria.
+    /// Equilibria at this point.
     warm: &'a Warm,
 }
 
 impl Sensitivities {
-    /// Of all effects of the catalogue (of some `only`, by name) that the model doesn't have, at the numbers `theta`, in the history as it was set.
+    /// Sensitivities of all effects of the catalogue (or of those in `only`) that the model doesn't have, at
+    /// parameters `theta`, in the history as it was set.
     pub(crate) fn of(
         catalogue: &Catalogue,
         only: Option<&[String]>,
@@ -149,31 +154,31 @@ impl Sensitivities {
     }
 }
 
-/// Whether an effect relaxes with a time that these readings can show: slower than any sweep it is a spring.
+/// Whether an effect relaxes over time; a relaxation slower than any sweep acts as a spring.
 pub(crate) fn relaxes(effect: &Arc<dyn Effect>, record: &Record) -> bool {
     effect.card().mechanism == Mechanism::Relaxation && record.has_time()
 }
 
-/// How long the longest sweep lasts \[s\].
+/// Duration of the longest sweep \[s\].
 pub(crate) fn longest_sweep(record: &Record) -> f64 {
     let moments = record.moments();
     let lasts = |rows: &std::ops::Range<usize>| moments[rows.end - 1].clock - moments[rows.start].clock;
     record.sweeps().iter().map(lasts).fold(0.0, f64::max)
 }
 
-/// Whether all numbers of an effect are stated: then it can't be larger than that.
+/// Whether all parameters of an effect are stated, so that it can't be larger.
 fn is_held(prepared: &Prepared, name: &str) -> bool {
     prepared.model.parameters().iter().filter(|p| p.effect == name).all(|p| p.fixed)
 }
 
-/// Whether a model has an effect only as what data sheets leave open.
+/// Whether a model has an effect only as a nuisance from data sheets.
 pub(crate) fn is_nuisance(prepared: &Prepared, name: &str) -> bool {
     let of_effect =
         || prepared.model.parameters().iter().zip(&prepared.nuisance).filter(|(p, _)| p.effect == name);
     of_effect().next().is_some() && of_effect().all(|(_, nuisance)| *nuisance)
 }
 
-/// The numbers of an effect that say how large it is; the others say of what form it is.
+/// The parameters of an effect that measure its size; the others determine its form.
 pub(crate) fn sizes(cards: &[ParameterCard<'_>]) -> Vec<Size> {
     let differs = |card: &ParameterCard<'_>| card.typical.total_cmp(&card.off).is_ne();
     let any_differs = cards.iter().any(differs);
@@ -214,7 +219,7 @@ fn size(place: usize, card: &ParameterCard<'_>) -> Size {
     }
 }
 
-/// Points at which the numbers that are no sizes are tried; the sizes are `off`.
+/// Grid points of the parameters that are not sizes; the sizes are `off`.
 pub(crate) fn forms(cards: &[ParameterCard<'_>], sizes: &[Size]) -> Vec<Vec<f64>> {
     let is_size = |place: usize| sizes.iter().any(|size| size.place == place);
     let others = (0..cards.len()).filter(|place| !is_size(*place)).count();
@@ -239,7 +244,7 @@ pub(crate) fn forms(cards: &[ParameterCard<'_>], sizes: &[Size]) -> Vec<Vec<f64>
     points
 }
 
-/// Values all over what is plausible for a number, within its bounds.
+/// Values spread over the plausible range of a parameter, within its bounds.
 pub(crate) fn spread(card: &ParameterCard<'_>, count: usize) -> Vec<f64> {
     let (low, high) = card.plausible.unwrap_or((card.low, card.high));
     let (low, high) = (low.max(card.low), high.min(card.high));
@@ -251,7 +256,7 @@ pub(crate) fn spread(card: &ParameterCard<'_>, count: usize) -> Vec<f64> {
 }
 
 impl ExpansionPoint<'_> {
-    /// All ways in which an effect may show.
+    /// All forms of an effect.
     fn sensitivities(&self, place: usize, screened: &Screened) -> Result<Vec<Sensitivity>, ModelError> {
         let effect = &screened.effect;
         let cards: Vec<ParameterCard<'_>> =
@@ -268,13 +273,13 @@ impl ExpansionPoint<'_> {
         for values in self.shown_within_a_sweep(effect, &cards, forms(&cards, &sizes)) {
             match self.at(place, effect, &model, &cards, &sizes, values) {
                 Ok(sensitivity) => found.extend(sensitivity),
-                // A number without small values: tried as a whole below.
+                // The parameter has no small values; the effect is tried as a whole below.
                 Err(_) if effect.stage() == Stage::Shape && sizes.len() == 1 => {}
                 Err(error) => return Err(error),
             }
         }
         if found.is_empty() && sizes.len() == 1 && effect.stage() == Stage::Shape {
-            // Something that is there or not: a cloth between the fibres.
+            // The effect is either present or absent, like a cloth between the fibres.
             let card = &cards[sizes[0].place];
             for value in spread(card, GRID) {
                 let mut values: Vec<f64> = cards.iter().map(|card| card.typical).collect();
@@ -285,7 +290,8 @@ impl ExpansionPoint<'_> {
         Ok(found)
     }
 
-    /// The forms of a relaxation that ends within a sweep, at least the fastest: slower ones are springs, and crowd the list of what may explain the data.
+    /// The forms of a relaxation that ends within a sweep, and at least the fastest one. Slower ones act as
+    /// springs and would crowd the list of explanations.
     fn shown_within_a_sweep(
         &self,
         effect: &Arc<dyn Effect>,
@@ -302,7 +308,7 @@ impl ExpansionPoint<'_> {
         forms
     }
 
-    /// A rig error that the model has within its data sheet: the derivatives are those that the model has.
+    /// For a rig error that the model has within its data sheet, the derivatives are those of the model.
     fn of_nuisance(
         &self,
         place: usize,
@@ -321,12 +327,12 @@ impl ExpansionPoint<'_> {
         Ok(vec![Sensitivity { effect: place, values, sizes, columns, whole: false }])
     }
 
-    /// The effect as a whole, beside the model without it.
+    /// The effect as a whole, relative to the model without it.
     fn whole(&self, place: usize, model: &Model, values: &[f64]) -> Option<Sensitivity> {
         let theta: Vec<f64> = self.theta.iter().chain(values).copied().collect();
         let Ok(with) = model.evaluate_warm(self.record, &theta, &Wanted::default(), &self.warm.shared())
         else {
-            // No equilibrium everywhere: nothing that these data could have been.
+            // Without an equilibrium everywhere, the effect can't have produced these data.
             return None;
         };
         let change: Vec<f64> =
@@ -350,13 +356,13 @@ impl ExpansionPoint<'_> {
         })
     }
 
-    /// Whether a column times a size is more than rounding.
+    /// Whether a column times a size exceeds rounding errors.
     fn shows(&self, column: &[f64], size: f64) -> bool {
         column.iter().all(|c| c.is_finite())
             && column.iter().any(|c| (c * size).abs() > NOTHING * self.full_scale)
     }
 
-    /// The effect at one form.
+    /// The effect in one form.
     fn at(
         &self,
         place: usize,
@@ -381,7 +387,8 @@ impl ExpansionPoint<'_> {
             if self.shows(column, size.scale) {
                 continue;
             }
-            // Nothing in first order: an angle, a spread. A number that isn't there at 0 may have no small values either.
+            // There is no change to first order, as for an angle or a spread: take the secant. A parameter
+            // without small values may have no state here.
             let card = &cards[size.place];
             let sign = if size.sign == Sign::Negative { -1.0 } else { 1.0 };
             let step = (sign * SECANT * size.scale).clamp(card.low - card.off, card.high - card.off);
@@ -395,7 +402,7 @@ impl ExpansionPoint<'_> {
                 with.force.iter().zip(self.force).map(|(with, without)| (with - without) / step).collect();
             size.secant = Some(step);
         }
-        // A modulus of rubber that isn't there does nothing.
+        // Drop columns without any change, like the modulus of rubber that is absent.
         let visible: Vec<bool> =
             columns.iter().zip(&sizes).map(|(c, size)| self.shows(c, size.scale)).collect();
         let mut keep = visible.iter();
@@ -408,7 +415,7 @@ impl ExpansionPoint<'_> {
         Ok((shows && !absent).then_some(Sensitivity { effect: place, values, sizes, columns, whole: false }))
     }
 
-    /// Derivatives of the force by some numbers, column by column.
+    /// Derivatives of the force by some parameters, column by column.
     fn derivatives(
         &self,
         model: &Model,
@@ -422,7 +429,7 @@ impl ExpansionPoint<'_> {
     }
 }
 
-/// Whether an effect has no small values of a size: then it is there or not.
+/// Whether an effect has no small values of a size, so that it is either present or absent.
 fn is_absent_below(effect: &Arc<dyn Effect>, model: &Model, size: &Size, step: f64) -> bool {
     let cards = effect.parameters();
     let muscle = model.muscle();

@@ -1,21 +1,25 @@
-//! The history as it was set, without the noise of its readings: what functions of pressure and contraction are taken at.
+//! The history as it was set, without the noise of its readings. Functions of pressure and contraction are
+//! evaluated there.
 //!
-//! The noise of a reading is in the misfit too, as -dF/dp dp. A column that is a function of the same reading finds it there (errors in variables), above all where
-//! readings are dense or end: then the noise of a sensor looks like physics. A column at values that don't hold the row's own reading can't.
+//! The noise of a reading is in the misfit too, as -dF/dp dp. A column that is a function of the same reading
+//! correlates with it (errors in variables), above all where readings are dense or end, so that the noise of
+//! a sensor looks like physics. A column at values that don't contain the row's own reading can't.
 
 use bulge_model::Record;
 
 use crate::comparison::levels::Levels;
 use crate::median::{MAD_TO_SD, median};
 
-/// Widest range of a level that is kept, as a part of the largest pressure.
+/// Widest range of a level that counts as held, as a fraction of the largest pressure.
 const KEPT: f64 = 0.04;
 /// Neighbours on either side of a row.
 const NEIGHBOURS: usize = 4;
-/// A reading further from its neighbours than this many standard deviations is taken as it is: there the path bends.
+/// A reading further from its neighbours than this many standard deviations is kept as it is, because the
+/// path bends there.
 const BEND: f64 = 4.0;
 
-/// The record with pressures and contractions as set: at levels the mean of the level, along a path what the neighbours of a row say of it.
+/// The record with pressures and contractions as set: the mean of a pressure level, or values interpolated
+/// from the neighbours along a path.
 pub(crate) fn setpoints(record: &Record) -> Record {
     let levels = Levels::of(record, &vec![true; record.len()]);
     let pressures: Vec<f64> = record.moments().iter().map(|m| m.pressure).collect();
@@ -28,7 +32,7 @@ pub(crate) fn setpoints(record: &Record) -> Record {
     record.clone().at(&pressure, &by_neighbours(record, &contractions))
 }
 
-/// Whether pressures were kept at levels, and don't only lie in heaps.
+/// Whether pressures were held at levels, rather than merely clustered.
 fn is_kept(pressures: &[f64], levels: &Levels) -> bool {
     let largest = pressures.iter().fold(0.0_f64, |most, p| most.max(p.abs()));
     let mut ranges = vec![[f64::INFINITY, f64::NEG_INFINITY]; levels.len()];
@@ -39,7 +43,7 @@ fn is_kept(pressures: &[f64], levels: &Levels) -> bool {
     !levels.is_cut() && ranges.iter().all(|[low, high]| high - low <= KEPT * largest)
 }
 
-/// Each value by a parabola through its neighbours in the sweep, itself left out.
+/// Each value from a parabola through its neighbours in the sweep, without the value itself.
 fn by_neighbours(record: &Record, values: &[f64]) -> Vec<f64> {
     let mut found = values.to_vec();
     if !record.is_path() {
@@ -65,13 +69,14 @@ fn by_neighbours(record: &Record, values: &[f64]) -> Vec<f64> {
     found
 }
 
-/// Standard deviation of what a smooth path doesn't explain, from second differences; reversals and steps don't count.
+/// Standard deviation about a smooth path, from second differences; the median is insensitive to reversals
+/// and steps.
 fn scatter(values: &[f64]) -> f64 {
     let mut bends: Vec<f64> = values.windows(3).map(|w| (w[0] - 2.0 * w[1] + w[2]).abs()).collect();
     MAD_TO_SD * median(&mut bends) / 6.0_f64.sqrt()
 }
 
-/// Value at 0 of the parabola of least squares; none from fewer than five points.
+/// Value at 0 of the least-squares parabola; none for fewer than five points.
 fn parabola_at_zero(points: impl Iterator<Item = (f64, f64)>) -> Option<f64> {
     let mut moments = [0.0; 5];
     let mut right = [0.0; 3];
@@ -125,7 +130,7 @@ mod tests {
         let along: f64 =
             set.moments().iter().zip(&path).zip(&noise).map(|((m, e), d)| (m.contraction - e) * d).sum();
         let own: f64 = noise.iter().map(|d| d * d).sum();
-        // Readings beyond 4 sd of their neighbours keep their noise: few.
+        // The few readings beyond 4 sd of their neighbours keep their noise.
         assert!((along / own).abs() < 0.15, "{}", along / own);
     }
 

@@ -1,4 +1,4 @@
-//! Smooth functions of everything that was recorded: what a misfit may look like that nobody thought of.
+//! Smooth functions of everything that was recorded: possible shapes of an unknown misfit.
 //!
 //! ```text
 //! T_i(eps) T_j(p) x {1, direction};    distance since the last reversal x direction;
@@ -11,26 +11,27 @@ use bulge_model::Record;
 use crate::chebyshev::chebyshev;
 use crate::diagnosis::setpoints::setpoints;
 
-/// Highest degree over the contraction.
+/// Highest degree in the contraction.
 const CONTRACTION: usize = 12;
-/// Highest degree over the pressure, where the length is driven and where the pressure is.
+/// Highest degree in the pressure, if the length is driven and if the pressure is.
 const PRESSURE: [usize; 2] = [4, 8];
-/// Highest degrees over contraction and pressure of what changes sign with the direction, likewise.
+/// Highest degrees in contraction and pressure of functions that change sign with the direction, for the same
+/// two cases.
 const BY_DIRECTION: [[usize; 2]; 2] = [[5, 2], [5, 5]];
-/// One degree over the pressure counts as that many over the contraction.
+/// Weight of a degree in the pressure relative to one in the contraction.
 const PRESSURE_WEIGHT: f64 = 1.5;
-/// Lengths after a reversal, as parts of the range of the contraction.
+/// Lengths of transitions after a reversal, as fractions of the range of the contraction.
 const REVERSALS: [f64; 2] = [0.03, 0.12];
-/// Highest degree over the clock.
+/// Highest degree in the clock.
 const CLOCK: usize = 5;
 
-/// Most turns of a wave over the clock.
+/// Most periods of a wave over the clock.
 const TURNS: usize = 10;
 
-/// What a function depends on.
+/// Variable that a function depends on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Variable {
-    /// On nothing: alike in all rows. Where the contraction varies, that is its degree 0.
+    /// None: the function is constant. If the contraction varies, the constant counts as its degree 0.
     Mean,
     Contraction,
     Pressure,
@@ -43,7 +44,7 @@ pub(crate) enum Variable {
 }
 
 impl Variable {
-    /// All of them.
+    /// All variables.
     pub(crate) const ALL: [Self; 9] = [
         Self::Mean,
         Self::Contraction,
@@ -76,14 +77,14 @@ impl Variable {
 #[derive(Debug, Clone)]
 pub(crate) struct Smooth {
     pub(crate) variable: Variable,
-    /// The smoothest come first.
+    /// Order of the functions: the smoothest come first.
     roughness: f64,
     pub(crate) values: Vec<f64>,
 }
 
 /// The functions for a record, the smoothest first.
 ///
-/// At levels of pressure the mean of the level is what counts.
+/// At pressure levels, the mean of the level is used.
 pub(crate) fn smooth(record: &Record) -> Vec<Smooth> {
     let record = &setpoints(record);
     let mut functions = map(record);
@@ -148,13 +149,14 @@ fn by_direction(record: &Record) -> Vec<Smooth> {
     functions
 }
 
-/// Whether the pressure goes to and fro within sweeps.
+/// Whether the pressure rises and falls within sweeps.
 pub(crate) fn drives_pressure(record: &Record) -> bool {
     record.moments().iter().any(|m| m.pressure_step != 0.0)
 }
 
-/// Way since the last reversal, to the next, and since the beginning of the sweep before its first reversal, in parts of the range of the contraction, or of the
-/// pressure where the length is held; long elsewhere.
+/// Distance since the last reversal, to the next one, and since the beginning of the sweep before its first
+/// reversal, as fractions of the range of the contraction, or of the pressure if the length is held; large
+/// elsewhere.
 pub(crate) fn ways_to_reversals(record: &Record) -> [Vec<f64>; 3] {
     let moments = record.moments();
     let [low, high] = range(moments.iter().map(|m| m.contraction));
@@ -173,6 +175,7 @@ pub(crate) fn ways_to_reversals(record: &Record) -> [Vec<f64>; 3] {
     let mut begun = Vec::with_capacity(moments.len());
     let (mut way, mut direction, mut first) = (1.0, 0.0, 0.0);
     for (row, moment) in moments.iter().enumerate() {
+        // A sweep begins as if its last reversal were a whole range away.
         if moment.begins {
             (way, direction, first) = (1.0, moment.branch(), 0.0);
         } else {
@@ -190,6 +193,7 @@ pub(crate) fn ways_to_reversals(record: &Record) -> [Vec<f64>; 3] {
     }
     let mut next = vec![0.0; moments.len()];
     let (mut way, mut direction) = (1.0, 0.0);
+    // The distance to the next reversal, found in the same way backwards.
     for row in (0..moments.len()).rev() {
         let branch = moments[row].branch();
         if branch * direction < 0.0 {
@@ -295,7 +299,7 @@ fn range(values: impl Iterator<Item = f64>) -> [f64; 2] {
     values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)])
 }
 
-/// A quantity over -1 ..= 1.
+/// A quantity scaled to -1 ..= 1.
 pub(crate) fn scaled(record: &Record, of: impl Fn(&bulge_effects::Moment) -> f64) -> Vec<f64> {
     over_range(&record.moments().iter().map(of).collect::<Vec<_>>())
 }
@@ -306,7 +310,7 @@ pub(crate) fn over_range(values: &[f64]) -> Vec<f64> {
     values.iter().map(|v| if high > low { (v - low) / half - 1.0 } else { 0.0 }).collect()
 }
 
-/// How many clearly different values there are, up to 12.
+/// Number of clearly different values, at most 12.
 fn different(values: &[f64]) -> usize {
     let [low, high] = range(values.iter().copied());
     if high <= low {
@@ -333,7 +337,7 @@ mod tests {
         let record = Record::from_moments(moments, vec![0.0; 60], std::iter::once(0..60).collect()).unwrap();
         let found = smooth(&record);
         assert!(found.iter().all(|f| f.variable <= Variable::Pressure));
-        // Degrees i <= 11 (12 contractions are told apart) and i + 1.5 j <= 12 with j <= 2: 12 + 11 + 10.
+        // Degrees i <= 11 (12 contractions are distinguished) and i + 1.5 j <= 12 with j <= 2: 12 + 11 + 10.
         assert_eq!(found.len(), 33);
         assert!(found[0].values.iter().all(|v| (*v - 1.0).abs() < 1e-15));
     }

@@ -1,19 +1,20 @@
-//! A hypothesis of its own: what the model lacks is smooth, and nobody thought of it.
+//! The hypothesis of an unknown effect: the misfit is smooth, but no effect of the catalogue has its shape.
 //!
 //! ```text
 //! ln Z = ln mean over (A, J) of exp sum_j [-ln(1 + t_j)/2 + z_j^2 t_j/(1 + t_j)/2],    t_j = (A F exp(-j/J)/f_j)^2
 //! ```
-//! with z_j the coordinate of the misfit along the j-th smooth function, f_j the RMS of that function at one standard deviation, F the largest force.
+//! with z_j the coordinate of the misfit along the j-th smooth function, f_j the RMS of that function at one
+//! standard deviation, F the largest force.
 
 use crate::diagnosis::linearised_model::LinearisedModel;
 use crate::dot::dot;
 
-/// Sizes of a smooth misfit as parts of the largest force.
+/// Sizes A of a smooth misfit as fractions of the largest force.
 const SIZES: [f64; 6] = [3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 1e-1];
-/// Numbers of functions over which it fades.
+/// Numbers of functions J over which it decays.
 const FADES: [f64; 3] = [4.0, 12.0, 36.0];
 
-/// Log evidence of a smooth misfit that a model has and nobody thought of, over that of none.
+/// Log evidence of an unknown smooth misfit of a model, relative to none.
 pub(crate) fn smooth_evidence(linear: &LinearisedModel) -> f64 {
     let largest = linear.force.iter().fold(0.0_f64, |most, force| most.max(force.abs()));
     let rows = linear.force.len().max(1) as f64;
@@ -25,7 +26,8 @@ pub(crate) fn smooth_evidence(linear: &LinearisedModel) -> f64 {
     evidence_of(&found, largest)
 }
 
-/// Of functions with these coordinates and RMS values at one standard deviation, the smoothest first.
+/// Log evidence for functions with these coordinates and RMS values at one standard deviation, the smoothest
+/// first.
 fn evidence_of(found: &[(f64, f64)], largest: f64) -> f64 {
     let of = |size: f64, fade: f64| -> f64 {
         let term = |(j, (z, rms)): (usize, &(f64, f64))| {
@@ -45,7 +47,7 @@ mod tests {
 
     #[test]
     fn evidence_is_the_ratio_of_normal_densities() {
-        // Each coordinate has the variance 1 + t with something else, 1 without.
+        // Each coordinate has the variance 1 + t with an unknown effect, and 1 without.
         let found = [(7.0, 0.4), (-3.0, 0.7), (0.5, 0.2)];
         let density = |z: f64, variance: f64| (-0.5 * z * z / variance).exp() / variance.sqrt();
         let mut sum = 0.0;

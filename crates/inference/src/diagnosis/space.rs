@@ -1,27 +1,30 @@
-//! The space in which candidates are compared: whitened, without what the model's own numbers can do, in few coordinates.
+//! The space in which candidates are compared: whitened, orthogonal to the model's tangents, in few
+//! coordinates.
 //!
 //! ```text
 //! z = P K^-1/2 (y - F),    s = P K^-1/2 dF/dA,    P = 1 - Q Q',    Q orthonormal over the whitened tangents of the model
 //! ```
-//! Priors of the model's numbers are further rows. The coordinates are those of an orthonormal frame over all columns that were asked for: thousands
-//! of rows become about a hundred numbers, in which bootstraps and all pairs cost next to nothing.
+//! Priors of the model's parameters are additional rows. The coordinates refer to an orthonormal frame over
+//! all columns that were entered: thousands of rows become about a hundred numbers, in which bootstraps and
+//! all pairs are cheap.
 
 use nalgebra::DMatrix;
 
 use crate::dot::dot;
 
-/// A column whose part outside the frame is smaller than this part of it lies within the frame.
+/// A column lies within the frame if less than this fraction of it is outside.
 const WITHIN: f64 = 1e-7;
 
-/// A smooth function adds nothing if less than this part of it is new.
+/// A smooth function is skipped if less than this fraction of it is new.
 const NEW: f64 = 1e-3;
-/// A part that is taken out only once leaves this much of a column at least: rounding is then no larger in it than in the column (Daniel and others 1976).
+/// One pass of orthogonalisation suffices if it leaves at least this fraction of a column: the rounding
+/// errors are then no larger than those of the column (Daniel and others 1976).
 pub(crate) const ENOUGH: f64 = 0.5;
 
-/// Columns that go against the frame together.
+/// Columns that are orthogonalised against the frame together.
 const BLOCK: usize = 24;
 
-/// Orthonormal columns: those of the model first, then the frame.
+/// Orthonormal columns: the model's tangents first, then the frame.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Space {
     tangents: Vec<Vec<f64>>,
@@ -29,7 +32,7 @@ pub(crate) struct Space {
 }
 
 impl Space {
-    /// Without what these columns span.
+    /// A space orthogonal to the span of these columns.
     pub(crate) fn without(columns: &[Vec<f64>]) -> Self {
         let mut tangents: Vec<Vec<f64>> = Vec::new();
         for column in columns {
@@ -44,8 +47,9 @@ impl Space {
         Self { tangents, frame: Vec::new() }
     }
 
-    /// Without further columns, orthogonal to each other and outside of all that was left out before, each with a row of its own for the prior of its number, which has the
-    /// standard deviation 1. Before the first coordinate.
+    /// Also excludes further columns, which are orthogonal to each other and to all columns excluded before.
+    /// Each gets a row of its own for the prior of its coefficient, with standard deviation 1. Must be called
+    /// before the first coordinate.
     pub(crate) fn leave_out(&mut self, columns: &[&[f64]]) {
         for unit in &mut self.tangents {
             unit.resize(unit.len() + columns.len(), 0.0);
@@ -69,20 +73,20 @@ impl Space {
         self.frame
     }
 
-    /// Coordinates of a column; the frame grows if it lies outside.
+    /// Coordinates of a column; the frame grows if the column lies outside.
     pub(crate) fn enter(&mut self, column: &[f64]) -> Vec<f64> {
         let mut left = column.to_vec();
         let mut coordinates = vec![0.0; self.frame.len()];
         subtract(&mut left, &self.tangents);
         let size = norm(&left);
         if size <= WITHIN * norm(column) {
-            // Rounding is no direction.
+            // A rounding error is no direction.
             return coordinates;
         }
         add(&mut coordinates, &subtract(&mut left, &self.frame));
         let mut length = norm(&left);
         if length < ENOUGH * norm(column) {
-            // Twice, so that nothing of them is left (Kahan, Parlett).
+            // A second pass removes what rounding left of them (Kahan, Parlett).
             subtract(&mut left, &self.tangents);
             add(&mut coordinates, &subtract(&mut left, &self.frame));
             length = norm(&left);
@@ -94,8 +98,9 @@ impl Space {
         coordinates
     }
 
-    /// Coordinates of many columns; the frame grows by what lies outside. As one [`Space::enter`] after the other, but columns go against what is there block by block: then the
-    /// processor multiplies instead of waiting for its memory.
+    /// Coordinates of many columns; the frame grows by the parts outside. Equivalent to one [`Space::enter`]
+    /// after the other, but columns are orthogonalised in blocks, so that the computation isn't limited by
+    /// memory bandwidth.
     pub(crate) fn enter_all(&mut self, columns: &[Vec<f64>]) -> Vec<Vec<f64>> {
         let Some(rows) = columns.first().map(Vec::len) else { return Vec::new() };
         let mut units = DMatrix::zeros(rows, self.tangents.len() + self.frame.len() + columns.len());
@@ -115,12 +120,12 @@ impl Space {
             }
             for (place, column) in block.iter().enumerate() {
                 let mut own = left.column(place).as_slice().to_vec();
-                // What is outside the tangents, before the frame takes its part.
+                // The part outside the tangents, before the frame is subtracted.
                 let along: Vec<f64> = parts.column(place).iter().skip(tangents).copied().collect();
                 let size = norm(&along).hypot(norm(&own));
                 let mut coordinates = along;
                 if size <= WITHIN * norm(column) {
-                    // Rounding is no direction.
+                    // A rounding error is no direction.
                     found.push(vec![0.0; self.frame.len()]);
                     continue;
                 }
@@ -149,32 +154,33 @@ impl Space {
         self.frame.iter().map(|unit| dot(unit, &left)).collect()
     }
 
-    /// Orthonormal columns of what was left out.
+    /// Orthonormal columns of the excluded directions.
     pub(crate) fn left_out(&self) -> &[Vec<f64>] {
         &self.tangents
     }
 
-    /// The part of a column that is outside of what was left out.
+    /// The part of a column outside the excluded directions.
     pub(crate) fn outside_of_left_out(&self, column: &[f64]) -> Vec<f64> {
         let mut left = column.to_vec();
         subtract(&mut left, &self.tangents);
         left
     }
 
-    /// The part of a column that is outside the model's tangents and the frame.
+    /// The part of a column outside the model's tangents and the frame.
     pub(crate) fn outside(&self, column: &[f64]) -> Vec<f64> {
         let mut left = self.outside_of_left_out(column);
         subtract(&mut left, &self.frame);
         left
     }
 
-    /// The part that is outside also of the direction which came last, of one that was outside of all before.
+    /// Orthogonalises against the latest direction of the frame a column that is orthogonal to all earlier
+    /// ones.
     pub(crate) fn outside_last(&self, left: &mut [f64]) {
         subtract(left, &self.frame[self.frame.len().saturating_sub(1)..]);
     }
 }
 
-/// Takes the parts along orthonormal columns out of a column, and gives them.
+/// Subtracts from a column its projections on orthonormal columns, and returns their coefficients.
 fn subtract(column: &mut [f64], units: &[Vec<f64>]) -> Vec<f64> {
     let without = |unit: &Vec<f64>| {
         let part = dot(unit, column);
@@ -203,7 +209,8 @@ pub(crate) fn norm(a: &[f64]) -> f64 {
     dot(a, a).sqrt()
 }
 
-/// A function without what others span, so that its white column has the length 1; none if nothing of it is new.
+/// A function orthogonalised against others so that its white column has norm 1; none if it contains nothing
+/// new.
 pub(crate) fn orthogonal(
     mut raw: Vec<f64>,
     mut white: Vec<f64>,
@@ -260,7 +267,7 @@ mod tests {
         assert!((dot(&ca, &cb) - dot(&outside(&a), &outside(&b))).abs() < 1e-12);
         assert!((norm(&cb) - norm(&outside(&b))).abs() < 1e-12);
         assert_eq!((space.len(), ca.len(), cb.len()), (2, 1, 2));
-        // All together as one after the other.
+        // All together give the same as one after the other.
         let mut together = Space::without(&tangents);
         let again = together.enter_all(&[a.clone(), tangents[1].clone(), b.clone()]);
         let gap = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
@@ -274,13 +281,13 @@ mod tests {
             assert!(gap(once, &one) < 1e-11 * norm(column) && once.len() == one.len(), "{place}");
         }
         assert_eq!(one_by_one.len(), 48);
-        // A combination of all has nothing outside, and nothing of the tangents.
+        // A combination of all columns has no part outside, and none along the tangents.
         let sum: Vec<f64> = (0..50).map(|i| 3.0 * tangents[0][i] + 2.0 * a[i] - b[i]).collect();
         let c = space.enter(&sum);
         assert!(space.len() == 2 && norm(&space.outside(&sum)) < 1e-10);
         assert!((c[0] - (2.0 * ca[0] - cb[0])).abs() < 1e-12);
         assert!(norm(&space.enter(&tangents[1])) < 1e-12);
-        // What is nearly within has a direction that is orthogonal to all others.
+        // A nearly dependent column gives a direction that is orthogonal to all others.
         let nearly: Vec<f64> = (0..50).map(|i| sum[i] + 1e-5 * column(5)[i]).collect();
         space.enter(&nearly);
         let last = &space.frame[2];

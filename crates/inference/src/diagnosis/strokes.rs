@@ -1,21 +1,22 @@
-//! Strokes of a record: the ways in one direction, and where on them each row is. Rows of different strokes in about the same state are near replicates.
+//! Strokes of a record: its parts in one direction, and the position of each row on them. Rows of different
+//! strokes in about the same state are near replicates.
 
 use bulge_effects::Moment;
 use bulge_model::Record;
 
 use crate::comparison::levels::Levels;
 
-/// Contractions that differ by less are the same held length.
+/// Contractions that differ by less count as the same held length.
 const HELD: f64 = 2e-3;
 
 /// A row of a stroke.
 pub(crate) struct Point {
-    /// Contraction, or pressure at held length, in parts of its range.
+    /// Contraction, or pressure at held length, as a fraction of its range.
     pub(crate) place: f64,
     pub(crate) row: usize,
 }
 
-/// What strokes have in common that repeat each other.
+/// What strokes that repeat each other have in common.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct State {
     pub(crate) specimen: u32,
@@ -23,15 +24,15 @@ pub(crate) struct State {
     pub(crate) is_held: bool,
     /// Level of the pressure, or the held length.
     pub(crate) level: i64,
-    /// Whether the muscle gets shorter, or the pressure rises.
+    /// Whether the muscle shortens, or the pressure rises.
     pub(crate) is_up: bool,
 }
 
-/// The way in one direction within one cycle, in the order of the places.
+/// A part in one direction within one cycle, ordered by position.
 pub(crate) struct Stroke {
     pub(crate) state: State,
     pub(crate) sweep: usize,
-    /// Whether it is of the first of three cycles or more of its sweep.
+    /// Whether it belongs to the first of three or more cycles of its sweep.
     pub(crate) is_first: bool,
     pub(crate) points: Vec<Point>,
 }

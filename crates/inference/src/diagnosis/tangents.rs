@@ -1,4 +1,5 @@
-//! A model at its numbers on a record: the misfit, and how the force moves with each free number.
+//! A model at its parameters on a record: the misfit, and the derivatives of the force by each free
+//! parameter.
 
 use bulge_model::{ModelError, Record, Wanted, Warm};
 
@@ -8,7 +9,7 @@ use crate::fit::problem::free;
 
 /// Force and derivatives of a model.
 pub(crate) struct Tangents {
-    /// The history as it was set, at which the columns are taken: functions of what was set, not of what was read.
+    /// The history as it was set, at which the columns are evaluated.
     pub(crate) set: Record,
     /// Force at the readings \[N\].
     pub(crate) force: Vec<f64>,
@@ -16,16 +17,16 @@ pub(crate) struct Tangents {
     pub(crate) force_as_set: Vec<f64>,
     /// Measured less computed force \[N\].
     pub(crate) residual: Vec<f64>,
-    /// Places of the free numbers.
+    /// Indices of the free parameters.
     pub(crate) free: Vec<usize>,
     /// Derivative of the force by each of them, column by column.
     pub(crate) columns: Vec<Vec<f64>>,
-    /// What is remembered of the equilibria as set.
+    /// Equilibria of the history as set.
     pub(crate) warm: Warm,
 }
 
 impl Tangents {
-    /// Of a model with the numbers `theta`.
+    /// The tangents of a model at parameters `theta`.
     pub(crate) fn of(prepared: &Prepared, theta: &[f64], record: &Record) -> Result<Self, ModelError> {
         let model = &prepared.model;
         let wanted = Wanted { parameters: free(model), readings: false };

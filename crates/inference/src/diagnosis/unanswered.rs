@@ -1,4 +1,4 @@
-//! A diagnosis that says only why there is none.
+//! Diagnoses without an answer, which only state the reason.
 
 use bulge_measurements::Data;
 use bulge_muscles::{Muscle, Quantity};
@@ -12,7 +12,7 @@ use crate::diagnosis::geometry::Geometry;
 use crate::diagnosis::write::source;
 use crate::noise::law::{NoiseLaw, NoiseSource};
 
-/// Too few rows for any statement.
+/// The data have too few rows for any statement.
 pub(crate) fn cannot_tell(data: &Data, muscle: &Muscle, reason: &str) -> Diagnosis {
     let stated = muscle.instruments().force.map_or(0.0, |force| force.noise());
     let law = NoiseLaw::white(stated, NoiseSource::Instruments, 0.0, "not known from these rows".to_owned());
@@ -61,7 +61,8 @@ pub(crate) fn cannot_tell(data: &Data, muscle: &Muscle, reason: &str) -> Diagnos
     }
 }
 
-/// Readings in another unit or of another sign than stated: no physics is looked for, and the question is the answer.
+/// The readings have another unit or sign than stated. No effect is looked for, and the question about the
+/// unit or sign is the answer.
 pub(crate) fn unanswered(data: &Data, muscle: &Muscle, comparison: Comparison) -> Diagnosis {
     let questions: Vec<String> = comparison.data.findings.iter().map(ToString::to_string).collect();
     let diagnosis = cannot_tell(data, muscle, "");
@@ -83,7 +84,7 @@ pub(crate) fn unanswered(data: &Data, muscle: &Muscle, comparison: Comparison) -
     }
 }
 
-/// What was measured, and no model beside it.
+/// A summary of the data without any model.
 fn nothing_compared(data: &Data, muscle: &Muscle) -> Comparison {
     let range = |values: &[f64]| {
         values.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(*v), high.max(*v)])

@@ -1,4 +1,4 @@
-//! The verdict on what a search has found. A tolerance comes last: it can only take claims away.
+//! The verdict on the result of a search. A tolerance is applied last and can only withdraw claims.
 
 use bulge_effects::Effect;
 use bulge_muscles::units::significant;
@@ -19,7 +19,7 @@ use crate::diagnosis::stage::{Stage, Unsmooth};
 use crate::diagnosis::write::Findings;
 use crate::noise::law::NoiseSource;
 
-/// What is said, without regard to a tolerance.
+/// The verdict without regard to a tolerance.
 struct Said {
     verdict: Verdict,
     says: String,
@@ -48,7 +48,7 @@ impl Findings<'_> {
         if self.verdict().0.shows_effects() { self.last() } else { &self.search.stages[0] }
     }
 
-    /// The model that the geometry is read from, whatever doesn't matter.
+    /// The stage for reading the geometry, without regard to a tolerance.
     pub(crate) fn regardless(&self) -> &Stage {
         if self.said().verdict.shows_effects() { self.last() } else { &self.search.stages[0] }
     }
@@ -81,7 +81,7 @@ impl Findings<'_> {
                 (Verdict::CannotTell, says, Vec::new())
             }
             Verdict::Missing => {
-                // What comes after a model that is good enough needs no claim.
+                // Effects added after a model that is good enough need not be claimed.
                 let enough = self.search.stages.iter().skip(1).find_map(|stage| {
                     let is_needed =
                         |name: &&String| stage.added.iter().any(|e| e.card().name == name.as_str());
@@ -183,7 +183,8 @@ impl Findings<'_> {
             } else {
                 "that no further effect explains"
             };
-            // Where something remains, numbers that no muscle has stand in for something else: no claim.
+            // If something remains, effects with impossible parameters stand in for something else and are
+            // not claimed.
             let claimed = if last.adequate { sound.into_iter().chain(odd).collect() } else { sound };
             let (claimed, _) = self.apart(claimed);
             let says = format!(
@@ -203,7 +204,7 @@ impl Findings<'_> {
         Said::nothing(Verdict::Unknown, says)
     }
 
-    /// Whether a misfit that passed for noise is too large to be called none.
+    /// Whether a misfit that may be noise is too large for an adequate model.
     pub(crate) fn is_large(&self) -> bool {
         let (_, [low, high]) = misfit(&self.last().linear, self.context.seed);
         let force = self.context.record.force();
@@ -215,18 +216,19 @@ impl Findings<'_> {
                 || self.is_beyond_data_sheet())
     }
 
-    /// Noise of single readings by the data sheet of the load cell \[N\].
+    /// Noise of single readings from the data sheet of the load cell \[N\].
     fn stated_n(&self) -> Option<f64> {
         let force = self.last().confirmed.prepared.model.muscle().instruments().force?;
         Some(force.noise()).filter(|noise| *noise > 0.0)
     }
 
-    /// Whether what passes for slow noise is far more than the load cell has: something that nobody stated moves.
+    /// Whether the apparent slow noise is far larger than that of the load cell, so that something unstated
+    /// must vary.
     fn is_beyond_data_sheet(&self) -> bool {
         self.stated_n().is_some_and(|stated| self.slow_n() > RULE.slow * stated)
     }
 
-    /// What the last model leaves that no smooth function follows.
+    /// The part of the last model's residuals that no smooth function follows, in words.
     fn unsmooth(&self) -> Option<String> {
         Some(match self.last().adequacy.unsmooth? {
             Unsmooth::Oscillation(period) => {
@@ -237,7 +239,7 @@ impl Findings<'_> {
         })
     }
 
-    /// A jump, and where it is.
+    /// A jump and its location, in words.
     fn jump(&self, jump: Jump) -> String {
         let record = self.context.record;
         let moment = &record.moments()[jump.row];
@@ -252,12 +254,12 @@ impl Findings<'_> {
         format!("a jump of {size} N within a sweep (at {pressure} bar and {contraction} %{at})")
     }
 
-    /// Noise that readings share with their neighbours \[N\].
+    /// Noise that readings share with their neighbours or within a sweep \[N\].
     fn slow_n(&self) -> f64 {
         self.context.law.correlated_n.hypot(self.context.law.offset_n)
     }
 
-    /// What is said where these effects explain the data.
+    /// The verdict if these effects explain the data.
     fn explained_by(&self, all: Vec<String>) -> Said {
         if let [only] = &all[..]
             && self.mechanism(only) < RULE.nameless
@@ -282,7 +284,7 @@ impl Findings<'_> {
         Said { verdict: Verdict::Missing, says, claimed }
     }
 
-    /// How often the mechanism of a named effect is right.
+    /// Confidence in the mechanism of a named effect.
     fn mechanism(&self, name: &str) -> f64 {
         let found = self.class(name);
         found.map_or(1.0, |(class, sure)| Levels::of(class, sure, self.classes.len()).mechanism)
@@ -292,8 +294,9 @@ impl Findings<'_> {
         self.classes.iter().find(|(class, _)| class.effect.card().name == name)
     }
 
-    /// Names that are claims, and those of further effects that hardly lead a model without them, or whose mechanism is likelier wrong than right; the effect of the
-    /// largest evidence is a claim, and the surest need not be likelier right than wrong.
+    /// Separates claims from doubtful names: further effects with little evidence over a model without them,
+    /// or with a mechanism that is more likely wrong than right. The effect with the largest evidence is
+    /// always a claim, and the surest one needn't be more likely right than wrong.
     fn apart(&self, names: Vec<String>) -> (Vec<String>, Vec<String>) {
         let evidence =
             |name: &String| self.class(name).map_or(f64::INFINITY, |(class, _)| class.log_evidence);
@@ -304,15 +307,16 @@ impl Findings<'_> {
         names.into_iter().partition(|name| evidence(name) >= most || is_seen(name) && is_decided(name))
     }
 
-    /// Whether the formulas of the effects explain nearly everything as they are: what is left is then their own error. Of a misfit that may as well be none,
-    /// the part that counts for claims is enough.
+    /// Whether the formulas of the effects explain nearly everything as they are, so that the rest is their
+    /// own error. If the remaining misfit may be zero, the smaller fraction required for claims is enough.
     fn is_nearly_exact(&self) -> bool {
         let part = self.last().by_formulas(&self.search.stages[0]);
         let may_be_none = || misfit(&self.last().linear, self.context.seed).1[0] <= 0.0;
         part >= RULE.by_formulas[1] || part >= RULE.exact && !self.is_bent() && may_be_none()
     }
 
-    /// Whether the claim rests on bending the formulas: then they are the nearest, and not what is missing.
+    /// Whether the claim rests on form errors; the effects are then only the nearest ones, not what is
+    /// missing.
     fn is_bent(&self) -> bool {
         let (base, last) = (&self.search.stages[0].confirmed, &self.last().confirmed);
         let (form, base_form) = (last.form.log_evidence, base.form.log_evidence);
@@ -322,7 +326,8 @@ impl Findings<'_> {
     }
 }
 
-/// The sweep that is furthest off, or the pressure where there is one sweep, in a sentence to go on with.
+/// The sweep with the largest error, or the pressure if there is only one sweep, as a clause that continues a
+/// sentence.
 pub(crate) fn furthest(comparison: &Comparison) -> String {
     let of = |variable: &str| {
         let bins = comparison.by.iter().find(|by| by.variable == variable).map(|by| (&by.bins, by.unit))?;

@@ -1,4 +1,4 @@
-//! From what was found to the diagnosis as people and programs read it.
+//! Turns the findings of a search into a diagnosis for people and programs.
 
 use bulge_effects::Effect;
 use bulge_muscles::Muscle;
@@ -33,13 +33,14 @@ use crate::fit::problem::{FitProblem, free};
 use crate::noise::law::NoiseSource;
 use bulge_numerics::least_squares::Side;
 
-/// The family of hysteresis with a transition after each reversal, and what it is without.
+/// The family of hysteresis with a transition after each reversal; the next constant is the effect without
+/// one.
 const HYSTERESIS: &str = "presliding-hysteresis";
 const COULOMB: &str = "coulomb-friction";
-/// A transition shorter than this part of the stroke is none.
+/// A transition shorter than this fraction of the stroke counts as none.
 const SHORT: f64 = 0.025;
 
-/// Everything that was found.
+/// All findings.
 pub(crate) struct Findings<'a> {
     pub(crate) context: &'a Context<'a>,
     pub(crate) search: &'a Search,
@@ -47,7 +48,7 @@ pub(crate) struct Findings<'a> {
     /// Standard deviation of a single row \[N\].
     pub(crate) sd_n: f64,
     pub(crate) effective_rows: f64,
-    /// How many effects the base has.
+    /// Number of effects of the base.
     pub(crate) known: usize,
     /// RMS misfit that doesn't matter \[N\].
     pub(crate) tolerance_n: Option<f64>,
@@ -67,7 +68,7 @@ pub(crate) fn document(
     if verdict == Verdict::CannotTell && found.is_large() {
         says += &furthest(&comparison);
     }
-    // Where no effect is named, none is shown: what is left is what the base leaves.
+    // If no effect is named, none is shown, and the remaining misfit is that of the base.
     let named = verdict.shows_effects();
     let classes = if named { classes } else { &[] };
     let last = found.shown_stage();
@@ -133,7 +134,8 @@ pub(crate) const fn source(source: NoiseSource) -> &'static str {
 }
 
 impl Findings<'_> {
-    /// What a further effect must change to count beside those that are named: less could be an error of their formulas. As a part of what they explain, squares count.
+    /// RMS change that a further effect needs to count beside the named ones; a smaller change could be an
+    /// error of their formulas. The ratio of squares is `RULE.mends`.
     fn unseen_below_n(&self) -> Option<f64> {
         let last = self.last();
         let (explained_n, _) = misfit(&self.search.stages[0].linear, self.context.seed);
@@ -141,7 +143,7 @@ impl Findings<'_> {
             .then(|| RULE.mends.sqrt() * explained_n)
     }
 
-    /// Each step of the search with what it explained.
+    /// Each step of the search with the part of the misfit that it explained.
     fn explained(&self) -> Vec<ExplainedStep> {
         let step = |pair: &[Stage]| {
             let is_new = |effect: &&Arc<dyn Effect>| {
@@ -154,7 +156,7 @@ impl Findings<'_> {
         self.search.stages.windows(2).map(step).collect()
     }
 
-    /// The rungs of the base and of the effects that were added, then those of the effects as the data want them.
+    /// The rungs of the base and of the added effects, then those with the fitted form errors.
     fn ladder(&self, comparison: &Comparison, bent: &[BentRung], adequate: bool) -> Vec<LadderStep> {
         let label = |name: &str| {
             let own = self.last().added.iter().find(|effect| effect.card().name == name);
@@ -183,15 +185,15 @@ impl Findings<'_> {
             adequate: false,
         });
         let mut steps: Vec<LadderStep> = formulas.chain(bent).collect();
-        // A stage is adequate with its effects as the data want them.
+        // A stage is adequate with the form errors of its effects.
         if let Some(last) = steps.last_mut() {
             last.adequate = adequate;
         }
         steps
     }
 
-    /// The name under which an effect is reported: hysteresis whose transition is much shorter than the stroke is Coulomb's friction to all intents, with the
-    /// transition that every real contact has.
+    /// The name under which an effect is reported. Hysteresis with a transition much shorter than the stroke
+    /// is practically Coulomb friction, since every real contact has a transition.
     pub(crate) fn label(&self, effect: &Arc<dyn Effect>) -> String {
         let card = effect.card();
         let confirmed = &self.last().confirmed;
@@ -210,10 +212,10 @@ impl Findings<'_> {
             high - low
         };
         let stroke = self.context.record.sweeps().iter().map(stroke).fold(0.0, f64::max);
-        // Where the length is held there is none: friction of the length is no candidate.
+        // At held length there is no such friction: friction of the length is no candidate then.
         let first = &self.search.stages[0].linear.sensitivities.effects;
         let is_candidate = first.iter().any(|sensitivity| sensitivity.effect.card().name == COULOMB);
-        // Beside Coulomb's friction it is what that lacks.
+        // Beside Coulomb friction, the effect represents the transition that it lacks.
         let has_coulomb = confirmed.prepared.model.effects().iter().any(|c| c.effect.card().name == COULOMB);
         let is_short = card.family == HYSTERESIS
             && is_candidate
@@ -222,7 +224,8 @@ impl Findings<'_> {
         if is_short { COULOMB.to_owned() } else { card.name.to_owned() }
     }
 
-    /// All effects that these data can't tell from one, itself first: the head of its family, and of each other family the best; and others of its own family.
+    /// All effects that these data can't distinguish from this one, itself first: the head of its family, and
+    /// the best of each other family. Then other members of its family.
     fn names(&self, class: &Class) -> (Vec<String>, Vec<String>) {
         let name = self.label(&class.effect);
         let own = class.effect.card().family;
@@ -248,7 +251,7 @@ impl Findings<'_> {
         (names, forms)
     }
 
-    /// What a claim names, as far as the data decide it: an effect, or one of a class.
+    /// The name in a claim, as specific as the data allow: an effect, or one of a class.
     pub(crate) fn claimed(&self, effect: &Arc<dyn Effect>) -> String {
         let label = self.label(effect);
         let is_it = |(class, _): &&(Class, Confidence)| class.effect.card().name == effect.card().name;
@@ -288,7 +291,8 @@ impl Findings<'_> {
         }
     }
 
-    /// The numbers of an effect with 95 % intervals: from the covariance, and from the profile where that can't be trusted.
+    /// The parameters of an effect with 95 % intervals: from the covariance, or from the profile likelihood
+    /// if the covariance can't be trusted.
     fn parameters(&self, effect: &Arc<dyn Effect>) -> BTreeMap<String, ParameterResult> {
         let last = self.last();
         let confirmed = &last.confirmed;
@@ -337,12 +341,14 @@ impl Findings<'_> {
         self.is_within(effect, 0.0)
     }
 
-    /// Whether the numbers of an effect are such that it may be what it is called: what is plausible is itself known only so far.
+    /// Whether the parameters of an effect are possible for it. The plausible range itself is only
+    /// approximate.
     pub(crate) fn possible(&self, effect: &str) -> bool {
         self.is_within(effect, RULE.beyond)
     }
 
-    /// Whether the numbers of an effect of the last model are plausible, or beyond that by no more than this part of what is.
+    /// Whether the parameters of an effect of the last model are plausible, or exceed the plausible range by
+    /// no more than this fraction of it.
     fn is_within(&self, effect: &str, part: f64) -> bool {
         let confirmed = &self.last().confirmed;
         let numbers = confirmed.prepared.model.parameters().iter().zip(&confirmed.theta);
@@ -362,7 +368,7 @@ fn rival_result(rival: &Rival, class: &Class) -> RivalResult {
 }
 
 impl Findings<'_> {
-    /// Every effect of the catalogue, beside the base.
+    /// Every effect of the catalogue, tested on the base.
     fn candidates(&self, classes: &[(Class, Confidence)], claimed: &[Missing]) -> Vec<CandidateResult> {
         let context = self.context;
         let stage = &self.search.stages[0];
@@ -395,7 +401,7 @@ impl Findings<'_> {
             let number = candidate.and_then(|c| numbers.get(c.sizes.first()?.place));
             let per_size = candidate.map_or(0.0, |c| c.detectability(1.0));
             let limit = (per_size > 0.0).then(|| SEEN / per_size);
-            // Beyond the bounds of the number it is no limit: these data can't show the effect.
+            // A limit beyond the bounds of the parameter means that these data can't show the effect.
             let limit = limit
                 .filter(|l| number.is_none_or(|n| *l <= n.of(given_muscle).high - n.of(given_muscle).low));
             let column =
@@ -407,7 +413,7 @@ impl Findings<'_> {
                 log_evidence: fitted.or(alone.map(|h| h.log_evidence)).unwrap_or(0.0),
                 score: alone.map_or(0.0, |h| h.gain),
                 status,
-                // What is there or not has no size.
+                // An effect that is either present or absent has no size.
                 detection_limit: number
                     .filter(|_| candidate.is_some_and(|c| !c.whole))
                     .and_then(|n| Some(limit? / n.factor)),

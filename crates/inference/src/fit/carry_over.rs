@@ -1,8 +1,9 @@
-//! Numbers taken over from one model to another one.
+//! Transfer of parameter values from one model to another.
 
 use bulge_model::Model;
 
-/// Numbers that two models share start where the first left them; which of them they are.
+/// Starts the parameters that two models share at their values in the first model. Returns which of them are
+/// shared.
 pub(crate) fn carry_over(from: &Model, values: &[f64], to: &Model, theta: &mut [f64]) -> Vec<bool> {
     let mut carried = vec![false; theta.len()];
     for (place, number) in to.parameters().iter().enumerate() {
@@ -10,7 +11,7 @@ pub(crate) fn carry_over(from: &Model, values: &[f64], to: &Model, theta: &mut [
             other.effect == number.effect && other.name == number.name && other.specimen == number.specimen
         };
         if let Some(old) = from.parameters().iter().position(same) {
-            // What is known or held in the one may have been fitted in the other.
+            // A parameter that is held in the new model may have been fitted in the old one.
             theta[place] =
                 if number.fixed { number.value } else { values[old].clamp(number.low, number.high) };
             carried[place] = true;

@@ -1,39 +1,39 @@
-//! A fit as a value: numbers with intervals, and what is to be said about them.
+//! The result of a fit: parameters with intervals, and warnings.
 
 use serde::Serialize;
 
-/// A fit of some numbers of a model.
+/// A fit of some parameters of a model.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Fit {
-    /// The fitted numbers, in the order of the model.
+    /// The fitted parameters, in the order of the model.
     pub parameters: Vec<Fitted>,
-    /// All numbers of the model, fitted or not, in SI.
+    /// All parameters of the model, fitted or not, in SI units.
     #[serde(skip)]
     pub theta: Vec<f64>,
     /// RMS error \[N\].
     pub rmse_n: f64,
-    /// Sum of squares of the weighted residuals and priors.
+    /// Sum of squares of the weighted residuals and of the priors.
     pub cost: f64,
-    /// Standard deviation of a single force reading on which the weights are based \[N\].
+    /// Standard deviation of a single force reading that the weights are based on \[N\].
     pub sd_n: f64,
-    /// Rows that count as independent: residuals of a sweep are correlated.
+    /// Effective number of independent rows; the residuals of a sweep are correlated.
     pub effective_rows: f64,
-    /// Correlations of the fitted numbers, row by row.
+    /// Correlation matrix of the fitted parameters, row by row.
     pub correlations: Vec<f64>,
     /// How the search ended.
     pub convergence: Convergence,
-    /// Wrong cures, numbers at a bound, pairs that can't be told apart, in sentences.
+    /// Implausible values, parameters at a bound, and pairs that can't be separated, in sentences.
     pub warnings: Vec<String>,
 }
 
-/// One fitted number.
+/// One fitted parameter.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Fitted {
     /// The effect (or law).
     pub effect: String,
     /// The name within the effect.
     pub name: String,
-    /// The specimen, where each has its own.
+    /// The specimen, if each has its own parameter.
     pub specimen: Option<String>,
     /// Value in `unit`.
     pub value: f64,
@@ -41,23 +41,25 @@ pub struct Fitted {
     pub low: f64,
     /// Upper end.
     pub high: f64,
-    /// The unit.
+    /// Unit in which the parameter is shown.
     pub unit: String,
-    /// `covariance` or `profile`.
+    /// How the interval was found: `covariance` or `profile`.
     pub interval: &'static str,
-    /// `lower` or `upper`, where the value lies on a bound of the search.
+    /// `lower` or `upper`, if the value lies on a bound of the search.
     pub at_bound: Option<&'static str>,
-    /// Whether the value is one that a muscle (or rig) can have; if not, it is a wrong cure.
+    /// Whether the value is physically plausible for a muscle (or rig). An implausible value means that the
+    /// wrong effect fits the data.
     pub plausible: bool,
     /// The plausible range, in `unit`.
     pub plausible_range: [f64; 2],
-    /// Whether the data say anything about it.
+    /// Whether the data determine the parameter.
     pub determined: bool,
-    /// Whether it is a rig error within the data sheets of `[instruments]`, or a stated width, which is fitted along as noise.
+    /// Whether it is a nuisance parameter: a rig error within the data sheets of `[instruments]`, or a number
+    /// of the muscle stated with a width. Such parameters are fitted along as noise.
     pub nuisance: bool,
-    /// The value shown as its reciprocal: name, value and unit.
+    /// Name, value and unit of the reciprocal, if it is shown as well.
     pub also: Option<(String, f64, String)>,
-    /// What it is.
+    /// Description.
     pub about: String,
 }
 
@@ -68,16 +70,16 @@ pub struct Convergence {
     pub converged: bool,
     /// Why the search stopped.
     pub reason: String,
-    /// Largest cosine between the residuals and a derivative: 0 at a minimum.
+    /// Largest cosine of the angle between the residuals and a column of the Jacobian: 0 at a minimum.
     pub gradient_cosine: f64,
     /// Iterations of the last search.
     pub iterations: usize,
-    /// How many starting points were tried.
+    /// Number of starting points that were tried.
     pub starts: usize,
-    /// How many of them ended in the best minimum.
+    /// Number of starts that ended in the best minimum.
     pub agreeing: usize,
-    /// How many different minima were seen.
+    /// Number of distinct minima that were found.
     pub minima: usize,
-    /// Numbers that the data determine, of those fitted.
+    /// Number of fitted parameters that the data determine.
     pub rank: usize,
 }

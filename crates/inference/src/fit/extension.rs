@@ -1,4 +1,5 @@
-//! What a fit found, put into the muscle: effects that shape it into its own numbers, all others into tables of their own.
+//! Writes the result of a fit into the muscle. Effects that change its shape go into its own numbers, all
+//! others into tables of their own.
 
 use bulge_effects::{Group, learnt};
 use bulge_model::{Chosen, Model, ModelError, ModelParameter};
@@ -6,28 +7,29 @@ use bulge_muscles::{Dimension, FittedNumber, FittedNumbers, LearntValue, Muscle,
 
 use crate::fit::document::{Fit, Fitted};
 
-/// The quantile of a normal number that the ends of a 95 % interval stand for.
+/// Quantile 0.975 of the normal distribution, at the ends of a 95 % interval.
 const NORMAL: f64 = 1.959_964;
 
-/// A muscle with what a fit has found.
+/// A muscle with the result of a fit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Extension {
     /// The muscle; [`bulge_muscles::to_toml`] writes it, and [`bulge_effects::known`] reads its effects.
     pub muscle: Muscle,
-    /// Effects whose numbers it holds.
+    /// Effects whose parameters the muscle now states.
     pub written: Vec<String>,
-    /// Effects that it can't hold, with the reason.
+    /// Effects that a muscle file can't state, with the reason.
     pub left_out: Vec<(String, &'static str)>,
 }
 
 /// The muscle of a fitted model with the fitted effects.
 ///
-/// Rig errors that were fitted as noise within the data sheets are not learnt: the next data set has its own. Effects of single specimens
-/// have no place in the file of the muscle. The standard deviation of a number is half its 95 % interval over 1.96; a number is rounded
-/// to a thousandth of it.
+/// Rig errors that were fitted as noise within the data sheets are not carried over, because the next data
+/// set has its own. Effects of single specimens have no place in the muscle file. The standard deviation of a
+/// parameter is half its 95 % interval over 1.96; the value is rounded to a thousandth of the standard
+/// deviation.
 ///
 /// # Errors
-/// If the muscle can't have an effect with these numbers.
+/// If the muscle can't have an effect with these parameters.
 pub fn extended(model: &Model, fit: &Fit) -> Result<Extension, ModelError> {
     let mut extension =
         Extension { muscle: model.muscle().clone(), written: Vec::new(), left_out: Vec::new() };
@@ -35,7 +37,7 @@ pub fn extended(model: &Model, fit: &Fit) -> Result<Extension, ModelError> {
         let card = chosen.effect.card();
         let name = card.name.to_owned();
         if chosen.fixed {
-            // In the muscle already, with its widths.
+            // The muscle states this effect already, with its widths.
             continue;
         }
         if model.copies(chosen.effect.as_ref()) > 1 || card.group == Group::Specimen {
@@ -59,7 +61,8 @@ pub fn extended(model: &Model, fit: &Fit) -> Result<Extension, ModelError> {
     Ok(extension)
 }
 
-/// What the fit knows of the numbers of the effects that were written, and what the muscle file knew of others before: those are as known as they were.
+/// The uncertainty of the effects that were written, and that of the others as the muscle file stated it
+/// before. The latter stays as it was.
 fn fitted_numbers(model: &Model, fit: &Fit, written: &[String]) -> FittedNumbers {
     let sources: Vec<usize> = fit.parameters.iter().filter_map(|found| place_of(model, found)).collect();
     let mut own: Vec<usize> = Vec::new();
@@ -92,13 +95,13 @@ fn fitted_numbers(model: &Model, fit: &Fit, written: &[String]) -> FittedNumbers
     FittedNumbers { error_n: units::rounded(fit.rmse_n, 4), rows, numbers }
 }
 
-/// To four digits: what is read in a file should not pretend to be exact.
+/// The correlation to four digits: a number in a file should not pretend to be exact.
 fn correlation(fit: &Fit, one: usize, other: usize) -> f64 {
     let found = fit.correlations.get(one * fit.parameters.len() + other).copied().unwrap_or(0.0);
     if one == other { 1.0 } else { units::rounded(found, 4).clamp(-1.0, 1.0) }
 }
 
-/// The place of a fitted number in the model.
+/// Index of a fitted parameter in the model.
 fn place_of(model: &Model, fitted: &Fitted) -> Option<usize> {
     model
         .parameters()
@@ -106,14 +109,15 @@ fn place_of(model: &Model, fitted: &Fitted) -> Option<usize> {
         .position(|p| fitted.effect == p.effect && fitted.name == p.name && fitted.specimen == p.specimen)
 }
 
-/// Value and standard deviation \[SI\] of a number; one that was held has its value alone, one that is tied those of the other.
+/// Value and standard deviation of a parameter \[SI\]. A held parameter has only its value; a tied one takes
+/// both from the parameter that it is tied to.
 fn stated(model: &Model, fit: &Fit, index: usize) -> (f64, Option<f64>) {
     let Some((source, found)) = fitted(model, fit, index) else { return (fit.theta[index], None) };
     let number = &model.parameters()[source];
     (rounded(fit.theta[source], found, number), width(found).map(|sd| in_si(sd, number)))
 }
 
-/// The fit of a number, or of the one that it is tied to, with the place of that.
+/// Index and fit of a parameter, or of the one that it is tied to.
 fn fitted<'f>(model: &Model, fit: &'f Fit, index: usize) -> Option<(usize, &'f Fitted)> {
     let index = model.parameters()[index].tied.unwrap_or(index);
     let number = &model.parameters()[index];
@@ -122,13 +126,15 @@ fn fitted<'f>(model: &Model, fit: &'f Fit, index: usize) -> Option<(usize, &'f F
     fit.parameters.iter().find(is_it).map(|found| (index, found))
 }
 
-/// One standard deviation in the unit shown; none where the interval is none.
+/// One standard deviation in the unit shown; none if the interval isn't two-sided (undetermined, or at a
+/// bound).
 fn width(fitted: &Fitted) -> Option<f64> {
     let sure = fitted.determined && fitted.at_bound.is_none();
     sure.then(|| units::rounded((fitted.high - fitted.low) / (2.0 * NORMAL), 2))
 }
 
-/// A fitted number to a thousandth of its standard deviation, or to nine digits: what is read in a file should not pretend to be exact.
+/// The value, rounded to a thousandth of its standard deviation, or to nine digits without one: a number in a
+/// file should not pretend to be exact.
 fn rounded(value: f64, fitted: &Fitted, number: &ModelParameter) -> f64 {
     let shown = value / number.factor;
     let digits = width(fitted).map_or(9.0, |sd| (shown.abs() / sd).log10().ceil() + 3.0);
@@ -137,7 +143,8 @@ fn rounded(value: f64, fitted: &Fitted, number: &ModelParameter) -> f64 {
     in_si(units::rounded(shown, digits), number).clamp(number.low, number.high)
 }
 
-/// As a file's reader would take it: then it is written as short as it was rounded.
+/// The value in SI as a reader of the file gets it, so that it is written with as few digits as it was
+/// rounded to.
 fn in_si(shown: f64, number: &ModelParameter) -> f64 {
     units::any(&format!("{shown} {}", number.unit)).map_or(shown * number.factor, |value| value.si)
 }

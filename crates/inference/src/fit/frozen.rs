@@ -1,24 +1,26 @@
-//! The minimum of a fit in rounds: equilibria are solved at the start of a round and are linear in the numbers of the shape within it.
+//! Minimises in rounds: equilibria are solved at the start of a round and linearised in the shape parameters
+//! within it.
 //!
-//! Shooting for equilibria is nearly all that a fit costs, and its numbers of the shape (a radius within its tolerance, a modulus) change little from one evaluation to
-//! the next. When a round ends where it began, the equilibria of its end are those that were solved: the minimum is that of the model itself. A round that leads
-//! nowhere is made good by a fit without short cuts.
+//! Shooting for the equilibria is nearly the whole cost of a fit, while its shape parameters (a radius within
+//! its tolerance, a modulus) change little from one evaluation to the next. When a round ends where it began,
+//! the equilibria at its end are the solved ones, so its minimum is that of the model itself. If the rounds
+//! don't get there, a fit without the linearisation follows.
 
 use bulge_model::ModelError;
 use bulge_numerics::least_squares::{Bounds, LeastSquaresError, Minimum, Options, Residuals, minimise};
 
 use crate::fit::problem::FitProblem;
 
-/// Rounds at most.
+/// Most rounds.
 const ROUNDS: usize = 8;
-/// A difference of the sum of squares that doesn't matter: evidence counts in halves of it.
+/// Difference of the sum of squares that doesn't matter; log-likelihoods count half of it.
 pub(crate) const NEAR: f64 = 0.01;
-/// The same as a part of the sum of squares.
+/// The same relative to the sum of squares.
 const NEAR_PART: f64 = 1e-6;
-/// Part of a standard deviation that is no way.
+/// A parameter is still if it moves by less than this fraction of a standard deviation.
 const STILL: f64 = 0.05;
 
-/// The minimum that a start leads to; as [`minimise`], and its errors.
+/// The minimum that a start leads to. Arguments and errors are those of [`minimise`].
 pub(crate) fn minimise_frozen(
     problem: &FitProblem<'_>,
     start: &[f64],
@@ -26,7 +28,7 @@ pub(crate) fn minimise_frozen(
     options: &Options,
 ) -> Result<Minimum, LeastSquaresError<ModelError>> {
     let mut at = start.to_vec();
-    // Where the equilibria were solved last but one, and the sum of squares there.
+    // The last accepted point at which the equilibria were solved, and the sum of squares there.
     let mut solved: Option<(Vec<f64>, f64)> = None;
     let solve = |at: &[f64]| {
         problem.hold();
@@ -37,7 +39,7 @@ pub(crate) fn minimise_frozen(
         let solved_here = here.take().unwrap_or_else(|| solve(&at));
         let began = solved.as_ref().map_or(f64::INFINITY, |(_, cost)| *cost);
         let Some(cost_here) = solved_here.filter(|here| *here <= began + near(began)) else {
-            // No equilibrium where the linear ones led, or further from the data than before: half of the way.
+            // The linearised step led to a point without equilibrium or with a larger cost: halve it.
             let Some((before, _)) = &solved else { break };
             at = before.iter().zip(&at).map(|(before, at)| 0.5 * (before + at)).collect();
             continue;
@@ -52,7 +54,7 @@ pub(crate) fn minimise_frozen(
             return Ok(minimum);
         }
         let there = solve(&minimum.theta);
-        // The equilibria there give the same sum of squares.
+        // Solving the equilibria there confirms the linearised cost.
         if is_end && there.is_some_and(|cost| (cost - minimum.cost).abs() <= near(cost)) {
             problem.release();
             return Ok(minimum);
@@ -66,7 +68,7 @@ pub(crate) fn minimise_frozen(
     minimise(problem, &from, bounds, options)
 }
 
-/// Whether no number has moved by more than a small part of its standard deviation.
+/// Whether no parameter has moved by more than a small fraction of its standard deviation.
 fn is_still(from: &[f64], minimum: &Minimum) -> bool {
     let k = from.len();
     let column = |j: usize| (0..k).map(|i| minimum.r[i * k + j].powi(2)).sum::<f64>().sqrt();
@@ -77,7 +79,7 @@ fn near(cost: f64) -> f64 {
     NEAR + NEAR_PART * cost
 }
 
-/// The sum of squares, with derivatives in what is held.
+/// The sum of squares. The derivatives are evaluated too, because the held equilibria need them.
 pub(crate) fn cost(problem: &FitProblem<'_>, at: &[f64]) -> Result<f64, ModelError> {
     let (rows, numbers) = (problem.rows(), problem.parameters());
     let (mut residuals, mut jacobian) = (vec![0.0; rows], vec![0.0; rows * numbers]);

@@ -1,27 +1,27 @@
-//! Numbers that a fit left where they were: held at a value, or tied to another one.
+//! Parameters that a fit didn't change: held at a value, or tied to another parameter.
 
 use bulge_model::{Model, ModelParameter};
 use bulge_muscles::units;
 use serde::Serialize;
 
-/// A number that was held or tied.
+/// A parameter that was held or tied.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct HeldNumber {
     /// The effect (or law).
     pub effect: String,
     /// The name within the effect.
     pub name: String,
-    /// The specimen, where each has its own.
+    /// The specimen, if each has its own parameter.
     pub specimen: Option<String>,
     /// Value in `unit`.
     pub value: f64,
-    /// The unit.
+    /// Unit in which the value is shown.
     pub unit: String,
     /// `held` or `tied`.
     pub how: &'static str,
-    /// The number whose value it has, where it is tied: `effect.name`, with the specimen if each has its own.
+    /// The parameter that it is tied to: `effect.name`, with the specimen if each has its own.
     pub to: Option<String>,
-    /// What it is.
+    /// Description.
     pub about: String,
 }
 
@@ -40,7 +40,7 @@ impl std::fmt::Display for HeldNumber {
     }
 }
 
-/// All of a model with the numbers `theta`, in its order.
+/// All held and tied parameters of a model with parameters `theta`, in the model's order.
 pub(crate) fn held(model: &Model, theta: &[f64]) -> Vec<HeldNumber> {
     let number = |(p, value): (&ModelParameter, &f64)| HeldNumber {
         effect: p.effect.clone(),

@@ -1,31 +1,32 @@
-//! Intervals of fitted numbers: from the covariance, and from the profile of the likelihood where that can't be trusted.
+//! Intervals of fitted parameters: from the covariance, or from the profile likelihood if the covariance
+//! can't be trusted.
 
 use bulge_numerics::least_squares::{Bounds, Minimum, Options, ProfileEnd, profile};
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
 use crate::fit::problem::FitProblem;
 
-/// The 95 % interval of one number, in SI.
+/// The 95 % interval of one parameter, in SI units.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Interval {
     pub(crate) ends: [f64; 2],
     pub(crate) method: &'static str,
 }
 
-/// What turns unit covariances into intervals.
+/// Scales unit covariances to intervals.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Scale {
-    /// Variance of a weighted residual, not below 1 where the noise is known, times rows per independent row.
+    /// Variance of a weighted residual (at least 1 if the noise is known) times rows per independent row.
     variance: f64,
     /// Quantile 0.975 of Student's t.
     quantile: f64,
 }
 
 impl Scale {
-    /// For a minimum with `rows` rows of which `effective` are independent.
+    /// For a minimum over `rows` rows, `effective` of which are independent.
     pub(crate) fn new(minimum: &Minimum, rows: usize, effective: f64) -> Self {
         let freedom = (rows as f64 - minimum.certificate.rank as f64).max(1.0);
-        // Of the rows alone: priors behind them say nothing about the noise.
+        // Sum over the rows alone: the priors behind them say nothing about the noise.
         let cost: f64 = minimum.residuals.iter().take(rows).map(|r| r * r).sum();
         let spread = (cost / freedom).max(1.0);
         let independent = (effective - minimum.certificate.rank as f64).max(1.0);
@@ -33,13 +34,15 @@ impl Scale {
         Self { variance: spread * (rows as f64 / effective).max(1.0), quantile }
     }
 
-    /// For noise that is known: whitened residuals have this variance, the law so many degrees of freedom.
+    /// For known noise: `variance` is that of the whitened residuals, `freedom` the degrees of freedom of the
+    /// law.
     pub(crate) fn known(variance: f64, freedom: f64) -> Self {
         Self { variance, quantile: quantile(freedom) }
     }
 }
 
-/// Quantile 0.975 of Student's t; with infinite freedom that of the normal distribution, at which a search in the tails of Student's would not end.
+/// Quantile 0.975 of Student's t. With infinite degrees of freedom it is that of the normal distribution,
+/// because the search for Student's quantile would not end there.
 pub(crate) fn quantile(freedom: f64) -> f64 {
     if !freedom.is_finite() {
         return 1.959_964;
@@ -49,11 +52,12 @@ pub(crate) fn quantile(freedom: f64) -> f64 {
         .clamp(1.959_964, 12.71)
 }
 
-/// Rows up to which a profile is affordable: each is some forty fits more.
+/// Most rows for which a profile is affordable: it costs about forty more fits.
 const MOST_ROWS: usize = 20_000;
 
-/// The interval of the free number `place`: from the covariance, or where that can't be trusted (`flagged`) from the profile of the likelihood,
-/// whose ends are where the sum of squares, minimised over all other numbers, has risen by the square of Student's quantile.
+/// The interval of the free parameter `place`. It comes from the covariance. If that can't be trusted
+/// (`flagged`), it comes from the profile likelihood: its ends are where the sum of squares, minimised over
+/// all other parameters, has risen by the square of Student's quantile.
 pub(crate) fn of(
     problem: &FitProblem<'_>,
     minimum: &Minimum,
@@ -81,7 +85,7 @@ pub(crate) fn of(
     Interval { ends: ends.map(back), method: "covariance" }
 }
 
-/// The ends of the profile; none if the searches over the other numbers fail.
+/// The ends of the profile; none if the minimisations over the other parameters fail.
 fn profiled(
     problem: &FitProblem<'_>,
     minimum: &Minimum,
@@ -90,7 +94,7 @@ fn profiled(
     scale: &Scale,
 ) -> Option<[f64; 2]> {
     let rise = scale.quantile * scale.quantile * scale.variance;
-    // An end to a thousandth of a standard deviation is more than anybody reads.
+    // Nobody reads the ends more accurately than to a thousandth of a standard deviation.
     let options =
         Options { tolerance: 1e-4, check_curvature: false, max_evaluations: 60, ..Options::default() };
     let found = profile(problem, minimum, bounds, &options, place, rise).ok()?;

@@ -1,38 +1,39 @@
-//! Rig errors within the data sheets, and stated widths of the muscle: fitted along with everything, as noise.
+//! Nuisance parameters: rig errors within the data sheets and stated widths of the muscle, fitted along as
+//! noise.
 
 use bulge_effects::{Catalogue, Effect};
 use bulge_model::{Model, ModelError};
 use bulge_muscles::{Instrument, Muscle, Parameter, Quantity};
 use std::sync::Arc;
 
-/// A number that is known up to a width.
+/// A parameter that is known up to a standard deviation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Width {
     effect: &'static str,
     parameter: &'static str,
-    /// Mean and standard deviation, in SI.
+    /// Mean and standard deviation, in SI units.
     prior: (f64, f64),
 }
 
-/// A model with its nuisances, and the priors of all its numbers.
+/// A model with its nuisance parameters, and the priors of all its parameters.
 #[derive(Debug, Clone)]
 pub(crate) struct Prepared {
     pub(crate) model: Model,
-    /// One for each number of the model.
+    /// One entry for each parameter of the model.
     pub(crate) priors: Vec<Option<(f64, f64)>>,
-    /// Whether the number is a nuisance.
+    /// Whether the parameter is a nuisance.
     pub(crate) nuisance: Vec<bool>,
 }
 
 impl Prepared {
-    /// Where a fit starts: nuisances as they are stated.
+    /// The start of a fit: nuisance parameters start at their stated values.
     pub(crate) fn start(&self) -> Vec<f64> {
         let mut start = self.model.start();
         let stated =
             self.priors.iter().zip(&self.nuisance).map(|(prior, nuisance)| prior.filter(|_| *nuisance));
         for ((value, p), prior) in start.iter_mut().zip(self.model.parameters()).zip(stated) {
             if let Some((mean, _)) = prior.filter(|_| !p.fixed) {
-                // Bounds that were stated may be narrower than the data sheet.
+                // Bounds stated by the user may be narrower than the data sheet.
                 *value = mean.max(p.low).min(p.high);
             }
         }
@@ -40,8 +41,8 @@ impl Prepared {
     }
 }
 
-/// Adds to a model what `[instruments]` and stated widths leave open. An effect that was asked for by name keeps its own prior: then it is
-/// not noise.
+/// Adds nuisance parameters for what `[instruments]` and stated widths leave open. An effect that was
+/// requested by name keeps its own prior and is then no nuisance.
 pub(crate) fn with_nuisances(model: &Model, catalogue: &Catalogue) -> Result<Prepared, ModelError> {
     let asked = model.parameters().len();
     let mut prepared = Prepared {
@@ -68,7 +69,7 @@ pub(crate) fn with_nuisances(model: &Model, catalogue: &Catalogue) -> Result<Pre
         prepared.priors.extend(std::iter::repeat_n(None, added));
         prepared.nuisance.extend(std::iter::repeat_n(true, added));
         let is_it = |p: &bulge_model::ModelParameter| p.effect == width.effect && p.name == width.parameter;
-        // Specimens that differ have each their own, as doubtful in proportion.
+        // Specimens with different values have a parameter each, with the same relative standard deviation.
         for (prior, number) in
             prepared.priors.iter_mut().zip(prepared.model.parameters()).filter(|(_, p)| is_it(p))
         {
@@ -80,7 +81,7 @@ pub(crate) fn with_nuisances(model: &Model, catalogue: &Catalogue) -> Result<Pre
     Ok(prepared)
 }
 
-/// Numbers of the geometry that a width makes nuisances of.
+/// Geometrical parameters for which a stated width adds a nuisance parameter.
 pub(crate) const fn is_geometry(parameter: Parameter) -> bool {
     matches!(parameter, Parameter::Length | Parameter::Radius | Parameter::BraidAngle | Parameter::Wall)
 }
@@ -112,7 +113,8 @@ fn widths(muscle: &Muscle) -> Vec<Width> {
             Parameter::Radius if muscle.is_pleated() => add("end-radius", "radius", stated, *sd),
             Parameter::Radius => add("radius-error", "radius", stated, *sd),
             Parameter::BraidAngle => add("braid-angle-error", "error", 0.0, *sd),
-            // The gas acts on the wall's inner face where the file says so, and rubber stores energy as its modulus times the thickness.
+            // The wall's thickness changes the force in two ways: the gas acts on its inner face where the
+            // file says so, and the rubber's stored energy is proportional to modulus times thickness.
             Parameter::Wall => {
                 if muscle.gas_wall().is_some() && !muscle.is_stated(Parameter::GasWall) {
                     add("wall-thickness", "thickness", stated, *sd);
@@ -164,7 +166,7 @@ mod tests {
             ("radius-error", 0.010_725, 0.03 * 0.010_725),
             ("braid-angle-error", 0.0, 2.0_f64.to_radians()),
         ];
-        // The wall itself moves nothing: its rubber does, and gas that acts on its inner face.
+        // Without either, the wall changes nothing: only its rubber and the gas on its inner face do.
         are(&priors(&braided), &geometry);
         let stated =
             preset("dmsp-20-250").unwrap().with(Parameter::C10, 3e5).unwrap().with_gas_wall(None).unwrap();

@@ -1,4 +1,4 @@
-//! A fit as a problem of least squares: weighted residuals of the used rows, then one row for each prior.
+//! A fit as a least-squares problem: weighted residuals of the used rows, then one residual for each prior.
 
 use bulge_model::{Model, ModelError, ModelParameter, Record, Wanted, Warm};
 use bulge_numerics::least_squares::{Bounds, Residuals};
@@ -8,27 +8,27 @@ use std::ops::Range;
 
 use crate::noise::whitening::Whitening;
 
-/// Rows that one core weights at a time.
+/// Rows that one thread weights at a time.
 const ROWS: usize = 4096;
 
-/// The free numbers of a model against a record.
+/// The free parameters of a model against a record.
 pub(crate) struct FitProblem<'a> {
     model: &'a Model,
     record: &'a Record,
     /// Rows that count.
     rows: Vec<usize>,
-    /// One standard deviation per row of the record.
+    /// Standard deviation of each row of the record.
     sd: Vec<f64>,
-    /// Places of the free numbers.
+    /// Indices of the free parameters.
     free: Vec<usize>,
-    /// All numbers; the free ones are replaced.
+    /// All parameters; the free ones are replaced in each evaluation.
     base: Vec<f64>,
-    /// (place among the free, mean, standard deviation), in the coordinates of the search.
+    /// Index among the free parameters, mean and standard deviation, in the coordinates of the search.
     priors: Vec<(usize, f64, f64)>,
     logarithmic: Vec<bool>,
-    /// Takes the correlations of the noise out, where they are known; standard deviations are then 1.
+    /// Whitening of the residuals if the noise covariance is known; the standard deviations are then 1.
     whitening: Option<&'a Whitening>,
-    /// Equilibria of the evaluation before, from which the next one starts.
+    /// Equilibria of the last evaluation, from which the next one starts.
     warm: Warm,
 }
 
@@ -46,7 +46,7 @@ impl<'a> FitProblem<'a> {
         let logarithmic: Vec<bool> = free.iter().map(|i| numbers[*i].logarithmic).collect();
         let of_free = |(place, index): (usize, &usize)| {
             let (mean, sd) = priors[*index]?;
-            // A relative standard deviation on a logarithmic scale.
+            // The standard deviation on a logarithmic scale is the relative one.
             Some(if logarithmic[place] { (place, mean.ln(), sd / mean) } else { (place, mean, sd) })
         };
         let priors = free.iter().enumerate().filter_map(of_free).collect();
@@ -55,7 +55,7 @@ impl<'a> FitProblem<'a> {
         Self { model, record, rows, sd, free, base, priors, logarithmic, whitening: None, warm }
     }
 
-    /// The same for correlated noise: all rows of the record count, and the law says how much.
+    /// The same for correlated noise: all rows of the record are used, and the noise law weights them.
     pub(crate) fn whitened(
         model: &'a Model,
         record: &'a Record,
@@ -68,7 +68,7 @@ impl<'a> FitProblem<'a> {
         Self { whitening: Some(whitening), ..plain }
     }
 
-    /// All numbers of the model, from the coordinates of the search.
+    /// All parameters of the model, from the coordinates of the search.
     pub(crate) fn theta(&self, free: &[f64]) -> Vec<f64> {
         let mut theta = self.base.clone();
         for ((index, value), logarithmic) in self.free.iter().zip(free).zip(&self.logarithmic) {
@@ -77,7 +77,7 @@ impl<'a> FitProblem<'a> {
         if let Cow::Owned(tied) = self.model.with_ties(&theta) { tied } else { theta }
     }
 
-    /// Coordinates of the search.
+    /// The coordinates of the search, from all parameters.
     pub(crate) fn coordinates(&self, theta: &[f64]) -> Vec<f64> {
         let coordinate = |(index, logarithmic): (&usize, &bool)| {
             if *logarithmic { theta[*index].ln() } else { theta[*index] }
@@ -93,12 +93,12 @@ impl<'a> FitProblem<'a> {
         Bounds { lower: self.coordinates(&low), upper: self.coordinates(&high) }
     }
 
-    /// Solves the equilibria of the next evaluation only, see [`Warm::hold`].
+    /// Solves the equilibria in the next evaluation only and holds them afterwards, see [`Warm::hold`].
     pub(crate) fn hold(&self) {
         self.warm.hold();
     }
 
-    /// Solves those of each evaluation.
+    /// Solves the equilibria in each evaluation again.
     pub(crate) fn release(&self) {
         self.warm.release();
     }
@@ -107,7 +107,7 @@ impl<'a> FitProblem<'a> {
         self.warm.is_held()
     }
 
-    /// The force of every row of the record \[N\] that goes with residuals; 0 where a row doesn't count.
+    /// The model force of every row of the record \[N\], from the residuals; 0 in rows that don't count.
     pub(crate) fn force(&self, residuals: &[f64]) -> Vec<f64> {
         let mut force = vec![0.0; self.record.len()];
         for (row, residual) in self.rows.iter().zip(residuals) {
@@ -126,7 +126,7 @@ impl<'a> FitProblem<'a> {
         &self.sd
     }
 
-    /// Whether a free number is fitted over its logarithm.
+    /// Whether the coordinate of a free parameter is its logarithm.
     pub(crate) fn is_logarithmic(&self, place: usize) -> bool {
         self.logarithmic[place]
     }
@@ -140,7 +140,7 @@ impl FitProblem<'_> {
     }
 }
 
-/// Places of the numbers that a fit may change.
+/// Indices of the parameters that a fit may change.
 pub(crate) fn free(model: &Model) -> Vec<usize> {
     let is_free = |(_, p): &(usize, &ModelParameter)| !p.fixed;
     model.parameters().iter().enumerate().filter(is_free).map(|(i, _)| i).collect()
@@ -157,12 +157,13 @@ impl Residuals for FitProblem<'_> {
         self.free.len()
     }
 
-    /// All at once: rows of a sweep depend on each other, and the model is parallel itself.
+    /// All rows in one block: the rows of a sweep depend on each other, and the model runs in parallel
+    /// itself.
     fn block(&self) -> usize {
         self.rows()
     }
 
-    /// Derivatives come along with the equilibria.
+    /// The model returns derivatives together with the equilibria.
     fn joint(&self) -> bool {
         true
     }

@@ -1,4 +1,5 @@
-//! Numbers held, bounded or tied, as people state them: `bladder-elasticity.modulus=0.31 MPa`, `self-heating.time=100..900 s`, `a.x=b.y`.
+//! Parameters held, bounded or tied, as users write them: `bladder-elasticity.modulus=0.31 MPa`,
+//! `self-heating.time=100..900 s`, `a.x=b.y`.
 
 use bulge_effects::{Effect, ParameterCard};
 use bulge_measurements::Data;
@@ -11,10 +12,10 @@ use crate::comparison::analysis::Analysis;
 use crate::comparison::options::Options;
 use crate::error::InferenceError;
 
-/// A number of an effect by its name, before and after its value.
+/// A parameter of an effect, found by its name, with the texts before and after its value.
 struct Named<'o> {
     effect: &'o Arc<dyn Effect>,
-    /// Place among the effect's numbers.
+    /// Index among the effect's parameters.
     place: usize,
     name: NumberName,
 }
@@ -26,12 +27,12 @@ impl Named<'_> {
 }
 
 impl Options {
-    /// The same with a number held at a value: `effect.number=value`, or `effect=value` where the effect has one number. `effect.number[specimen]` is one
-    /// specimen's own.
+    /// The options with a parameter held at a value: `effect.number=value`, or `effect=value` if the effect
+    /// has one parameter. `effect.number[specimen]` names the parameter of one specimen.
     ///
     /// # Errors
-    /// In a sentence: if there is no such effect or number, the value is of another dimension or out of the effect's bounds, or something is stated of the
-    /// number already.
+    /// In a sentence: if there is no such effect or parameter, if the value has another dimension or lies
+    /// outside the effect's bounds, or if a restriction of this parameter is stated already.
     pub fn hold(self, text: &str, muscle: &Muscle) -> Result<Self, String> {
         let (left, value) = halves(text, "coulomb-friction.force=14 N")?;
         let named = self.named(left)?;
@@ -40,10 +41,10 @@ impl Options {
         self.with_restriction(Restriction { number: name, says: Says::Held(value) })
     }
 
-    /// The same with a number kept between two values: `effect.number=low..high`.
+    /// The options with a parameter bounded: `effect.number=low..high`.
     ///
     /// # Errors
-    /// As [`Options::hold`]; if the lower bound isn't below the upper.
+    /// As [`Options::hold`]; also if the lower bound isn't below the upper one.
     pub fn bound(self, text: &str, muscle: &Muscle) -> Result<Self, String> {
         let (left, range) = halves(text, "coulomb-friction.force=5..20 N")?;
         let named = self.named(left)?;
@@ -52,10 +53,12 @@ impl Options {
         self.with_restriction(Restriction { number: name, says: Says::Within(range) })
     }
 
-    /// The same with a number that has the value of another one, whatever that is fitted to: `effect.number=other.number`.
+    /// The options with a parameter tied to another one, whose fitted value it takes:
+    /// `effect.number=other.number`.
     ///
     /// # Errors
-    /// As [`Options::hold`]; if the numbers have different dimensions or bounds that don't meet, or are tied in a circle.
+    /// As [`Options::hold`]; also if the two parameters differ in dimension, if their bounds don't overlap,
+    /// or if the ties form a circle.
     pub fn tie(self, text: &str, muscle: &Muscle) -> Result<Self, String> {
         let (left, right) = halves(text, "force-lag.time=pressure-lag.time")?;
         let (one, other) = (self.named(left)?, self.named(right)?);
@@ -89,10 +92,11 @@ impl Options {
         self.with_restriction(Restriction { number, says: Says::Tied(to) })
     }
 
-    /// The SI unit of a number, by its name as [`Options::hold`] takes it: `Pa` of `bladder-elasticity.modulus`, `1` of what has no dimension.
+    /// The SI unit of a parameter, named as in [`Options::hold`]: `Pa` for `bladder-elasticity.modulus`, `1`
+    /// for dimensionless parameters.
     ///
     /// # Errors
-    /// In a sentence: if there is no such effect or number.
+    /// In a sentence: if there is no such effect or parameter.
     pub fn si_unit_of(&self, number: &str, muscle: &Muscle) -> Result<String, String> {
         Ok(self.named(number)?.card(muscle, |card| card.dimension().to_string()))
     }
@@ -144,12 +148,12 @@ impl Options {
     }
 }
 
-/// Refuses statements about numbers that aren't fitted, as those of effects which the model doesn't have.
+/// Refuses restrictions of parameters that aren't fitted, for example of effects that the model doesn't have.
 ///
-/// A comparison itself passes over them, so that an effect can be taken away and come back with what is stated of its numbers.
+/// A comparison itself ignores them, so that an effect can be taken away and come back with its restrictions.
 ///
 /// # Errors
-/// [`InferenceError::Restriction`] of the first such statement; all that [`crate::compare`] refuses.
+/// [`InferenceError::Restriction`] for the first such restriction, and all errors of [`crate::compare`].
 pub fn check_restrictions(data: &Data, muscle: &Muscle, options: &Options) -> Result<(), InferenceError> {
     if options.restrictions.is_empty() {
         return Ok(());

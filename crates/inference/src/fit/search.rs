@@ -1,4 +1,4 @@
-//! The fit: many starts on a thinned record, the best ones polished on all rows, and what is to be said about the result.
+//! The fit: many starts on a thinned record, the best ones refined on all rows; then intervals and warnings.
 
 use bulge_model::{Model, ModelError, Record, Wanted, Warm};
 use bulge_numerics::least_squares::{
@@ -16,34 +16,33 @@ use crate::fit::states::{Minimised, is_of_rows, minimise_partly, of_start};
 use crate::fit::weights::{Noise, effective_rows};
 use bulge_muscles::units::significant;
 
-/// Rows on which starts are tried.
+/// Rows of the thinned record on which starts are tried.
 const FEW_ROWS: usize = 400;
-/// Refinement of the lattice on which they are: their minima are followed on the usual one.
+/// Refinement of the lattice during the trials; their minima are followed on the usual lattice.
 const COARSE: f64 = 0.5;
-/// Starting points: where it begins, nearly off, one for the first number that neither a data sheet nor a smaller model knows and two for each further one; this many at
-/// most.
+/// Most starts: the given one, one nearly without effects, 2 n - 1 scattered ones for n unknown parameters.
 const STARTS: usize = 8;
-/// Standard deviations of a data sheet within which a rig error is its noise.
+/// A rig error within so many standard deviations of its data sheet counts as noise.
 const SHEET: f64 = 4.0;
-/// Part of the plausible box at either end in which no start lies.
+/// Fraction of the plausible box at either end in which no start lies.
 const EDGE: f64 = 0.1;
-/// Minima of the thinned record that are followed further.
+/// Number of minima of the thinned record that are followed further.
 const POLISHED: usize = 2;
-/// Rows on which they are followed before all rows, where those are many more.
+/// Rows on which minima are followed first if the record is much longer.
 const MORE_ROWS: usize = 4000;
-/// Rows from which that saves time: several minima, and one.
+/// Record lengths from which that saves time: with several minima, and with one.
 const MANY_ROWS: [usize; 2] = [8000, 20_000];
-/// Rows from which a fit takes some of them: its numbers are then known to a hundredth of what the formulas are right to, and passes over all rows are many.
+/// Longer records are thinned: parameters are then known to a hundredth of the formulas' own error.
 const LONG: usize = 60_000;
-/// How many it takes.
+/// Rows of a thinned long record.
 const OF_LONG: usize = 40_000;
-/// Rows of each cycle that it takes at least, so that the path keeps its shape.
+/// Fewest rows per cycle in a thinned long record, so that the path keeps its shape.
 const OF_CYCLE: f64 = 40.0;
-/// Part by which a minimum may be above the least one there, and is still followed on all rows.
+/// Minima within this fraction above the least cost are still followed on all rows.
 const RIVAL: f64 = 0.05;
-/// Costs that differ by less than this part belong to the same minimum.
+/// Costs that differ by less than this fraction belong to the same minimum.
 const SAME: f64 = 1e-3;
-/// Correlations beyond this are spoken of.
+/// Correlations beyond this lead to a warning.
 const INSEPARABLE: f64 = 0.98;
 
 /// What a fit needs besides the model.
@@ -52,20 +51,20 @@ pub(crate) struct Task<'a> {
     pub(crate) record: &'a Record,
     pub(crate) used: &'a [bool],
     pub(crate) noise: Noise,
-    /// For each number whether it starts where a fit without the others left it, and stays there in most of the starts; empty if none does.
+    /// For each parameter, whether a smaller fit found it, so that most starts keep it; empty if none.
     pub(crate) known: &'a [bool],
-    /// Tries only the start that it is given: one that is known to be near the minimum.
+    /// Tries only the given start, which is known to be near the minimum.
     pub(crate) is_near: bool,
-    /// Makes no statement about uncertainty: for held-out errors.
+    /// Skips intervals and warnings: for held-out errors.
     pub(crate) quick: bool,
 }
 
-/// Fits the free numbers of a model.
+/// Fits the free parameters of a model.
 pub(crate) fn fit(prepared: &Prepared, start: &[f64], task: &Task<'_>) -> Result<Fit, ModelError> {
     fit_and_force(prepared, start, task).map(|(fit, _)| fit)
 }
 
-/// The same with the force that goes with the fit \[N\]; it is 0 in rows that don't count, and NaN in those without a state.
+/// The fit, and its force \[N\]: 0 in rows that don't count, NaN in rows without a state.
 pub(crate) fn fit_and_force(
     prepared: &Prepared,
     start: &[f64],
@@ -128,12 +127,12 @@ pub(crate) fn fit_and_force(
     Ok((fit, force))
 }
 
-/// The rows of a long record that a fit takes, and the record that they are; none if it takes all.
+/// The thinned record and its rows if a record is long; none if the fit takes all rows.
 pub(crate) fn some_of_long(record: &Record) -> Option<(Record, Vec<usize>)> {
     (record.len() > LONG && keeps_cycles(record)).then(|| record.thinned(OF_LONG))
 }
 
-/// Whether some of the rows still show each cycle.
+/// Whether the thinned record still resolves each cycle.
 fn keeps_cycles(record: &Record) -> bool {
     let of_sweep = |sweep: &std::ops::Range<usize>| {
         let cycles = record.moments()[sweep.clone()].iter().map(|m| m.cycle);
@@ -144,7 +143,7 @@ fn keeps_cycles(record: &Record) -> bool {
     OF_LONG as f64 >= OF_CYCLE * cycles
 }
 
-/// The fit of some rows of a long record, and the force of all of them.
+/// The fit of a thinned long record, and the force at all its rows.
 fn of_long(
     prepared: &Prepared,
     start: &[f64],
@@ -165,7 +164,7 @@ fn of_long(
     Ok((fit, force))
 }
 
-/// The minimum near some numbers, over the rows that have a state.
+/// The minimum near `theta`, over the rows that have a state.
 fn polished<'a>(prepared: &'a Prepared, theta: &[f64], task: &Task<'a>) -> Result<Minimised<'a>, ModelError> {
     let model = &prepared.model;
     let sd = weights(model, theta, task)?;
@@ -184,14 +183,14 @@ struct Searched {
     tried: usize,
 }
 
-/// Starts all over the plausible box, each followed to its minimum on few rows.
+/// Starts from all over the plausible box, each followed to its minimum on few rows.
 fn search(prepared: &Prepared, start: &[f64], task: &Task<'_>) -> Result<Searched, ModelError> {
     let model = &prepared.model.clone().refined(COARSE);
     let (thin, kept) = task.record.thinned(FEW_ROWS);
     let used: Vec<bool> = kept.iter().map(|row| task.used[*row]).collect();
     let few = Task { record: &thin, used: &used, ..*task };
     let sd = weights(model, start, &few)?;
-    // Each start remembers equilibria of its own: they run at the same time.
+    // One problem for each start, because each keeps its own equilibria and they run in parallel.
     let problem_of = || FitProblem::new(model, &thin, &used, sd.clone(), start.to_vec(), &prepared.priors);
     let problem = problem_of();
     let bounds = problem.bounds();
@@ -226,7 +225,7 @@ fn search(prepared: &Prepared, start: &[f64], task: &Task<'_>) -> Result<Searche
         }
     }
     if ends.is_empty() {
-        // Nowhere do all rows have a state: those that have one say where to begin.
+        // At no start do all rows have a state: the rows that have one decide where to begin.
         for coordinates in &starts {
             match polished(prepared, &problem.theta(coordinates), &few) {
                 Ok(end) => ends.push((end.charged, end.problem.theta(&end.minimum.theta))),
@@ -256,7 +255,7 @@ fn search(prepared: &Prepared, start: &[f64], task: &Task<'_>) -> Result<Searche
     })
 }
 
-/// Minima of few rows followed on more rows; those that are far above the least one are dropped.
+/// Follows minima of few rows on more rows and drops those far above the least one.
 fn followed(
     prepared: &Prepared,
     minima: Vec<Vec<f64>>,
@@ -269,7 +268,7 @@ fn followed(
     for theta in minima {
         match polished(prepared, &theta, &some) {
             Ok(end) => ends.push((end.charged, end.problem.theta(&end.minimum.theta))),
-            // Followed on all rows from where it is.
+            // Keeps the old point: the minimisation over all rows starts there.
             Err(error) if is_of_rows(&error) => ends.push((f64::INFINITY, theta)),
             Err(error) => return Err(error),
         }
@@ -279,13 +278,13 @@ fn followed(
     Ok(ends.into_iter().map(|(_, theta)| theta).collect())
 }
 
-/// Nine tenths of the way from a start to where effects are off: there the muscle is nearly as stated, which has an equilibrium in most rows.
+/// Nine tenths of the way to all effects off, where most rows have an equilibrium.
 fn nearly_off(model: &Model, start: &[f64]) -> Vec<f64> {
     let towards = |(value, off): (&f64, f64)| value + 0.9 * (off - value);
     start.iter().zip(model.off()).map(towards).collect()
 }
 
-/// Points of the plausible box, in the coordinates of the search; numbers with a narrow prior stay near its mean, those that are known where they start.
+/// Points of the plausible box. Nuisances stay within one sd of the prior, known parameters where they are.
 fn scattered(
     prepared: &Prepared,
     problem: &FitProblem<'_>,
@@ -301,16 +300,16 @@ fn scattered(
             _ => p.plausible,
         };
         let (low, high) = (low.max(p.low), high.min(p.high));
-        // Bounds that were stated may leave nothing of what is plausible.
+        // The user's bounds may exclude the whole plausible range.
         (lowest[index], highest[index]) = if low < high { (low, high) } else { (p.low, p.high) };
     }
     let (mut lower, mut upper) = (problem.coordinates(&lowest), problem.coordinates(&highest));
     for (low, high) in lower.iter_mut().zip(&mut upper) {
-        // Not on the ends: there effects may be off or absurd.
+        // Not at the ends of the range, where effects may be off or absurd.
         let inset = EDGE * (*high - *low);
         (*low, *high) = (*low + inset, *high - inset);
     }
-    // Without a finite box there is only the start itself.
+    // Without a finite box, the given start is the only one.
     starts_in_box(count, &Bounds { lower, upper }).unwrap_or_default()
 }
 
@@ -325,7 +324,7 @@ fn weights(model: &Model, theta: &[f64], task: &Task<'_>) -> Result<Vec<f64>, Mo
     let readings = task.noise.pressure_pa > 0.0 || task.noise.contraction > 0.0;
     let wanted = Wanted { parameters: Vec::new(), readings };
     let prediction = if readings {
-        // A row without a state has the noise of its force alone.
+        // A row without a state has only the noise of its force.
         model.evaluate_partly(task.record, theta, &wanted, &Warm::of_rows(task.used))?.prediction
     } else {
         bulge_model::Prediction {
@@ -341,9 +340,9 @@ fn weights(model: &Model, theta: &[f64], task: &Task<'_>) -> Result<Vec<f64>, Mo
 fn settle(problem: &FitProblem<'_>, theta: &[f64], quick: bool) -> Result<Minimum, ModelError> {
     let bounds = problem.bounds();
     let start = clamped(problem.coordinates(theta), &bounds.lower, &bounds.upper);
-    // Numbers are then off by this part of sqrt(rows) standard deviations.
+    // Parameters are then off by this fraction of sqrt(rows) standard deviations.
     let tolerance = if quick { 1e-4 } else { 1e-5 };
-    // At a kink of the residuals, to a hundredth of a standard deviation.
+    // At a kink of the residuals: to a hundredth of a standard deviation.
     let least_decrease = if quick { NEAR } else { 1e-4 };
     let options = Options {
         check_curvature: false,
@@ -365,7 +364,7 @@ fn reason(reason: Reason) -> &'static str {
     }
 }
 
-/// Numbers with intervals, and warnings.
+/// Parameters with intervals, and warnings.
 fn report(
     prepared: &Prepared,
     minimum: &Minimum,
@@ -420,7 +419,7 @@ fn report(
 fn fitted(prepared: &Prepared, index: usize, value: f64) -> Fitted {
     let p = &prepared.model.parameters()[index];
     let tiny = 1e-9 * (p.high - p.low);
-    // What is fitted along as noise is plausible as far as its data sheet goes.
+    // A nuisance parameter is plausible within its data sheet.
     let sheet = prepared.priors[index].filter(|_| prepared.nuisance[index]);
     let (low, high) = sheet.map_or(p.plausible, |(mean, sd)| (mean - SHEET * sd, mean + SHEET * sd));
     let plausible = value >= low - tiny && value <= high + tiny;
@@ -461,7 +460,7 @@ fn warnings(fit: &Fit) -> Vec<String> {
     for p in &fit.parameters {
         let value = format!("{} {}", significant(p.value, 3), p.unit);
         let [least, most] = p.plausible_range;
-        // An error of the rig that may be within its data sheet is that of the rig.
+        // An interval that overlaps the data sheet is consistent with the rig's error.
         let may_be_within = p.nuisance && p.low <= most && p.high >= least;
         if !p.plausible && !may_be_within {
             let [low, high] = p.plausible_range.map(|end| significant(end, 3));

@@ -1,15 +1,17 @@
-//! Fits of models that have no state at some rows: such a row is a fact about the numbers that were tried, not the end of the fit.
+//! Fits of models that have no state at some rows. A missing state is a statement about the trial parameters,
+//! not the end of the fit.
 //!
-//! Within a search a trial at which a row has no state shortens the step. Where the search begins, rows without a state wait: the others are fitted, and rows
-//! that have a state at their minimum come back in. What has none in the end is charged: a model that says nothing of a row predicts no force there, so that
-//! no model gains by what it can't say.
+//! Within a search, a trial point at which a row has no state shortens the step. At the start of a search,
+//! rows without a state wait: the other rows are fitted, and waiting rows that have a state at that minimum
+//! come back in. A row that has no state in the end is charged with its measured force: a model without a
+//! state there predicts none, and no model may gain by having no state.
 
 use bulge_model::{Model, ModelError, Record, Wanted, Warm};
 use bulge_numerics::least_squares::{LeastSquaresError, Minimum};
 
 use crate::fit::problem::FitProblem;
 
-/// Times that rows may come back in.
+/// Most times that rows may come back in.
 const ROUNDS: usize = 5;
 
 /// A minimum over the rows that have a state.
@@ -18,16 +20,16 @@ pub(crate) struct Minimised<'a> {
     pub(crate) problem: FitProblem<'a>,
     /// Rows that count and have a state.
     pub(crate) used: Vec<bool>,
-    /// The sum of squares with what rows without a state are charged.
+    /// The sum of squares plus the charge for rows without a state.
     pub(crate) charged: f64,
 }
 
-/// Whether a model failed at some rows, as it may at other numbers not.
+/// Whether a model failed at some rows only; it may succeed with other parameters.
 pub(crate) fn is_of_rows(error: &ModelError) -> bool {
     matches!(error, ModelError::NoEquilibrium { .. } | ModelError::NotFinite { .. })
 }
 
-/// The model's own error where a search can't start.
+/// The model's error if a search can't start.
 pub(crate) fn of_start(error: LeastSquaresError<ModelError>) -> ModelError {
     match error {
         LeastSquaresError::Start(error) => error,
@@ -38,7 +40,7 @@ pub(crate) fn of_start(error: LeastSquaresError<ModelError>) -> ModelError {
     }
 }
 
-/// Rows that count and have a state at the numbers `theta`.
+/// Rows that count and have a state with parameters `theta`.
 pub(crate) fn with_state(
     model: &Model,
     record: &Record,
@@ -53,12 +55,13 @@ pub(crate) fn with_state(
     Ok(with)
 }
 
-/// The minimum from `start` over all rows in `used` that have a state there, or get one on the way.
+/// The minimum from `start` over all rows in `used` that have a state there or get one on the way.
 ///
-/// `problem` makes the problem of some rows, `settle` finds its minimum.
+/// `problem` builds the least-squares problem of some rows, `settle` finds its minimum.
 ///
 /// # Errors
-/// That of the start, if no more rows than numbers have a state; all others of a model.
+/// The error at the start if the rows with a state are not more than the parameters; all other errors of a
+/// model.
 pub(crate) fn minimise_partly<'a>(
     (model, record): (&'a Model, &'a Record),
     used: &[bool],
@@ -93,7 +96,7 @@ pub(crate) fn minimise_partly<'a>(
     best.ok_or(error)
 }
 
-/// Squares of the measured forces, in standard deviations, of rows that count and have no state.
+/// Sum of squares of the measured forces, in standard deviations, over rows that count and have no state.
 fn charge(record: &Record, sd: &[f64], used: &[bool], with: &[bool]) -> f64 {
     let is_without = |row: &usize| used[*row] && !with[*row];
     (0..record.len()).filter(is_without).map(|row| (record.force()[row] / sd[row]).powi(2)).sum()

@@ -1,4 +1,4 @@
-//! Weights of the rows: force noise and what errors of pressure and contraction make of the force.
+//! Weights of the rows: noise of the force, and noise of pressure and contraction propagated to the force.
 
 use bulge_model::{Prediction, Record};
 use bulge_muscles::Muscle;
@@ -7,22 +7,23 @@ use rayon::prelude::*;
 
 use crate::dot::dot;
 
-/// Lags up to which correlations are summed.
+/// Most lags over which autocorrelations are summed.
 const MOST_LAGS: usize = 2000;
 
 /// Standard deviations of single readings.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Noise {
-    /// Of the force \[N\].
+    /// Standard deviation of the force \[N\].
     pub force_n: f64,
-    /// Of the pressure \[Pa\].
+    /// Standard deviation of the pressure \[Pa\].
     pub pressure_pa: f64,
-    /// Of the contraction of the muscle as stated; of shorter specimens it is more, see [`Record::shortness`].
+    /// Standard deviation of the contraction of the muscle as stated; it is larger for shorter specimens, see
+    /// [`Record::shortness`].
     pub contraction: f64,
 }
 
 impl Noise {
-    /// Force noise as given, the others as the muscle's `[instruments]` state them, else 0.
+    /// Noise of the force as given. The other two are those of the muscle's `[instruments]`, or 0.
     #[must_use]
     pub fn of(muscle: &Muscle, force_n: f64) -> Self {
         let instruments = muscle.instruments();
@@ -33,12 +34,12 @@ impl Noise {
         }
     }
 
-    /// One standard deviation for each row:
+    /// Standard deviation of each row:
     ///
     /// ```text
     /// s_i^2 = sw^2 + (dF/dp)^2 sp^2 + (dF/deps)^2 se^2
     /// ```
-    /// sw is the file's own `force_sd` where it has one.
+    /// sw is the file's own `force_sd` if it has that column.
     #[must_use]
     pub fn of_rows(&self, record: &Record, prediction: &Prediction) -> Vec<f64> {
         let slope = |slopes: &[f64], row: usize| slopes.get(row).copied().unwrap_or(0.0);
@@ -54,7 +55,8 @@ impl Noise {
     }
 }
 
-/// Rows that count as independent: the residuals r of a sweep are correlated, with the integrated correlation time of the sweeps together.
+/// Effective number of independent rows. The residuals r of a sweep are correlated; the integrated
+/// correlation time is that of all sweeps together.
 ///
 /// ```text
 /// n_eff = n/(1 + 2 sum rho_k),    the sum up to the first k at which rho_k + rho_(k+1) is not positive (Geyer 1992)
@@ -92,7 +94,7 @@ pub fn effective_rows(record: &Record, residuals: &[f64], used: &[bool]) -> f64 
             sum += pair;
             lag += 2;
         }
-        // Long correlations go on: more lags at once.
+        // Long correlations need many lags: compute more of them at once.
         batch = (2 * batch).min(64);
     }
     (rows / (1.0 + 2.0 * sum)).clamp(1.0, rows)
@@ -105,7 +107,8 @@ mod tests {
 
     #[test]
     fn repeated_values_count_once() {
-        // Every value eight times: an eighth of the rows is independent, up to the scatter of the estimate.
+        // Every value is repeated eight times, so an eighth of the rows is independent, up to the estimate's
+        // scatter.
         let rows = 4000;
         let mut seed = 1_u64;
         let mut random = || {
@@ -119,7 +122,7 @@ mod tests {
         let record =
             Record::from_moments(moments, vec![0.0; rows], std::iter::once(0..rows).collect()).unwrap();
         let found = effective_rows(&record, &values, &vec![true; rows]);
-        // Correlation time of a block of 8: (1 + 2 sum (8-k)/8) = 8.
+        // Integrated correlation time of a block of 8: (1 + 2 sum (8-k)/8) = 8.
         assert!((found / (rows as f64 / 8.0) - 1.0).abs() < 0.25, "{found}");
         let white: Vec<f64> = (0..rows).map(|_| random()).collect();
         assert!(effective_rows(&record, &white, &vec![true; rows]) > 0.85 * rows as f64);

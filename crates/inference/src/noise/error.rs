@@ -1,12 +1,12 @@
-//! Why noise can't be described or whitened.
+//! Reasons why noise can't be described or whitened.
 
-/// What went wrong with a noise law.
+/// Errors of a noise law.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum NoiseError {
     /// Numbers of values don't match.
     #[error("{what}: there are {given} values where {expected} are needed; {instead}")]
     Lengths {
-        /// Which values.
+        /// The values in question.
         what: &'static str,
         /// How many there are.
         given: usize,
@@ -18,16 +18,16 @@ pub enum NoiseError {
     /// Something isn't a finite number, or a variance is negative.
     #[error("{what} at place {place} is {value}; give a finite number{bound}")]
     Value {
-        /// Which values.
+        /// The values in question.
         what: &'static str,
-        /// Place, from 0.
+        /// Index, from 0.
         place: usize,
         /// The value.
         value: f64,
-        /// What else it must be.
+        /// What else the value must satisfy.
         bound: &'static str,
     },
-    /// Nothing is left over for the noise.
+    /// The model leaves no degree of freedom for the noise.
     #[error(
         "a saturated model of {columns} numbers leaves no noise of {rows} rows; use fewer columns or more rows"
     )]
@@ -37,7 +37,7 @@ pub enum NoiseError {
         /// Independent columns.
         columns: usize,
     },
-    /// The correlation time is in seconds, and the record has none.
+    /// The correlation time is in seconds, but the record has no time.
     #[error(
         "the noise law has a correlation time of {seconds} s, and the record has no time; state it in rows"
     )]
@@ -45,7 +45,7 @@ pub enum NoiseError {
         /// The correlation time \[s\].
         seconds: f64,
     },
-    /// The covariance has no inverse.
+    /// The covariance is singular.
     #[error(
         "row {row} (from 0) follows from the rows before it without noise of its own (variance {variance:e} N^2 of {total:e} N^2): \
          give the noise law a white part"
@@ -53,9 +53,9 @@ pub enum NoiseError {
     Singular {
         /// Row of the record.
         row: usize,
-        /// Variance that is left \[N^2\].
+        /// Conditional variance given the rows before it \[N^2\].
         variance: f64,
-        /// Whole variance of the row \[N^2\].
+        /// Total variance of the row \[N^2\].
         total: f64,
     },
 }

@@ -1,4 +1,5 @@
-//! Noise law of a record by restricted maximum likelihood under a saturated model (Patterson and Thompson 1971), with a test against white noise.
+//! Noise law of a record by restricted maximum likelihood under a saturated model (Patterson and Thompson
+//! 1971), with a test against white noise.
 
 use bulge_model::Record;
 use rayon::prelude::*;
@@ -12,39 +13,48 @@ use crate::noise::restricted_likelihood::RestrictedLikelihood;
 use crate::noise::simplex::{Search, minimise};
 use crate::noise::whitening::{Components, Layout};
 
-/// Rows from which a law is found: its variances are then known to some per cent.
+/// Most rows used for the estimate; they give its variances to some per cent.
 const MOST_ROWS: usize = 5_000;
 /// Rows on which the search begins.
 const FIRST_ROWS: usize = 1_200;
-/// Fewest rows of a sweep that is cut.
+/// Fewest rows that are kept of a sweep.
 const LEAST_PART: usize = 50;
 /// Degrees of freedom from which correlation can be told from chance.
 const ENOUGH: f64 = 30.0;
-/// Sweeps from which offsets have a variance.
+/// Number of sweeps from which a variance of their offsets is estimated.
 const ENOUGH_SWEEPS: usize = 3;
-/// Degrees of freedom that the saturated model leaves to offsets of the sweeps, from which they have a variance.
+/// Degrees of freedom of the sweeps' offsets, after the saturated model, from which their variance is
+/// estimated.
 const ENOUGH_OFFSETS: f64 = 2.0;
-/// Part of the values below which what the model leaves is rounding.
+/// Residuals below this fraction of the values are rounding errors.
 const EXACT: f64 = 1e-10;
 /// Level of the tests.
 const LEVEL: f64 = 0.05;
-/// Least and largest variance in units of the white one, or of the whole scatter if input variances fix the scale.
+/// Least and largest variance in units of the white one, or of the total scatter if input variances fix the
+/// scale.
 const RATIOS: (f64, f64) = (1e-6, 1e6);
 
 impl NoiseLaw {
-    /// What a saturated model leaves of measured values: white, correlated and offset noise by restricted maximum likelihood.
+    /// Estimates white, correlated and offset noise by restricted maximum likelihood from the residuals of a
+    /// saturated model.
     ///
-    /// - `design`: the saturated model, n x m values row by row for the n used rows \[any units\]; dependent columns count once,
-    /// - `values`: measured, or measured less predicted force of the used rows \[N\],
-    /// - `input_variances`: as in [`Whitening::new`](crate::Whitening::new) \[N^2\]; they come on top of the white part.
+    /// - `design`: the saturated model, n x m values row by row for the n used rows \[any units\]; dependent
+    ///   columns count once,
+    /// - `values`: measured force, or measured less predicted force, of the used rows \[N\],
+    /// - `input_variances`: as in [`Whitening::new`](crate::Whitening::new) \[N^2\]; they are added to the
+    ///   white part.
     ///
-    /// Parts that the data can't tell are left out, and `says` names the reason: correlation along a static map, offsets of fewer than three
-    /// sweeps, everything but white noise below 30 degrees of freedom. What is left is kept if it beats white noise in a likelihood-ratio test
-    /// (p < 0.05, chi-squared with one degree for each number: cautious, as variances at 0 make it smaller), and reduced to one part if the
-    /// other isn't needed at the same level. Without time the correlation is over rows. Of more than 5000 rows the beginnings of the sweeps are used.
+    /// Parts that the data can't determine are left out, and `says` names the reason: correlation along a
+    /// static map, offsets of fewer than three sweeps, everything but white noise below 30 degrees of
+    /// freedom. The remaining parts are kept if they beat white noise in a likelihood-ratio test (p < 0.05,
+    /// chi-squared with one degree of freedom per parameter; this is conservative, because variances on the
+    /// bound 0 make the ratio smaller). The law is reduced to one part if the other isn't needed at the same
+    /// level. Without time, the correlation is over rows. Of more than 5000 rows, the beginnings of the
+    /// sweeps are used.
     ///
     /// # Errors
-    /// Numbers of values that don't match, values that aren't finite, and as many independent columns as rows.
+    /// Numbers of values that don't match, values that aren't finite, and as many independent columns as
+    /// rows.
     pub fn estimate(
         record: &Record,
         used: &[bool],
@@ -102,7 +112,8 @@ fn check(layout: &Layout, design: &[f64], values: &[f64]) -> Result<(), NoiseErr
     Ok(())
 }
 
-/// About `most` rows: the beginnings of the blocks, of every so-manieth block if they would be too short.
+/// About `most` rows: the beginnings of the blocks. Blocks are skipped at a regular stride if the beginnings
+/// would become too short.
 fn leading(layout: &Layout, most: usize) -> Vec<bool> {
     let n = layout.rows.len();
     if n <= most {
@@ -123,7 +134,7 @@ fn leading(layout: &Layout, most: usize) -> Vec<bool> {
     keep
 }
 
-/// Which parts a law has besides the white one.
+/// The parts of a law besides the white one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Parts {
     correlated: bool,
@@ -136,7 +147,7 @@ impl Parts {
     }
 }
 
-/// The best law of some parts.
+/// The best law with some parts.
 #[derive(Debug, Clone, Copy)]
 struct Found {
     parts: Parts,
@@ -148,15 +159,15 @@ struct Found {
 
 struct Estimate<'a> {
     likelihood: &'a RestrictedLikelihood,
-    /// The likelihood on which searches begin.
+    /// The likelihood of fewer rows, on which searches begin.
     first: Option<RestrictedLikelihood>,
-    /// Least and largest correlation time; none if there are no neighbours.
+    /// Least and largest correlation time; none without neighbouring rows.
     times: Option<(f64, f64)>,
-    /// What can be told.
+    /// Parts that the data can determine.
     parts: Parts,
-    /// Whether there may be offsets, told or not.
+    /// Whether there may be offsets, whether or not the data determine them.
     asks_for_offsets: bool,
-    /// Why not more.
+    /// Reasons why parts are left out.
     limits: Vec<&'static str>,
 }
 
@@ -167,7 +178,7 @@ impl<'a> Estimate<'a> {
         gaps.sort_unstable_by(f64::total_cmp);
         let longest = layout.blocks.iter().map(|b| layout.gaps[b.clone()].iter().sum::<f64>());
         let longest = longest.fold(0.0, f64::max);
-        // Shorter is white; longer, the part grows without end in proportion to the time.
+        // A shorter time is white noise; for longer ones only the ratio of variance to time is determined.
         let times = gaps.get(gaps.len() / 2).map(|step| (0.5 * step, longest.max(*step)));
         let mut limits = Vec::new();
         let sweeps = layout.blocks.iter().filter(|b| b.len() > 1).count();
@@ -192,7 +203,8 @@ impl<'a> Estimate<'a> {
         Self { likelihood, first, times, parts, asks_for_offsets, limits }
     }
 
-    /// Bounds of the coordinates: logarithms of the white variance (if the scale is fixed), of the correlated one and its time, of the offsets'.
+    /// Bounds of the coordinates: logarithms of the white variance (if the scale is fixed), of the correlated
+    /// variance and its time, and of the offsets' variance.
     fn bounds(&self, parts: Parts) -> Vec<(f64, f64)> {
         let logs = |(low, high): (f64, f64)| (low.ln(), high.ln());
         let mut bounds = Vec::with_capacity(4);
@@ -219,7 +231,7 @@ impl<'a> Estimate<'a> {
         Components { white, correlated, time, offset }
     }
 
-    /// Coordinates of variances in units of the white one, at the scale of the scatter.
+    /// Coordinates for variances in units of the white one, scaled to the total scatter.
     fn coordinates(&self, parts: Parts, correlated: f64, time: f64, offset: f64) -> Vec<f64> {
         let absolute = self.likelihood.absolute;
         let white = if absolute { 1.0 / (1.0 + correlated + offset) } else { 1.0 };
@@ -260,7 +272,7 @@ impl<'a> Estimate<'a> {
         Some(Found { parts, components, deviance: deviance.value, factor: deviance.factor })
     }
 
-    /// Correlation times on a grid.
+    /// Correlation times on a logarithmic grid.
     fn grid(&self, points: u32) -> Vec<f64> {
         let (low, high) = self.times.unwrap_or((1.0, 1.0));
         let at = |i: u32| low * (high / low).powf((f64::from(i) + 0.5) / f64::from(points));
@@ -281,7 +293,7 @@ impl<'a> Estimate<'a> {
         self.fit(parts, &[0.03, 0.3, 3.0, 30.0].map(|ratio| self.coordinates(parts, 0.0, 1.0, ratio)))
     }
 
-    /// Both, from the best of each.
+    /// The law with both parts, started from the best laws with one.
     fn both(&self, correlated: Option<&Found>, offset: Option<&Found>) -> Option<Found> {
         let parts = Parts { correlated: true, offset: true };
         let mut starts = Vec::new();
@@ -298,7 +310,7 @@ impl<'a> Estimate<'a> {
         self.fit(parts, &starts)
     }
 
-    /// The law, with what decided.
+    /// The chosen law, with what decided.
     fn law(&self, unit: CorrelationTime, from: &str) -> NoiseLaw {
         let none = Parts { correlated: false, offset: false };
         let white = self.fit(none, &[self.coordinates(none, 0.0, 1.0, 0.0)]);
@@ -316,7 +328,7 @@ impl<'a> Estimate<'a> {
         let candidates: Vec<Found> = [white, offset, correlated, both].into_iter().flatten().collect();
         let full = candidates.iter().map(|found| found.deviance).fold(f64::INFINITY, f64::min);
         let most = self.parts.degrees();
-        // The simplest law that the full one isn't better than by more than chance.
+        // Take the simplest law that isn't significantly worse than the full one.
         let chosen = candidates.iter().find(|found| {
             found.deviance <= full || tail(found.deviance - full, most - found.parts.degrees()) >= LEVEL
         });
@@ -355,7 +367,7 @@ impl<'a> Estimate<'a> {
     }
 }
 
-/// Probability that chi-squared with so many degrees of freedom is larger.
+/// Upper tail probability of chi-squared with `degrees` degrees of freedom.
 fn tail(ratio: f64, degrees: f64) -> f64 {
     if degrees <= 0.0 || ratio <= 0.0 {
         return 1.0;

@@ -1,38 +1,44 @@
-//! Noise of the inputs where no data sheet states it: what the scatter of the rows says, which is larger where the force is steeper.
+//! Noise of the inputs if no data sheet states it, estimated from the scatter of the rows: it is larger where
+//! the force is steeper.
 //!
 //! ```text
-//! s_i^2 = w (1 + k (dF/dx_i)^2 / mean),    x the contraction or the pressure;   w and k by maximum likelihood on what a saturated model leaves
+//! s_i^2 = w (1 + k (dF/dx_i)^2 / mean),    x the contraction or the pressure;   w and k by maximum likelihood on the residuals of a saturated model
 //! ```
-//! Along a path the scatter is that of neighbours against each other, (r_i - r_(i-1))^2/2, which slow noise leaves alone. The likelihood ratio against k = 0 is divided by what heavy
-//! tails and shared neighbours add to its scatter, (kurtosis - 1)/2 and 3/2, before it is believed. Of means of many readings the readings themselves say it, without any model.
+//! Along a path, the scatter is taken from neighbouring residuals, (r_i - r_(i-1))^2/2, which slow noise
+//! hardly changes. The likelihood ratio against k = 0 is divided by the factors by which heavy tails,
+//! (kurtosis - 1)/2, and shared neighbours, 3/2, inflate it. If rows are means of many readings, the scatter
+//! of the readings themselves is used, without any model.
 
 use std::ops::Range;
 
 use crate::dot::dot;
 
-/// Ratios k that are tried, evenly on a logarithmic scale.
+/// Ratios k on the grid: least, largest and number, evenly spaced on a logarithmic scale.
 const RATIOS: (f64, f64, u32) = (0.02, 200.0, 60);
-/// Likelihood ratio from which the scatter is not the same everywhere: one chance in a thousand (chi-squared, one degree of freedom).
+/// Likelihood ratio from which the scatter depends on the slope: p = 0.001 (chi-squared, one degree of
+/// freedom).
 const CLEAR: f64 = 10.83;
-/// Rows below which nothing is said.
+/// Fewest rows for an estimate.
 const FEWEST: usize = 60;
-/// Squares of neighbouring differences share a row: sums of them scatter more by this factor in variance.
+/// Neighbouring differences share a row, which inflates the variance of sums of their squares by this factor.
 const SHARED: f64 = 1.5;
 
-/// Sum of squares \[N^2\] about what is known of some readings, with its degrees of freedom.
+/// Sum of squares about the mean of some readings \[N^2\], with its degrees of freedom.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Scatter {
     pub(crate) sum: f64,
     pub(crate) freedom: f64,
 }
 
-/// Variance of each row from noise of an input \[N^2\]; none if the scatter is the same everywhere.
+/// Variance of each row from noise of an input \[N^2\]; none if the scatter doesn't depend on the slopes.
 ///
-/// - `residual`: measured less predicted force \[N\], `sweeps` of rows in the order of measurement (none in a static map),
+/// - `residual`: measured less predicted force \[N\], `sweeps` of rows in the order of measurement (none in a
+///   static map),
 /// - `design`: orthonormal columns of a saturated model,
 /// - `slopes`: derivative of the force by each of the inputs,
-/// - `counts`: how many readings each row is the mean of,
-/// - `within`: scatter of the readings of each row about each other, which no misfit is in: taken instead of the residuals where most rows have it.
+/// - `counts`: number of readings that each row is the mean of,
+/// - `within`: scatter of the readings of each row about their mean. It contains no misfit, and replaces the
+///   residuals if most rows have it.
 pub(crate) fn input_noise(
     residual: &[f64],
     sweeps: &[Range<usize>],
@@ -75,7 +81,7 @@ pub(crate) fn input_noise(
     clearest(fits)
 }
 
-/// The same from how the readings scatter of which each row is the mean.
+/// The same estimate from the scatter of the readings that each row is the mean of.
 fn of_readings(slopes: [&[f64]; 2], counts: &[f64], within: &[Option<Scatter>]) -> Option<Vec<f64>> {
     let known: Vec<(usize, Scatter)> =
         within.iter().enumerate().filter_map(|(row, one)| Some((row, (*one)?))).collect();
@@ -94,13 +100,13 @@ fn of_readings(slopes: [&[f64]; 2], counts: &[f64], within: &[Option<Scatter>]) 
     clearest(fits)
 }
 
-/// The input that the scatter shows best, if it does.
+/// The input with the largest likelihood ratio, if it is above the threshold.
 fn clearest(fits: [Option<(f64, Vec<f64>)>; 2]) -> Option<Vec<f64>> {
     let best = fits.into_iter().flatten().max_by(|a, b| a.0.total_cmp(&b.0))?;
     (best.0 > CLEAR).then_some(best.1)
 }
 
-/// What the columns leave, each row made up for what it lost to them.
+/// Residuals orthogonal to the columns, each divided by the square root of 1 - its leverage.
 fn left(residual: &[f64], design: &[Vec<f64>]) -> Vec<f64> {
     let mut left = residual.to_vec();
     let mut free = vec![1.0; left.len()];
@@ -114,7 +120,8 @@ fn left(residual: &[f64], design: &[Vec<f64>]) -> Vec<f64> {
     left.iter().zip(&free).map(|(value, free)| value / free.max(0.05).sqrt()).collect()
 }
 
-/// Likelihood ratio, and the variance where the shape is 1, at the best ratio; mean squares have so many degrees of freedom each.
+/// Likelihood ratio at the best k, and the input variance where the shape is 1. `squares` are mean squares
+/// with `freedom` degrees of freedom each.
 fn fitted(squares: &[f64], shape: &[f64], freedom: &[f64]) -> Option<(f64, f64)> {
     let all: f64 = freedom.iter().sum();
     let rows = || squares.iter().zip(shape).zip(freedom);
@@ -127,7 +134,8 @@ fn fitted(squares: &[f64], shape: &[f64], freedom: &[f64]) -> Option<(f64, f64)>
     let ratios = (0..count).map(|i| low * (high / low).powf(f64::from(i) / f64::from(count - 1)));
     let (ratio, (deviance, scale)) =
         ratios.map(|ratio| (ratio, of(ratio))).min_by(|a, b| a.1.0.total_cmp(&b.1.0))?;
-    // 1 for normal numbers: a mean square has the variance 2/f.
+    // Expected value 1 for normal residuals, since a mean square of f degrees of freedom has the relative
+    // variance 2/f.
     let spread = rows().map(|((r, s), f)| 0.5 * f * (r / (scale * (1.0 + ratio * s)) - 1.0).powi(2));
     let tails = (spread.sum::<f64>() / squares.len() as f64).max(1.0);
     Some(((of(0.0).0 - deviance) / tails, scale * ratio))
@@ -147,14 +155,14 @@ mod tests {
         let slope = steep(n);
         (0..n)
             .map(|i| {
-                // One in ten is three times as large.
+                // One in ten residuals is three times as large.
                 let wide = if tails && random.uniform() < 0.1 { 3.0 } else { 1.0 };
                 wide * random.normal() + input * slope[i] * random.normal()
             })
             .collect()
     }
 
-    /// Columns as a saturated model has them: orthonormal, slow.
+    /// Columns as a saturated model has them: orthonormal and slowly varying.
     fn columns(n: usize) -> Vec<Vec<f64>> {
         let wave = |k: usize| -> Vec<f64> {
             let of = |i: usize| (std::f64::consts::PI * k as f64 * (i as f64 + 0.5) / n as f64).cos();
@@ -199,7 +207,7 @@ mod tests {
             let mut slow = 0.0;
             let noise: Vec<f64> = (0..n)
                 .map(|_| {
-                    // Twice the white noise, over 25 rows.
+                    // Slow noise of twice the white noise, correlated over 25 rows.
                     slow = 0.96 * slow + 2.0 * (1.0 - 0.96_f64.powi(2)).sqrt() * random.normal();
                     slow + random.normal()
                 })
@@ -213,7 +221,7 @@ mod tests {
 
     #[test]
     fn readings_of_means_say_it_whatever_the_means_are_off() {
-        // 300 means of 20 readings, and a misfit of the means that follows the slope.
+        // 300 means of 20 readings, with a misfit of the means that is proportional to the slope.
         let (n, readings_of_each) = (300, 20);
         let count = f64::from(readings_of_each);
         let slope = steep(n);

@@ -1,4 +1,5 @@
-//! The noise of a record: white, exponentially correlated within a sweep, and one offset for each sweep.
+//! Noise law of a record: white noise, exponentially correlated noise within a sweep, and one offset per
+//! sweep.
 
 use bulge_model::Record;
 use serde::Serialize;
@@ -12,8 +13,9 @@ use bulge_numerics::Random;
 /// ```text
 /// u_b + a_i + w_i,    u_b ~ N(0, su^2),    cov(a_i, a_j) = sa^2 exp(-|t_i - t_j|/l),    w_i ~ N(0, sw^2 + v_i)
 /// ```
-/// v_i is what noise of pressure and contraction makes of the force, (dF/dp)^2 sp^2 + (dF/deps)^2 se^2 \[N^2\]; whoever uses the law gives it.
-/// Different sweeps are independent. [`Whitening`](crate::Whitening) is `K^-1/2` of this law.
+/// v_i is the noise of pressure and contraction propagated to the force, (dF/dp)^2 sp^2 + (dF/deps)^2 se^2
+/// \[N^2\]; the caller supplies it. Different sweeps are independent. [`Whitening`](crate::Whitening) applies
+/// `K^-1/2` of this law.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct NoiseLaw {
     /// Standard deviation sw of independent noise \[N\].
@@ -24,15 +26,17 @@ pub struct NoiseLaw {
     pub time: Option<CorrelationTime>,
     /// Standard deviation su of the offsets of the sweeps \[N\].
     pub offset_n: f64,
-    /// Where it is from.
+    /// Origin of the law.
     pub source: NoiseSource,
-    /// Rows less independent columns that it was found from; 0 for a data sheet.
+    /// Degrees of freedom of the estimate: rows less independent columns; 0 for a data sheet.
     pub degrees_of_freedom: f64,
-    /// How large the offsets of the sweeps may be; `offset_n` is the root of the mean square. Empty where there are none.
+    /// Discrete distribution of the offsets' standard deviation, whose root mean square is `offset_n`. Empty
+    /// if there are no offsets.
     pub offset_beliefs: Vec<OffsetBelief>,
-    /// Sweeps less what the saturated model can follow from sweep to sweep: degrees of freedom of the offsets.
+    /// Degrees of freedom of the offsets: sweeps less what the saturated model can follow from sweep to
+    /// sweep.
     pub offset_freedom: f64,
-    /// In words: what it was found from, and what was left out, and why.
+    /// In words: what the law was estimated from, what was left out, and why.
     pub says: String,
 }
 
@@ -42,12 +46,12 @@ pub struct NoiseLaw {
 pub enum CorrelationTime {
     /// In seconds.
     Seconds(f64),
-    /// In rows of the record, where there is no time: a thinned record has other rows.
+    /// In rows of the record, if it has no time. A thinned record has other rows.
     Rows(f64),
 }
 
 impl CorrelationTime {
-    /// The number, in the unit of the variant.
+    /// The value, in the unit of the variant.
     #[must_use]
     pub fn value(self) -> f64 {
         match self {
@@ -56,13 +60,13 @@ impl CorrelationTime {
     }
 }
 
-/// Where a noise law is from.
+/// Origin of a noise law.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum NoiseSource {
     /// Scatter of repeated rows.
     Repeats,
-    /// What a saturated model leaves.
+    /// Residuals of a saturated model.
     Saturated,
     /// Data sheets.
     Instruments,
@@ -85,7 +89,7 @@ impl NoiseLaw {
         }
     }
 
-    /// Whether rows are independent, as far as is known: offsets that are only possible don't count.
+    /// Whether rows are independent as far as is known. Offsets that are probably 0 don't count.
     #[must_use]
     pub fn is_white(&self) -> bool {
         let none = self.offset_beliefs.iter().filter(|belief| belief.sd_n == 0.0).map(|belief| belief.weight);
@@ -93,11 +97,12 @@ impl NoiseLaw {
         self.correlated_n == 0.0 && !offsets
     }
 
-    /// Noise that follows the law \[N\], one value for each row of the record: 0 where a row isn't used. `input_variances` are as in
-    /// [`Whitening::new`](crate::Whitening::new); missing ones are 0.
+    /// A realisation of the noise \[N\], one value for each row of the record: 0 in rows that aren't used.
+    /// `input_variances` are as in [`Whitening::new`](crate::Whitening::new); missing ones are 0.
     ///
-    /// The same seed gives the same noise, each sweep a stream of its own ([`Random`]); the noise of a row doesn't depend on which other rows are
-    /// used. A law in seconds on a record without time has one value of a in each sweep.
+    /// The same seed gives the same noise, and each sweep has a random stream of its own ([`Random`]). The
+    /// noise of a row doesn't depend on which other rows are used. With a law in seconds and a record without
+    /// time, a is constant within each sweep.
     #[must_use]
     pub fn simulate(&self, record: &Record, used: &[bool], input_variances: &[f64], seed: u64) -> Vec<f64> {
         let mut noise = vec![0.0; record.len()];
@@ -109,7 +114,7 @@ impl NoiseLaw {
             let mut correlated = self.correlated_n * random.normal();
             for row in sweep.clone() {
                 let since = if row == sweep.start { 0.0 } else { gap(at(row), at(row - 1)) };
-                // 1 - exp(-2 dt/l) without cancellation.
+                // sqrt(1 - exp(-2 dt/l)) without cancellation.
                 let fresh = (-(-2.0 * since / time).exp_m1()).sqrt();
                 correlated = (-since / time).exp() * correlated + fresh * self.correlated_n * random.normal();
                 let known = input_variances.get(row).map_or(0.0, |v| v.max(0.0));

@@ -1,18 +1,20 @@
-//! How large the offsets of the sweeps may be, given what few sweeps say of them: a distribution instead of one number.
+//! Posterior distribution of the size of the sweeps' offsets, because few sweeps don't determine a single
+//! value.
 
 use serde::Serialize;
 
 use crate::noise::restricted_likelihood::RestrictedLikelihood;
 use crate::noise::whitening::Components;
 
-/// Offsets as parts of the other noise.
+/// Standard deviations of the offsets on the grid, relative to that of the other noise.
 const PARTS: [f64; 14] = [0.03, 0.05, 0.08, 0.12, 0.18, 0.26, 0.38, 0.55, 0.8, 1.2, 1.8, 2.7, 4.0, 8.0];
-/// Parts that most rigs have, each as likely as the next; smaller and larger ones are less likely.
+/// Range of relative sizes that are usual for rigs: equally probable a priori within it, less probable
+/// outside.
 const USUAL: (f64, f64) = (0.1, 1.3);
-/// Chance that there are no offsets.
+/// Prior probability that there are no offsets.
 const NONE: f64 = 0.75;
 
-/// One size of the offsets.
+/// One size of the offsets with its probability.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct OffsetBelief {
     /// Standard deviation \[N\].
@@ -21,7 +23,8 @@ pub struct OffsetBelief {
     pub weight: f64,
 }
 
-/// Sizes of the offsets with their probabilities: the restricted likelihood at each, the other components as they are, times what is usual.
+/// Posterior probabilities of the offsets' sizes: the restricted likelihood of each, with the other
+/// components fixed, times its prior.
 pub(crate) fn offset_beliefs(likelihood: &RestrictedLikelihood, others: &Components) -> Vec<OffsetBelief> {
     let other = others.white + others.correlated;
     let scale = other + likelihood.usual_input_variance();

@@ -1,12 +1,13 @@
-//! Orthonormal basis of the columns of a matrix at its numerical rank: pivoted Gram-Schmidt, twice, then one-sided Jacobi (Golub and Van Loan 2013, 5.2, 8.6).
+//! Orthonormal basis of the column space of a matrix at its numerical rank: pivoted Gram-Schmidt, twice, then
+//! one-sided Jacobi (Golub and Van Loan 2013, 5.2, 8.6).
 
 use crate::dot::dot;
 
-/// Singular values below this part of the largest one, of columns scaled to 1, count as none.
+/// Singular values below this fraction of the largest one count as 0; the columns are scaled to norm 1.
 const RANK: f64 = 1e-6;
-/// Part of a column that is rounding once the others are taken out.
+/// A remainder below this fraction of its column is rounding error.
 const ROUNDING: f64 = 1e-13;
-/// Cosine between two columns that counts as none.
+/// Columns whose cosine is below this count as orthogonal.
 const ORTHOGONAL: f64 = 1e-12;
 const SWEEPS: usize = 30;
 
@@ -17,12 +18,12 @@ pub(crate) struct Basis {
 }
 
 impl Basis {
-    /// Of n x m values, row by row; columns that are 0 are left out.
+    /// Basis of n x m values, row by row; columns that are 0 are left out.
     pub(crate) fn of(values: &[f64], n: usize) -> Self {
         let m = values.len().checked_div(n).unwrap_or(0);
         let columns: Vec<Vec<f64>> = (0..m)
             .filter_map(|j| {
-                // The largest value first: squares may overflow.
+                // Scale by the largest value first, because squares may overflow.
                 let column: Vec<f64> = values.iter().skip(j).step_by(m).copied().collect();
                 let largest = column.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
                 let column: Vec<f64> = column.iter().map(|x| x / largest).collect();
@@ -50,7 +51,7 @@ impl Basis {
         self.columns.len()
     }
 
-    /// Takes the basis out of a vector.
+    /// Subtracts from a vector its projection on the basis.
     pub(crate) fn remove_from(&self, vector: &mut [f64]) {
         for _ in 0..2 {
             for column in &self.columns {
@@ -61,7 +62,8 @@ impl Basis {
     }
 }
 
-/// Orthonormal vectors, the column of largest rest first, and what each column has of them: columns of R.
+/// Orthonormal vectors, pivoted on the largest remainder, and the coefficients of each column in them:
+/// columns of R.
 fn gram_schmidt(mut columns: Vec<Vec<f64>>) -> (Vec<Vec<f64>>, Vec<Vec<f64>>) {
     let mut basis: Vec<Vec<f64>> = Vec::new();
     let mut triangle: Vec<Vec<f64>> = vec![Vec::new(); columns.len()];
@@ -75,7 +77,7 @@ fn gram_schmidt(mut columns: Vec<Vec<f64>>) -> (Vec<Vec<f64>>, Vec<Vec<f64>>) {
     {
         let pivot = left[place];
         let mut q = std::mem::take(&mut columns[pivot]);
-        // A second time: what rounding left of the vectors before.
+        // A second pass removes what rounding left along the earlier vectors.
         for (i, before) in basis.iter().enumerate() {
             let part = dot(before, &q);
             triangle[pivot][i] += part;
@@ -101,7 +103,8 @@ fn gram_schmidt(mut columns: Vec<Vec<f64>>) -> (Vec<Vec<f64>>, Vec<Vec<f64>>) {
     (basis, triangle)
 }
 
-/// Left singular vectors of the matrix with these columns (short ones end in zeros), for singular values that count.
+/// Left singular vectors of the matrix with these columns (short ones end in zeros), for singular values that
+/// count.
 fn left_directions(mut columns: Vec<Vec<f64>>, rows: usize) -> Vec<Vec<f64>> {
     for column in &mut columns {
         column.resize(rows, 0.0);
@@ -127,7 +130,8 @@ fn left_directions(mut columns: Vec<Vec<f64>>, rows: usize) -> Vec<Vec<f64>> {
     kept.into_iter().map(|(length, column)| column.iter().map(|x| x / length).collect()).collect()
 }
 
-/// Turns two columns in their plane until they are orthogonal; whether they weren't.
+/// Rotates two columns in their plane until they are orthogonal. Returns whether they were not orthogonal
+/// before.
 fn rotate(first: &mut [f64], second: &mut [f64]) -> bool {
     let (a, b, c) = (dot(first, first), dot(second, second), dot(first, second));
     if c == 0.0 || c.abs() <= ORTHOGONAL * (a * b).sqrt() || a.min(b) <= (ROUNDING * ROUNDING) * a.max(b) {
@@ -159,7 +163,8 @@ mod tests {
         let values: Vec<f64> = (0..n)
             .flat_map(|i| {
                 let x = f64::from(i) / f64::from(n);
-                // Powers of very different size, a sum of two, a nearly equal one, one that is just above the limit, and nothing.
+                // Powers of very different size, a sum of two, a nearly dependent column, one just above the
+                // limit, and zeros.
                 let near = 1e9 * x * x;
                 [
                     1.0,

@@ -1,4 +1,5 @@
-//! Restricted likelihood of noise variances under a linear model (Patterson and Thompson 1971; Harville 1977).
+//! Restricted likelihood of noise variances under a linear model (Patterson and Thompson 1971; Harville
+//! 1977).
 
 use bulge_model::Record;
 use nalgebra::{DMatrix, DMatrixView};
@@ -9,28 +10,30 @@ use crate::noise::law::NoiseLaw;
 use crate::noise::orthonormal::Basis;
 use crate::noise::whitening::{Components, Layout, Whitening};
 
-/// Rows whose products one core sums.
+/// Rows whose products one thread sums.
 const ROWS: usize = 512;
 
-/// What is left of measured values by a linear model X with orthonormal columns, as a function of the covariance K.
+/// Restricted likelihood of the residuals of a linear model X with orthonormal columns, as a function of the
+/// covariance K.
 ///
 /// ```text
 /// D = log|K| + log|X' K^-1 X| + q,    q = y' (K^-1 - K^-1 X (X' K^-1 X)^-1 X' K^-1) y
 /// ```
-/// If only the ratios of the variances are free, the best common factor is q/(n - r), and D = .. + (n - r) (1 + log(q/(n - r))).
+/// If only the ratios of the variances are free, the best common factor is q/(n - r), and D = .. + (n - r) (1
+/// + log(q/(n - r))).
 #[derive(Debug, Clone)]
 pub(crate) struct RestrictedLikelihood {
     pub(crate) layout: Layout,
-    /// X and what X leaves of y: n rows of r + 1 values.
+    /// X and the residuals of y: n rows of r + 1 values.
     columns: Vec<f64>,
     rank: usize,
-    /// Mean square of what independent noise leaves, with n - r degrees of freedom.
+    /// Residual variance as for independent noise, with n - r degrees of freedom.
     pub(crate) variance: f64,
     /// Whether the input variances fix the scale.
     pub(crate) absolute: bool,
 }
 
-/// Value of the likelihood at a covariance.
+/// The likelihood at one covariance.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Deviance {
     /// -2 log L up to a constant.
@@ -40,7 +43,7 @@ pub(crate) struct Deviance {
 }
 
 impl RestrictedLikelihood {
-    /// Of values on a layout; none if the basis leaves no degree of freedom.
+    /// The likelihood of values on a layout; none if the basis leaves no degree of freedom.
     pub(crate) fn new(layout: Layout, basis: &Basis, values: &[f64]) -> Option<Self> {
         let (n, rank) = (values.len(), basis.rank());
         let freedom = n.checked_sub(rank).filter(|freedom| *freedom > 0)?;
@@ -61,7 +64,8 @@ impl RestrictedLikelihood {
         (self.layout.rows.len() - self.rank) as f64
     }
 
-    /// How many offsets of sweeps the columns leave: sum over the sweeps of the part of a constant that is outside the columns.
+    /// Degrees of freedom of the sweeps' offsets: for each sweep the squared norm of its normalised constant
+    /// outside the columns, summed.
     pub(crate) fn offset_freedom(&self) -> f64 {
         let width = self.rank + 1;
         let left = |block: &std::ops::Range<usize>| {
@@ -73,7 +77,8 @@ impl RestrictedLikelihood {
         self.layout.blocks.iter().map(left).sum()
     }
 
-    /// Usual variance that noise of the inputs makes of the force \[N^2\]: rows whose direction is in doubt have a large one of their own, which is none of the rig's.
+    /// Typical variance that noise of the inputs contributes to the force \[N^2\]. Rows of doubtful direction
+    /// have a large variance of their own, which isn't the rig's.
     pub(crate) fn usual_input_variance(&self) -> f64 {
         median(&mut self.layout.known.clone())
     }
@@ -88,7 +93,7 @@ impl RestrictedLikelihood {
         Some(Self { absolute: self.absolute, ..Self::new(self.layout.kept(keep), &basis, &values)? })
     }
 
-    /// At variances; none if the covariance has no inverse. O(n r^2).
+    /// The likelihood at the variances `components`; none if the covariance is singular. O(n r^2).
     pub(crate) fn deviance(&self, components: &Components) -> Option<Deviance> {
         let whitening = Whitening::of(components, &self.layout).ok()?;
         let mut columns = self.columns.clone();
@@ -110,8 +115,9 @@ impl RestrictedLikelihood {
     }
 }
 
-/// Log restricted likelihood of values under a law and a linear model, up to a constant of the model: `design` is n x m values, row by row. None where the law has no inverse or the
-/// model leaves nothing.
+/// Log restricted likelihood of values under a law and a linear model, up to a constant of the model:
+/// `design` is n x m values, row by row. None if the covariance is singular or the model leaves no degree of
+/// freedom.
 pub(crate) fn log_likelihood(
     law: &NoiseLaw,
     record: &Record,
@@ -127,7 +133,7 @@ pub(crate) fn log_likelihood(
 }
 
 impl Layout {
-    /// Some of its rows; gaps over rows that are left out add up.
+    /// The layout of some of its rows; gaps over rows that are left out add up.
     pub(crate) fn kept(&self, keep: &[bool]) -> Self {
         let mut layout = Self { blocks: Vec::new(), rows: Vec::new(), gaps: Vec::new(), known: Vec::new() };
         for block in &self.blocks {
@@ -150,10 +156,11 @@ impl Layout {
     }
 }
 
-/// Products of columns given row by row, of `width` in a row; always summed in the same order.
+/// Gram matrix of columns that are given row by row, `width` values in a row. The order of summation is
+/// fixed.
 fn products(columns: &[f64], width: usize) -> Vec<f64> {
     let part = |rows: &[f64]| {
-        // Rows of the table are columns of the view.
+        // Row-major storage read as column-major: rows of the table are columns of the view.
         let across = DMatrixView::from_slice(rows, width, rows.len() / width);
         let along = DMatrixView::from_slice_with_strides(rows, rows.len() / width, width, width, 1);
         let mut gram = DMatrix::zeros(width, width);
@@ -165,11 +172,11 @@ fn products(columns: &[f64], width: usize) -> Vec<f64> {
     for part in &parts {
         gram += part;
     }
-    // Symmetric: by columns is by rows.
+    // The matrix is symmetric, so column-major equals row-major.
     gram.data.into()
 }
 
-/// Lower Cholesky factor in place; none if the matrix isn't positive.
+/// Lower Cholesky factor in place; none if the matrix isn't positive definite.
 fn cholesky(matrix: &mut [f64], width: usize) -> Option<()> {
     for i in 0..width {
         let (above, rest) = matrix.split_at_mut(i * width);

@@ -1,19 +1,20 @@
-//! Minimum of a function of a few numbers without derivatives: the downhill simplex (Nelder and Mead 1965), within bounds.
+//! Minimum of a function of a few variables without derivatives: the downhill simplex (Nelder and Mead 1965),
+//! within bounds.
 
-/// How far a search goes.
+/// Settings of a search.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Search<'a> {
-    /// Least and largest value of each number; points beyond are moved to the bound.
+    /// Least and largest value of each variable; points beyond are moved to the bound.
     pub(crate) bounds: &'a [(f64, f64)],
-    /// First steps.
+    /// Size of the first simplex.
     pub(crate) step: f64,
     /// Most evaluations.
     pub(crate) evaluations: usize,
-    /// Ends when the values of the corners differ by less.
+    /// Ends when the values at the corners differ by less.
     pub(crate) tolerance: f64,
 }
 
-/// Best point and its value. A value that isn't a number counts as infinite.
+/// Best point and its value. NaN counts as infinite.
 pub(crate) fn minimise(
     mut function: impl FnMut(&[f64]) -> f64,
     start: &[f64],
@@ -33,7 +34,7 @@ pub(crate) fn minimise(
     corners.push((point, value));
     for i in 0..start.len() {
         let mut corner = corners[0].0.clone();
-        // Away from the bound.
+        // Step away from the bound if the corner would lie outside.
         let outside = corner[i] + search.step > search.bounds[i].1;
         corner[i] += if outside { -search.step } else { search.step };
         let (point, value, left) = at(corner);
@@ -56,10 +57,12 @@ pub(crate) fn minimise(
         let nearer = along(-0.5);
         let (point, value, left) = at(outward);
         rest = left;
+        // The reflected point replaces the worst corner if it is better than the second worst.
         if value < corners[last - usize::from(last > 1)].1 && value >= corners[0].1 {
             corners[last] = (point, value);
             continue;
         }
+        // Expansion if the reflection is the best point, else contraction outside or inside the simplex.
         let (tried, other, left) = at(if value < corners[0].1 {
             further
         } else if value < corners[last].1 {
@@ -73,6 +76,7 @@ pub(crate) fn minimise(
         } else if value < corners[last].1 {
             corners[last] = (point, value);
         } else {
+            // Nothing helped: the simplex shrinks towards its best corner.
             for i in 1..corners.len() {
                 let half = corners[0].0.iter().zip(&corners[i].0).map(|(best, x)| 0.5 * (best + x)).collect();
                 let (point, value, left) = at(half);

@@ -1,4 +1,5 @@
-//! Whitening of correlated noise in O(n): innovations of a Kalman filter with two states (offset and exponential; Anderson and Moore 1979, ch. 9).
+//! Whitening of correlated noise in O(n) by the innovations of a Kalman filter with two states, offset and
+//! exponential (Anderson and Moore 1979, ch. 9).
 
 use bulge_model::Record;
 use rayon::prelude::*;
@@ -7,16 +8,18 @@ use std::ops::Range;
 use crate::noise::error::NoiseError;
 use crate::noise::law::{CorrelationTime, NoiseLaw};
 
-/// Part of a row's variance below which what the rows before it leave is rounding.
+/// A conditional variance below this fraction of the row's variance is rounding error.
 const SINGULAR: f64 = 1e-13;
 
-/// `K^-1/2` of a noise law on the used rows of a record: turns correlated noise into independent numbers of variance 1.
+/// `K^-1/2` of a noise law on the used rows of a record: turns correlated noise into independent values of
+/// variance 1.
 ///
 /// ```text
 /// K = blockdiag(K_b),    K_b = diag(s_i^2) + sa^2 exp(-|t_i - t_j|/l) + su^2 1 1'
 /// K^-1/2 z = e_i/sqrt(S_i),    e_i = z_i - E(z_i | z_1 .. z_(i-1)),    S_i = var(e_i)
 /// ```
-/// Blocks b are the sweeps, s_i^2 = sw^2 + input variance \[N^2\]. `K^-1/2` is the inverse of the lower Cholesky factor of K, exactly.
+/// Blocks b are the sweeps, s_i^2 = sw^2 + input variance \[N^2\]. `K^-1/2` is exactly the inverse of the
+/// lower Cholesky factor of K.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Whitening {
     blocks: Vec<Range<usize>>,
@@ -26,12 +29,12 @@ pub struct Whitening {
     information: f64,
 }
 
-/// What the filter does at a row; it doesn't depend on the values.
+/// The filter's coefficients at a row; they don't depend on the values.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Step {
     /// exp(-dt/l) since the row before.
     decay: f64,
-    /// What the states take of the innovation.
+    /// Kalman gain of the offset; the next field is that of the correlated part.
     to_offset: f64,
     to_correlated: f64,
     /// 1/sqrt(S).
@@ -39,12 +42,12 @@ struct Step {
 }
 
 impl Whitening {
-    /// Of the rows that are `used`. `input_variances` are what noise of pressure and contraction makes of the force, one for each row of the
-    /// record \[N^2\], or none at all (an empty slice).
+    /// Whitening of the rows that are `used`. `input_variances` are the noise of pressure and contraction
+    /// propagated to the force, one for each row of the record \[N^2\], or an empty slice.
     ///
     /// # Errors
-    /// Numbers of values that don't match, values that aren't finite or are negative, a correlation time in seconds for a record without time,
-    /// and a law under which a row has no noise of its own.
+    /// Numbers of values that don't match, values that aren't finite or are negative, a correlation time in
+    /// seconds for a record without time, and a law under which a row has no noise of its own.
     pub fn new(
         law: &NoiseLaw,
         record: &Record,
@@ -56,7 +59,7 @@ impl Whitening {
         Self::of(&components, &layout)
     }
 
-    /// The filter's steps for variances on a layout.
+    /// The filter's coefficients for variances on a layout.
     pub(crate) fn of(components: &Components, layout: &Layout) -> Result<Self, NoiseError> {
         let mut steps = Vec::with_capacity(layout.rows.len());
         let (mut log_determinant, mut information) = (0.0, 0.0);
@@ -83,11 +86,12 @@ impl Whitening {
         self.steps.len()
     }
 
-    /// Replaces columns by `K^-1/2` times the columns: n x k values, row by row, of the n used rows in their order. O(n k); the blocks are
-    /// computed in parallel, and the values don't depend on the number of threads.
+    /// Replaces columns by `K^-1/2` times the columns: n x k values, row by row, of the n used rows in their
+    /// order. O(n k). The blocks are computed in parallel, and the values don't depend on the number of
+    /// threads.
     ///
     /// # Errors
-    /// A number of values that isn't a multiple of the number of used rows.
+    /// If the number of values isn't a multiple of the number of used rows.
     pub fn apply(&self, columns: &mut [f64]) -> Result<(), NoiseError> {
         let n = self.rows();
         let k = columns.len().checked_div(n).unwrap_or(0);
@@ -131,13 +135,15 @@ impl Whitening {
         self.log_determinant
     }
 
-    /// Rows that count as independent: as many independent rows with the same variances would know a constant as well.
+    /// Effective number of independent rows: so many independent rows with the same variances would determine
+    /// a constant equally well.
     ///
     /// ```text
     /// n_eff = n (1' K^-1 1)/(sum 1/K_ii)
     /// ```
-    /// From 0 (only without rows) to n: n for white noise, the number of blocks if offsets are all there is. It is about a constant: what
-    /// changes within a sweep is known better than n_eff says if offsets prevail.
+    /// Ranges from 0 (only without rows) to n. It is n for white noise and the number of blocks if the noise
+    /// consists of offsets alone. It refers to a constant: if offsets prevail, variations within a sweep are
+    /// determined better than n_eff says.
     #[must_use]
     pub fn effective_rows(&self) -> f64 {
         let n = self.rows() as f64;
@@ -164,7 +170,7 @@ fn filter(part: &mut [f64], steps: &[Step], k: usize) {
     }
 }
 
-/// Covariance of the two states.
+/// Covariance matrix of the two states.
 struct Filter {
     /// Variance of the correlated part and its time \[s or rows\].
     correlated: f64,
@@ -180,7 +186,8 @@ impl Filter {
         Self { correlated, time, uu: offset, ua: 0.0, aa: correlated }
     }
 
-    /// Goes on by `gap` and takes a row with the white variance `white`; the step and the variance of the innovation.
+    /// Advances by `gap` and takes in a row with the white variance `white`. Returns the coefficients and the
+    /// variance of the innovation.
     fn step(&mut self, white: f64, gap: f64) -> (Step, f64) {
         let decay = if self.correlated > 0.0 { (-gap / self.time).exp() } else { 1.0 };
         if self.correlated > 0.0 && gap > 0.0 {
@@ -190,7 +197,7 @@ impl Filter {
         let (u, a) = (self.uu + self.ua, self.ua + self.aa);
         let variance = u + a + white;
         let (gu, ga) = (u / variance, a / variance);
-        // P = (I - g h) P (I - g h)' + g s^2 g' (Joseph): stays positive where P - g g' S cancels.
+        // P = (I - g h) P (I - g h)' + g s^2 g' (Joseph form): it stays positive where P - g g' S cancels.
         let (ku, ka) = (1.0 - gu, 1.0 - ga);
         let (uu, ua, aa) = (self.uu, self.ua, self.aa);
         self.uu = ku * ku * uu - 2.0 * ku * gu * ua + gu * gu * (aa + white);
@@ -200,12 +207,12 @@ impl Filter {
     }
 }
 
-/// Variances of a noise law, in one unit squared.
+/// Variances of a noise law, all in the same unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Components {
     pub(crate) white: f64,
     pub(crate) correlated: f64,
-    /// Correlation time, in seconds or rows as the layout's gaps.
+    /// Correlation time, in seconds or rows like the layout's gaps.
     pub(crate) time: f64,
     pub(crate) offset: f64,
 }
@@ -223,7 +230,7 @@ impl Components {
             return Err(NoiseError::Value { what, place: 0, value: time, bound });
         }
         let [white, correlated, offset] = sds.map(|sd| sd * sd);
-        // Without a time there is nothing to correlate over.
+        // A correlated part needs a correlation time.
         if correlated > 0.0 && law.time.is_none() {
             let (what, bound) = ("correlation time of a law with a correlated part", " above 0");
             return Err(NoiseError::Value { what, place: 0, value: 0.0, bound });
@@ -232,16 +239,16 @@ impl Components {
     }
 }
 
-/// The used rows block by block, and what is known of each.
+/// The used rows, block by block, with their gaps and input variances.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Layout {
     /// Ranges of used rows, without empty ones.
     pub(crate) blocks: Vec<Range<usize>>,
-    /// Row of the record of each used row.
+    /// Row of the record for each used row.
     pub(crate) rows: Vec<usize>,
-    /// Time or rows since the used row before it in the block; 0 for the first.
+    /// Seconds or rows since the previous used row of the block; 0 for the first.
     pub(crate) gaps: Vec<f64>,
-    /// Input variance.
+    /// Input variance of each used row.
     pub(crate) known: Vec<f64>,
 }
 
@@ -293,13 +300,13 @@ impl Layout {
     }
 }
 
-/// Where each row is, in the unit of a correlation time.
+/// The position of each row in the unit of the correlation time.
 pub(crate) fn moment_of(record: &Record, time: Option<CorrelationTime>) -> impl Fn(usize) -> f64 {
     let seconds = matches!(time, Some(CorrelationTime::Seconds(_)));
     move |row| if seconds { record.moments()[row].clock } else { row as f64 }
 }
 
-/// A clock that runs backwards stands still.
+/// Time step; 0 where the clock runs backwards.
 pub(crate) fn gap(now: f64, before: f64) -> f64 {
     (now - before).max(0.0)
 }

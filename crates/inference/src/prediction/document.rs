@@ -1,4 +1,4 @@
-//! A prediction as a value.
+//! The result of a prediction.
 
 use bulge_measurements::{WrittenColumn, WrittenValues};
 use serde::Serialize;
@@ -7,28 +7,30 @@ use crate::comparison::document::LeftOut;
 
 /// The force of a muscle at rows that it wasn't fitted to.
 ///
-/// Numbers without a value are NaN (`null` as JSON): of rows without a state, and ends of intervals of which nothing is known.
+/// Missing values are NaN (`null` in JSON): forces of rows without a state, and ends of intervals whose width
+/// is unknown.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Predicted {
-    /// `bulge.prediction/1`.
+    /// Name and version of the document: `bulge.prediction/1`.
     pub schema: &'static str,
     /// Name of the muscle.
     pub muscle: String,
     /// Names of the files.
     pub files: Vec<String>,
-    /// SHA-256 of the file, or of the digests of several.
+    /// SHA-256 of the file, or of the digests of several files.
     pub sha256: String,
     /// Number of rows.
     pub rows: usize,
     /// Rows that have no state, and why.
     pub without_state: Option<LeftOut>,
-    /// Rows whose measured force says nothing, and why: they aren't in the errors.
+    /// Rows that are left out of the errors because their measured force carries no information, and why.
     pub left_out: Vec<LeftOut>,
-    /// What the intervals are made of.
+    /// The uncertain parameters behind the intervals.
     pub uncertain: Vec<UncertainNumber>,
-    /// RMS error that a reading has about the model \[N\]: that of the fit, else the noise of the instruments; none if neither is known.
+    /// RMS deviation of a single reading from the model \[N\]: that of the fit, or else the noise of the
+    /// instruments; none if neither is known.
     pub reading_sd_n: Option<f64>,
-    /// How far the prediction is from measured forces, where there are any.
+    /// Errors against measured forces, if there are any.
     pub against: Option<Against>,
     /// What a reader should know before trusting the numbers.
     pub warnings: Vec<String>,
@@ -36,7 +38,7 @@ pub struct Predicted {
     pub columns: PredictedColumns,
 }
 
-/// A number whose doubt widens the intervals.
+/// A parameter whose uncertainty widens the intervals.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct UncertainNumber {
     /// The effect.
@@ -47,24 +49,25 @@ pub struct UncertainNumber {
     pub value: f64,
     /// Standard deviation in `unit`.
     pub sd: f64,
-    /// The unit.
+    /// Unit of the value.
     pub unit: String,
-    /// `fitted`, as the muscle file says, or `stated`: a width in the muscle file or of its instruments.
+    /// `fitted` if it comes from the table `[fitted]` of the muscle file, `stated` if its width does or comes
+    /// from the instruments.
     pub from: &'static str,
-    /// RMS of what one standard deviation of it changes \[N\].
+    /// RMS change of the force for one standard deviation of the parameter \[N\].
     pub moves_n: f64,
 }
 
 /// Measured forces against the prediction, over the rows that count.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Against {
-    /// How many.
+    /// Number of rows.
     pub rows: usize,
     /// RMS error \[N\].
     pub rmse_n: f64,
     /// Mean error, measured - predicted \[N\].
     pub bias_n: f64,
-    /// Share of the readings within their 95 % intervals; none without intervals.
+    /// Fraction of the readings within their 95 % intervals; none without intervals.
     pub coverage: Option<f64>,
 }
 
@@ -73,17 +76,17 @@ pub struct Against {
 pub struct PredictedColumns {
     /// Names of the specimens.
     pub specimens: Vec<String>,
-    /// Names of the sweeps; none of a static map.
+    /// Names of the sweeps; none for a static map.
     pub sweeps: Option<Vec<String>>,
-    /// Place of the file.
+    /// Index of the file.
     pub file: Vec<u32>,
     /// Line in the file, or number of the row, from 1.
     pub line: Vec<u32>,
-    /// Place of the sweep.
+    /// Index of the sweep.
     pub sweep: Vec<u32>,
-    /// Place of the specimen.
+    /// Index of the specimen.
     pub specimen: Vec<u32>,
-    /// Time as read \[s\], where there is any.
+    /// Time as read \[s\], if there is any.
     pub time_s: Option<Vec<f64>>,
     /// Gauge pressure as read \[Pa\].
     pub pressure_pa: Vec<f64>,
@@ -91,21 +94,22 @@ pub struct PredictedColumns {
     pub contraction: Vec<f64>,
     /// Predicted force \[N\].
     pub force_n: Vec<f64>,
-    /// Standard deviation of the predicted force, by the doubt about its numbers \[N\].
+    /// Standard deviation of the predicted force from its uncertain parameters \[N\].
     pub sd_n: Vec<f64>,
     /// Lower end of the 95 % interval of a reading \[N\].
     pub low_n: Vec<f64>,
     /// Upper end.
     pub high_n: Vec<f64>,
-    /// Measured force \[N\], where there is any.
+    /// Measured force \[N\], if there is any.
     pub measured_n: Option<Vec<f64>>,
     /// Measured less predicted force \[N\].
     pub residual_n: Option<Vec<f64>>,
 }
 
 impl Predicted {
-    /// The columns of a file, in SI units; [`bulge_measurements::written`] makes its bytes. The column `force [N]` is the measured force where there is one, as
-    /// in the files that are read; the predicted one is `model force [N]`.
+    /// The columns of a file, in SI units; [`bulge_measurements::written`] turns them into bytes. The column
+    /// `force [N]` is the measured force if there is one, as in the files that are read; `model force [N]` is
+    /// the predicted one.
     #[must_use]
     pub fn written_columns(&self) -> Vec<WrittenColumn<'_>> {
         let PredictedColumns { sweeps, specimens, time_s, measured_n, residual_n, .. } = &self.columns;

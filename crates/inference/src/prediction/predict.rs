@@ -1,9 +1,10 @@
-//! Predicts the force of rows, with intervals by what is known of the muscle's numbers.
+//! Predicts the force at rows, with intervals from the uncertainty of the muscle's parameters.
 //!
 //! ```text
 //! s_i^2 = g_i' C g_i,    g_i = dF_i/d(numbers),    95 % of the readings lie within F_i +- q sqrt(s_i^2 + e^2)
 //! ```
-//! C is the covariance of the fitted numbers and of those that are stated with a width, e the RMS error of the fit (else the noise of the load cell), q Student's quantile.
+//! C is the covariance of the fitted parameters and of those stated with a width, e the RMS error of the fit
+//! (or else the noise of the load cell), q Student's quantile.
 
 use bulge_effects::{Catalogue, Effect, known};
 use bulge_measurements::Data;
@@ -24,11 +25,13 @@ use crate::prediction::uncertain::Uncertain;
 
 /// The force of a muscle, with the effects that its file states, at rows that it wasn't fitted to.
 ///
-/// Intervals are made of what the muscle file knows: the table `[fitted]` that `bulge fit` writes, widths, and instruments. Where the data have no force
-/// ([`Data::has_force`]), nothing is compared. Rows `excluded` by hand are predicted, and aren't in the errors.
+/// The intervals come from the muscle file: the table `[fitted]` that `bulge fit` writes, widths, and
+/// instruments. If the data have no force ([`Data::has_force`]), nothing is compared. Rows `excluded` by hand
+/// are predicted, but left out of the errors.
 ///
 /// # Errors
-/// [`InferenceError`]: an effect that isn't known, a muscle of another size, a table `[fitted]` that isn't about this muscle.
+/// [`InferenceError`]: an unknown effect, a muscle of another size, or a table `[fitted]` that doesn't belong
+/// to this muscle.
 pub fn predict(
     data: &Data,
     muscle: &Muscle,
@@ -108,13 +111,14 @@ fn predicted(
     })
 }
 
-/// What to say of an effect that needs what the data don't have: rows without an order have no direction.
+/// The warning for an effect that needs something the data don't have, such as a direction where rows have no
+/// order.
 fn does_nothing(effect: &Arc<dyn Effect>, record: &Record) -> Option<String> {
     let Err(InferenceError::Needs { effect, needs }) = check_needs(effect, record) else { return None };
     Some(format!("`{effect}` needs {needs}, which these data don't have: it does nothing here"))
 }
 
-/// Row by row; `doubt` gives the standard deviation of the force, and half the interval.
+/// The columns row by row; `doubt` gives the standard deviation of the force and half the interval.
 fn columns(
     data: &Data,
     record: &Record,
@@ -147,7 +151,7 @@ fn columns(
     }
 }
 
-/// Over the rows that count and have a state; none if there are none.
+/// Errors over the rows that count and have a state; none without such rows.
 fn against(columns: &PredictedColumns, counts: &[bool]) -> Option<Against> {
     let residual = columns.residual_n.as_ref()?;
     let rows: Vec<usize> =
@@ -166,7 +170,7 @@ fn against(columns: &PredictedColumns, counts: &[bool]) -> Option<Against> {
     })
 }
 
-/// The numbers in doubt, with what they move.
+/// The uncertain parameters, with the changes of the force that they cause.
 fn numbers(uncertain: &Uncertain, jacobian: &[f64], force: &[f64]) -> Vec<UncertainNumber> {
     let k = uncertain.places.len();
     let rows: Vec<usize> = (0..force.len()).filter(|row| force[*row].is_finite()).collect();

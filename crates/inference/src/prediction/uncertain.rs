@@ -1,4 +1,5 @@
-//! What is not exactly known of a muscle: the numbers that a fit gave it, and those that data sheets and stated widths leave open.
+//! Uncertainty of a muscle: the parameters that a fit gave it, and those that data sheets and stated widths
+//! leave open.
 
 use bulge_effects::{Catalogue, Known};
 use bulge_model::{Model, ModelParameter};
@@ -7,14 +8,14 @@ use bulge_muscles::{FittedNumber, FittedNumbers, Muscle, Parameter};
 use crate::error::InferenceError;
 use crate::fit::nuisance::with_nuisances;
 
-/// Part of a value by which that of the effect may differ: digits of a file.
+/// Relative difference allowed between a fitted value and that of its effect: the digits of a file.
 const SAME: f64 = 1e-9;
 
-/// A muscle with its effects as a model, and the covariance of those of its numbers that are in doubt.
+/// A muscle with its effects as a model, and the covariance of its uncertain parameters.
 pub(crate) struct Uncertain {
     pub(crate) model: Model,
     pub(crate) theta: Vec<f64>,
-    /// Places of the numbers in the model.
+    /// Indices of the uncertain parameters in the model.
     pub(crate) places: Vec<usize>,
     /// Whether each comes from a fit.
     pub(crate) is_fitted: Vec<bool>,
@@ -26,7 +27,7 @@ pub(crate) struct Uncertain {
 }
 
 impl Uncertain {
-    /// Of a muscle with the effects that its file states.
+    /// The uncertainty of a muscle with the effects that its file states.
     pub(crate) fn of(
         muscle: &Muscle,
         known: &[Known],
@@ -72,7 +73,7 @@ impl Uncertain {
         let count = places.len();
         let mut sd: Vec<f64> = (0..count).map(|place| sure.sd(place)).collect();
         for (at, prior) in prepared.priors.iter().enumerate() {
-            // What was fitted is in the list with what the fit made of its prior.
+            // A fitted parameter is in the list already; its fit has used the prior.
             if let Some((_, width)) = prior.filter(|_| prepared.nuisance[at] && !places.contains(&at)) {
                 places.push(at);
                 sd.push(width);
@@ -89,23 +90,24 @@ impl Uncertain {
         Ok(Self { model, theta, places, is_fitted, sd, correlations, warnings })
     }
 
-    /// Variance of the force of a row \[N^2\], by its derivatives.
+    /// Variance of the force of a row \[N^2\], from its derivatives.
     pub(crate) fn variance(&self, slopes: &[f64]) -> f64 {
         let k = self.places.len();
         let moves: Vec<f64> = slopes.iter().zip(&self.sd).map(|(slope, sd)| slope * sd).collect();
         let row = |i: usize| (0..k).map(|j| self.correlations[i * k + j] * moves[j]).sum::<f64>();
-        // Correlations with few digits may make little less than nothing.
+        // Correlations rounded to few digits may make the sum slightly negative.
         moves.iter().enumerate().map(|(i, own)| own * row(i)).sum::<f64>().max(0.0)
     }
 }
 
-/// Fitted effects that are in the muscle's own numbers.
+/// Fitted effects that went into the muscle's own numbers.
 fn shapes(fitted: &FittedNumbers) -> Vec<&str> {
     let is_fitted = |name: &&str| fitted.numbers.iter().any(|number| number.effect == *name);
     Parameter::effects().filter(is_fitted).collect()
 }
 
-/// The model with an effect whose numbers are the muscle's own, so that it doesn't change it; none if they can't be found.
+/// The model with a shape effect at the muscle's own numbers, where it changes nothing; none if these can't
+/// be found.
 fn with_shape(model: &Model, muscle: &Muscle, catalogue: &Catalogue, name: &str) -> Option<Model> {
     let effect = catalogue.find(name).ok()?;
     let own = |key: &str| muscle.get(Parameter::of_effect(name, key)?);

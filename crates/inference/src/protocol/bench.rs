@@ -1,4 +1,5 @@
-//! What a test bench does and how it reads: pressures, motion, cycles, repeats, noise; made ready for models before anything is measured.
+//! What a test bench does and how it reads: pressures, motion, cycles, repeats, noise; prepared for models
+//! before anything is measured.
 
 use serde::{Deserialize, Serialize};
 use std::ops::RangeInclusive;
@@ -9,7 +10,7 @@ use crate::error::InferenceError;
 
 /// Most rows of a protocol.
 pub const MOST_ROWS: usize = 1_000_000;
-/// Most pressures of a block, and most cycles, repeats, specimens and levels of stairs.
+/// Most pressures of a block; also most cycles, repeats, specimens and steps of a staircase.
 const MOST_COUNT: u32 = 10_000;
 /// Contractions that a bench can set.
 const CONTRACTIONS: RangeInclusive<f64> = -1.0..=0.6;
@@ -20,10 +21,10 @@ const MOST_TIME: f64 = 1e7;
 /// Largest noise, in the SI unit of what is read, and most warming \[K\].
 const MOST_NOISE: f64 = 1e7;
 const MOST_WARMING: f64 = 200.0;
-/// Fewest degrees of freedom of Student's t that have a standard deviation, with some room.
+/// Fewest degrees of freedom of Student's t, with some margin: its standard deviation is finite above 2.
 const LEAST_TAILS: f64 = 2.1;
 
-/// A test: blocks one after the other, and how the rig reads. All numbers are SI.
+/// A test: a sequence of blocks, and how the rig reads. All numbers are SI.
 ///
 /// ```
 /// use bulge_inference::{Block, Protocol};
@@ -37,48 +38,51 @@ const LEAST_TAILS: f64 = 2.1;
 #[derive(Debug, Clone, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Protocol {
-    /// The blocks in the order of the test: all of them static maps, or none.
+    /// The blocks in the order of the test. Either all of them are static maps, or none is.
     pub blocks: Vec<Block>,
     /// Noise of the readings.
     pub noise: ReadingNoise,
-    /// Steps in which the sensors read.
+    /// Resolution of the sensors.
     pub steps: ReadingSteps,
     /// Zero and gain errors of the sensors.
     pub rig: RigErrors,
-    /// Pause between sweeps \[s\]; one row's time if that is longer.
+    /// Pause between sweeps \[s\]; the time of one row if that is longer.
     pub pause_s: f64,
-    /// Rise of the temperature over the whole test \[K\], even in time; 0: no column of temperatures.
+    /// Rise of the temperature over the whole test \[K\], linear in time. With 0 there is no temperature
+    /// column.
     pub warming_k: f64,
 }
 
 /// The same motion at several pressures, or the same filling and venting at several lengths.
 ///
-/// Each specimen goes through all repeats, each repeat through all pressures (or lengths); each is one sweep.
+/// Each specimen goes through all repeats, and each repeat through all pressures (or lengths). Each of these
+/// runs is one sweep.
 #[derive(Debug, Clone, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Block {
-    /// Gauge pressures \[Pa\], > 0. At held lengths the lowest and the highest of them are the range.
+    /// Gauge pressures \[Pa\], > 0. At held lengths, the lowest and the highest of them are the range.
     pub pressures_pa: Vec<f64>,
-    /// Lowest and highest contraction; at held lengths those of [`Block::held`].
+    /// Lowest and highest contraction; at held lengths the range of [`Block::held`].
     pub contraction: [f64; 2],
-    /// Contractions that are held one after the other while the pressure goes up and down; none where the pressures are held.
+    /// Contractions that are held one after the other while the pressure rises and falls; empty if the
+    /// pressures are held.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub held: Vec<f64>,
     /// How length or pressure moves between the ends of its range.
     pub path: Path,
-    /// Cycles of each sweep; without meaning in a static map.
+    /// Cycles of each sweep; ignored in a static map.
     pub cycles: u32,
-    /// Time of one cycle \[s\]; without meaning in a static map.
+    /// Time of one cycle \[s\]; ignored in a static map.
     pub period_s: f64,
     /// Rows of one cycle, or contractions of a static map at each pressure.
     pub rows: u32,
-    /// How often the whole block is done.
+    /// How often the whole block is repeated.
     pub repeats: u32,
     /// Number of specimens, named 1, 2, and so on.
     pub specimens: u32,
 }
 
-/// How a muscle moves.
+/// Motion of a muscle over time.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Path {
@@ -90,7 +94,7 @@ pub enum Path {
     Stairs {
         /// Steps up; as many go down.
         steps: u32,
-        /// Hold on each level \[s\].
+        /// Hold time on each level \[s\].
         hold_s: f64,
     },
     /// A grid of single readings, without time.
@@ -103,29 +107,30 @@ pub enum Path {
 pub struct ReadingNoise {
     /// White noise of the force \[N\].
     pub force_n: f64,
-    /// Degrees of freedom of Student's t, of which the white noise of the force is then; its standard deviation stays what it is.
+    /// Degrees of freedom of Student's t if the white noise of the force has heavy tails; its standard
+    /// deviation stays the same.
     pub tails: Option<f64>,
     /// Noise of the force that is exponentially correlated in time within a sweep \[N\].
     pub correlated_n: f64,
-    /// Its correlation time \[s\].
+    /// Correlation time of the correlated noise \[s\].
     pub correlation_time_s: f64,
-    /// Offset of the force of each sweep \[N\].
+    /// Standard deviation of the force's offset from sweep to sweep \[N\].
     pub offset_n: f64,
-    /// Of the pressure \[Pa\].
+    /// Noise of the pressure \[Pa\].
     pub pressure_pa: f64,
-    /// Of the length \[m\].
+    /// Noise of the length \[m\].
     pub length_m: f64,
 }
 
-/// The smallest differences that the sensors show; 0: none.
+/// Resolutions of the sensors; 0 means no rounding.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Deserialize, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ReadingSteps {
-    /// Of the force \[N\].
+    /// Resolution of the force \[N\].
     pub force_n: f64,
-    /// Of the pressure \[Pa\].
+    /// Resolution of the pressure \[Pa\].
     pub pressure_pa: f64,
-    /// Of the length \[m\].
+    /// Resolution of the length \[m\].
     pub length_m: f64,
 }
 
@@ -136,11 +141,11 @@ pub enum RigErrors {
     /// None.
     #[default]
     None,
-    /// Drawn by the seed from the widths of the muscle's `[instruments]`.
+    /// Drawn, by the seed, from the widths of the muscle's `[instruments]`.
     Drawn,
 }
 
-/// What is wrong with a number: its key in a file, a sentence, and what to write.
+/// An invalid number: its key in a file, a sentence, and what to write.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Wrong {
     pub(crate) key: &'static str,
@@ -171,7 +176,8 @@ impl Block {
         Self { path: Path::Static, rows, ..Self::loops(pressures_pa, contraction, 0.0) }
     }
 
-    /// One filling and venting of 50 rows at each of the contractions `held`, between two pressures \[Pa\], in `period_s` \[s\].
+    /// One filling and venting of 50 rows at each of the contractions `held`, between two pressures \[Pa\],
+    /// in `period_s` \[s\].
     #[must_use]
     pub fn isometric(pressure_pa: [f64; 2], held: Vec<f64>, period_s: f64) -> Self {
         let ends = held
@@ -180,7 +186,8 @@ impl Block {
         Self { held, ..Self::loops(pressure_pa.to_vec(), ends, period_s) }
     }
 
-    /// Ranges of pressure \[Pa\] and contraction of each sweep of one repeat; the range of what is held is one number.
+    /// Ranges of pressure \[Pa\] and contraction of each sweep in one repeat. The quantity that is held has
+    /// twice the same value.
     pub(crate) fn sweeps(&self) -> impl Iterator<Item = ([f64; 2], [f64; 2])> {
         let isobaric = self.pressures_pa.iter().map(|p| ([*p; 2], self.contraction));
         let range = self.pressure_range();
@@ -208,7 +215,7 @@ impl Block {
         self.rows_of_sweep().saturating_mul(sweeps)
     }
 
-    /// Whether it has no row.
+    /// Whether the block has no row.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
@@ -371,7 +378,7 @@ fn size(key: &'static str, value: f64, name: &str, example: &str) -> Result<(), 
 }
 
 impl Protocol {
-    /// Blocks without noise, rig errors and warming, with 10 s between sweeps.
+    /// Blocks without noise, rig errors or warming, with 10 s between sweeps.
     #[must_use]
     pub fn new(blocks: Vec<Block>) -> Self {
         Self {
@@ -390,13 +397,13 @@ impl Protocol {
         self.blocks.iter().fold(0, |all, block| all.saturating_add(block.len()))
     }
 
-    /// Whether it has no row.
+    /// Whether the protocol has no row.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Whether it is a static map, without time.
+    /// Whether the protocol is a static map, without time.
     #[must_use]
     pub fn is_static(&self) -> bool {
         self.blocks.first().is_some_and(|block| block.path == Path::Static)
@@ -409,7 +416,8 @@ impl Protocol {
         (1..=count).map(|specimen| specimen.to_string()).collect()
     }
 
-    /// The muscle to try and the names of its specimens: those that it states, where there are as many; as stated, where the protocol has one specimen.
+    /// The muscle to try and the names of its specimens. The muscle's own specimens are used if there are as
+    /// many as in the protocol. A protocol with one specimen takes the muscle as stated.
     ///
     /// # Errors
     /// If the muscle states another number of specimens.
@@ -428,7 +436,7 @@ impl Protocol {
         })
     }
 
-    /// What must hold for all: of a protocol that a program made.
+    /// Checks a protocol that a program built, as a file would be checked.
     pub(crate) fn check(&self) -> Result<(), InferenceError> {
         for (i, block) in self.blocks.iter().enumerate() {
             block.check().map_err(|wrong| wrong.of(&format!("block {}", i + 1)))?;
@@ -438,7 +446,7 @@ impl Protocol {
         self.check_whole().map_err(|wrong| wrong.of("protocol"))
     }
 
-    /// What concerns no single table.
+    /// Checks what concerns no single table.
     pub(crate) fn check_whole(&self) -> Result<(), Wrong> {
         if self.blocks.is_empty() {
             let what = "a protocol needs a block".to_owned();

@@ -1,13 +1,13 @@
-//! Protocol files: TOML into a protocol, with the place and the cure for everything that is wrong.
+//! Protocol files: parses TOML into a protocol. Every error has its place and its remedy.
 
 use bulge_muscles::settings::{Document, FileKind, Setting, Settings};
 use bulge_muscles::{Dimension, FileError, Force, Length, Pressure, Quantity, Ratio, units};
 
 use crate::protocol::bench::{Block, Path, Protocol, ReadingNoise, ReadingSteps, RigErrors, Wrong};
 
-/// What messages call the file.
+/// Name of the file in messages.
 const KIND: FileKind = FileKind { name: "protocol", file: "protocol.toml", line: "period = \"50 s\"" };
-/// Rows of a cycle, or of each pressure of a map, where neither the block nor an interval says how many.
+/// Rows of a cycle, or of each pressure of a map, if neither the block nor a sampling interval states them.
 const USUAL_ROWS: u32 = 50;
 
 /// A protocol file with every key.
@@ -89,7 +89,7 @@ const SAMPLING: [(&str, &str); 4] = [
     ("interval", "interval = \"0.5 s\""),
 ];
 
-/// The shapes of the motion in a file.
+/// Shapes of the motion in a file.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Shape {
     Loops,
@@ -102,7 +102,8 @@ impl Protocol {
     /// Reads a protocol file; [`PROTOCOL_EXAMPLE`] has every key.
     ///
     /// # Errors
-    /// If the file can't be read, is larger than 1 MiB, is not UTF-8 or is no valid protocol. The message is complete.
+    /// If the file can't be read, is larger than 1 MiB, is not UTF-8, or is no valid protocol. The message is
+    /// complete.
     pub fn read(path: impl AsRef<std::path::Path>) -> Result<Self, FileError> {
         let path = path.as_ref();
         let (text, origin) = (KIND.read(path)?, path.display().to_string());
@@ -121,7 +122,7 @@ impl Protocol {
     /// ```
     ///
     /// # Errors
-    /// With the place and the cure, if the text is no valid protocol.
+    /// If the text is no valid protocol; the error has the place and the remedy.
     pub fn from_toml(text: &str, origin: &str) -> Result<Self, FileError> {
         protocol(&Document::parse(KIND, text, origin)?.settings("the protocol", &TOP))
     }
@@ -200,7 +201,7 @@ fn block(settings: &Settings<'_>, interval: Option<f64>) -> Result<Block, FileEr
     Ok(block)
 }
 
-/// Refuses keys that mean nothing for the shape.
+/// Refuses keys that have no meaning for the shape.
 fn check_shape(settings: &Settings<'_>, shape: Shape) -> Result<(), FileError> {
     let strange: &[&str] = match shape {
         Shape::Loops => &["steps", "hold", "contractions", "pressure"],
@@ -213,7 +214,8 @@ fn check_shape(settings: &Settings<'_>, shape: Shape) -> Result<(), FileError> {
     Err(settings.error(settings.key_span(key), what, format!("delete `{key}`, or write another `shape`")))
 }
 
-/// The period, or that of a mean speed: of the whole way in loops, of the steps between the holds in stairs.
+/// The period, stated directly or through a mean speed: over the whole way in loops, over the steps between
+/// the holds in stairs.
 fn period(settings: &Settings<'_>, block: &Block) -> Result<f64, FileError> {
     let period = settings.quantity("period", Dimension::TIME)?;
     let Some(rate) = settings.quantity("rate", Dimension::RATE)? else {
@@ -232,7 +234,7 @@ fn period(settings: &Settings<'_>, block: &Block) -> Result<f64, FileError> {
     Ok(moving + 2.0 * f64::from(steps) * hold_s)
 }
 
-/// A list of quantities in SI, as one text or as several.
+/// A list of quantities in SI, written as one text or as several.
 fn list<Q: Quantity>(settings: &Settings<'_>, key: &'static str, what: &str) -> Result<Vec<f64>, FileError> {
     let Some(value) = settings.get(key) else { return Err(settings.missing(key)) };
     if let Some(text) = value.text() {
@@ -299,7 +301,7 @@ fn noise(settings: &Settings<'_>, is_static: bool) -> Result<ReadingNoise, FileE
     Ok(noise)
 }
 
-/// A number out of range, at its place.
+/// The error for a number out of range, at its place.
 fn out_of_range(settings: &Settings<'_>, wrong: &Wrong) -> FileError {
     settings.error(settings.value_span(wrong.key), wrong.what.clone(), wrong.instead.clone())
 }
@@ -336,7 +338,7 @@ mod tests {
         };
         assert_eq!(found.noise, noise);
         assert_eq!(found.steps, ReadingSteps { force_n: 0.1, pressure_pa: 10.0, length_m: 10e-6 });
-        // Every key of the lists is in the example, in a comment at least.
+        // Every key of the lists appears in the example, if only in a comment.
         for (key, _) in TOP.iter().chain(&BLOCK).chain(&NOISE).chain(&SAMPLING) {
             assert!(PROTOCOL_EXAMPLE.contains(key), "{key}");
         }

@@ -1,4 +1,4 @@
-//! Which effects are hidden in simulated measurements, as a user states them: `coulomb-friction=14 N`.
+//! Effects hidden in simulated measurements, as users write them: `coulomb-friction=14 N`.
 
 use bulge_effects::{Catalogue, CatalogueError, Effect, Group, ParameterCard, known};
 use bulge_model::{Model, ModelError};
@@ -10,13 +10,13 @@ use crate::error::InferenceError;
 use crate::protocol::bench::Protocol;
 use crate::protocol::simulation::{Simulation, simulate};
 
-/// Stream of the random numbers with which specimens differ; those of the readings count upwards from 0.
+/// Random stream for the differences of specimens; the streams of the readings count upwards from 0.
 const SPECIMENS: u64 = u64::MAX;
 
-/// Why nothing is simulated.
+/// Reasons why nothing is simulated.
 #[derive(Debug, thiserror::Error)]
 pub enum HideError {
-    /// The list of effects says something wrong: what, and what to write instead.
+    /// The list of effects is wrong: what is wrong, and what to write instead.
     #[error("{0}")]
     Stated(String),
     /// An effect that doesn't exist.
@@ -34,7 +34,7 @@ pub enum HideError {
 }
 
 impl HideError {
-    /// Whose fault it is.
+    /// The kind of the error: wrong input, no solution, or a search that failed.
     #[must_use]
     pub fn fault(&self) -> Fault {
         match self {
@@ -45,9 +45,10 @@ impl HideError {
     }
 }
 
-/// Synthetic measurements of a muscle with hidden effects. `with` lists them as `name`, `name=value`, `name.key=value`, or a further value
-/// of the effect before; values have units. What isn't stated is as usual. Of an effect of specimens the number is their standard
-/// deviation. The same seed gives the same bytes.
+/// Synthetic measurements of a muscle with hidden effects. `with` lists them as `name`, `name=value` or
+/// `name.key=value`; a value alone belongs to the effect before it. Values have units. Parameters that aren't
+/// stated have their usual values. For an effect of specimens, the value is the standard deviation between
+/// them. The same seed gives the same bytes.
 ///
 /// # Errors
 /// [`HideError`].
@@ -72,7 +73,7 @@ pub fn simulate_with(
     Ok(simulate(&model, &theta, protocol, seed)?)
 }
 
-/// An effect to hide, with the numbers that were stated \[SI\].
+/// An effect to hide, with the parameter values that were stated \[SI\].
 struct Stated {
     effect: Arc<dyn Effect>,
     numbers: Vec<Option<f64>>,
@@ -82,7 +83,7 @@ fn wrong(what: String) -> HideError {
     HideError::Stated(what)
 }
 
-/// `name`, `name=value`, `name.key=value`, or a further value of the effect before.
+/// Parses `name`, `name=value`, `name.key=value`, or a further value of the effect before.
 fn stated(
     items: &[String],
     find: impl Fn(&str) -> Result<Arc<dyn Effect>, HideError>,
@@ -135,14 +136,14 @@ impl Stated {
         self.effect.card().name.to_owned()
     }
 
-    /// The numbers of this muscle.
+    /// Calls `read` with the parameter cards for this muscle.
     fn with_cards<T>(&self, muscle: &Muscle, read: impl FnOnce(&[ParameterCard<'_>]) -> T) -> T {
         let cards: Vec<ParameterCard<'_>> =
             self.effect.parameters().into_iter().map(|card| card.of(muscle)).collect();
         read(&cards)
     }
 
-    /// Puts a value to the first number that has none.
+    /// Gives a value to the first parameter that has none.
     fn next(&mut self, value: &str, muscle: &Muscle) -> Result<(), HideError> {
         let Some(place) = self.numbers.iter().position(Option::is_none) else {
             let count = self.numbers.len();
@@ -177,7 +178,7 @@ impl Stated {
         Ok(())
     }
 
-    /// How a number, or all of them, is written.
+    /// An example of how one parameter, or all of them, are written.
     fn example(&self, key: Option<&str>, muscle: &Muscle) -> String {
         let name = self.name();
         let one = |card: &ParameterCard<'_>| format!("`{name}.{}={}`", card.key, card.shown(card.usual()));
@@ -189,7 +190,7 @@ impl Stated {
     }
 }
 
-/// All numbers of the model: those stated, usual ones, and one draw for each specimen.
+/// All parameters of the model: the stated ones, usual ones, and one draw for each specimen.
 fn numbers(model: &Model, stated: &[Stated], muscle: &Muscle, seed: u64) -> Result<Vec<f64>, HideError> {
     let mut theta = model.start();
     let mut random = Random::new(seed, SPECIMENS);

@@ -1,4 +1,5 @@
-//! The test that some measurements come from, about: what its sweeps held, and what they went over.
+//! Approximate reconstruction of the test behind some measurements: what its sweeps held, and over which
+//! ranges they went.
 
 use bulge_measurements::{Data, History, Sweep, SweepKind};
 use bulge_muscles::units::rounded;
@@ -7,26 +8,27 @@ use std::ops::Range;
 
 use crate::protocol::bench::{Block, Path, Protocol};
 
-/// Levels of a block: of many that were measured those that are spread over their range.
+/// Most levels of a block; if more were measured, some are chosen that are spread over their range.
 const MOST_LEVELS: usize = 8;
-/// Rows of a cycle.
+/// Least and largest number of rows of a cycle.
 const ROWS: Range<f64> = 8.0..1000.0;
-/// Part of the range of all within which levels, and ends of ranges, are alike.
+/// Levels, and ends of ranges, are alike within this fraction of the total range.
 const ALIKE: f64 = 0.05;
-/// The mean rate of a sine is 2/pi of its largest, that of a triangle all of it: what lies below their middle is a sine.
+/// The mean rate of a sine is 2/pi of its largest rate, that of a triangle equals it. A ratio below this
+/// limit, about halfway between, means a sine.
 const EVEN: f64 = 0.82;
-/// Time of a cycle where none was measured \[s\].
+/// Time of a cycle \[s\] if none was measured.
 const USUAL_PERIOD: f64 = 60.0;
 
-/// What one sweep does.
+/// Motion of one sweep.
 struct Moved {
     pressure: [f64; 2],
     contraction: [f64; 2],
     rows: usize,
     seconds: f64,
-    /// Ways to or fro.
+    /// Number of monotonic strokes.
     ways: usize,
-    /// The mean rate by the largest; none if it isn't known.
+    /// Mean rate over largest rate; none if the rates are 0.
     evenness: Option<f64>,
 }
 
@@ -73,7 +75,8 @@ impl Moved {
     }
 }
 
-/// Values that differ, in ascending order, as a person would set them; of many those that are spread over their range.
+/// Distinct values in ascending order, rounded as a person would set them; if there are many, some that are
+/// spread over their range.
 fn levels(values: impl Iterator<Item = f64>) -> Vec<f64> {
     let mut sorted: Vec<f64> = values.collect();
     sorted.sort_by(f64::total_cmp);
@@ -94,7 +97,7 @@ fn levels(values: impl Iterator<Item = f64>) -> Vec<f64> {
     (0..MOST_LEVELS).map(|place| means[place * (means.len() - 1) / (MOST_LEVELS - 1)]).collect()
 }
 
-/// Ends as a person would set them, of contractions to a tenth of a percent.
+/// Contractions rounded as a person would set them, to a tenth of a percent.
 fn contractions(range: [f64; 2]) -> [f64; 2] {
     range.map(|value| (value * 1e3).round() / 1e3)
 }
@@ -103,16 +106,16 @@ fn pressures(range: [f64; 2]) -> Vec<f64> {
     range.map(|value| rounded(value.max(1e3), 2)).to_vec()
 }
 
-/// A count that lies in a range.
+/// A count, clamped to a range.
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to small numbers")]
 fn count(value: f64, range: Range<f64>) -> u32 {
     value.round().clamp(range.start, range.end) as u32
 }
 
-/// A block moves as most of its sweeps do.
+/// The block with the median motion of its sweeps.
 fn moving(block: Block, sweeps: &[&Moved], kept: usize) -> Block {
     let of = |value: &dyn Fn(&Moved) -> f64| median(sweeps.iter().map(|sweep| value(sweep))).unwrap_or(0.0);
-    // To and fro is one cycle; of a single way the other one is added.
+    // A stroke each way is one cycle; a single stroke is completed by the one back.
     let cycles = count(of(&|sweep| sweep.ways as f64 / 2.0), 1.0..1e4);
     let period = of(&|sweep| 2.0 * sweep.seconds / sweep.ways as f64);
     let evenness = median(sweeps.iter().filter_map(|sweep| sweep.evenness));
@@ -127,11 +130,13 @@ fn moving(block: Block, sweeps: &[&Moved], kept: usize) -> Block {
 }
 
 impl Protocol {
-    /// The test that some measurements come from, about, of one specimen and without noise: sweeps that hold the same pressures over the same range are one
-    /// block, as are those that hold their length. Numbers are rounded to what a person would set. `l0` is the length of the unpressurised muscle \[m\].
+    /// Reconstructs the test behind some measurements, approximately, for one specimen and without noise.
+    /// Sweeps that hold pressures over the same range form one block, as do those that hold their length.
+    /// Numbers are rounded as a person would set them. `l0` is the length of the unpressurised muscle \[m\].
     ///
-    /// Loops under a held load are taken for loops at the pressures that they go over: a protocol holds pressures or lengths. A static map without time is one,
-    /// with as many contractions at each pressure as were read on average. Without a row there is no block.
+    /// Loops under a held load become loops at pressures from the range that they covered, because a protocol
+    /// holds pressures or lengths. A static map without time becomes one with the mean number of contractions
+    /// at each pressure. Data without rows give no block.
     #[must_use]
     pub fn like(data: &Data, l0: f64) -> Self {
         let (pressure, contraction, history) = (data.pressure(), data.contraction(l0), data.history(l0));
@@ -153,7 +158,7 @@ impl Protocol {
             .partition(|(kind, _)| *kind == SweepKind::Isometric);
         let mut blocks = Vec::new();
         let all = ends_of(other.iter().map(|(_, sweep)| sweep.contraction));
-        // By the ends of the range, in steps that are alike.
+        // Group by the ends of the contraction range, rounded to steps within which they are alike.
         let mut alike: BTreeMap<Vec<i64>, Vec<&Moved>> = BTreeMap::new();
         let mut under_load: Vec<&Moved> = Vec::new();
         for (kind, sweep) in &other {
@@ -166,7 +171,7 @@ impl Protocol {
             alike.entry(sweep.contraction.map(step).to_vec()).or_default().push(sweep);
         }
         if alike.len() > MOST_LEVELS {
-            // No two are alike: as one.
+            // There are too many groups: merge them into one.
             alike = BTreeMap::from([(Vec::new(), alike.into_values().flatten().collect())]);
         }
         for sweeps in alike.into_values() {
@@ -202,7 +207,7 @@ mod tests {
     use bulge_model::Model;
     use bulge_muscles::{Quantity, preset};
 
-    /// What is measured in a test, read as a file.
+    /// The test that is reconstructed from the simulated data of another one.
     fn again(blocks: Vec<Block>) -> Vec<Block> {
         let muscle = preset("dmsp-20-250").unwrap();
         let found = simulate(&Model::new(&muscle), &[], &Protocol::new(blocks), 7).unwrap();

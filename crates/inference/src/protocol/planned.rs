@@ -7,7 +7,7 @@ use bulge_muscles::{Muscle, Quantity};
 use crate::error::InferenceError;
 use crate::protocol::bench::{Block, Path, Protocol};
 
-/// Temperature of the first row where the bench warms up \[K\].
+/// Temperature of the first row if the bench warms up \[K\].
 const COLD_K: f64 = 293.15;
 
 /// One sweep of a plan: a specimen at one pressure or at one contraction.
@@ -15,9 +15,9 @@ const COLD_K: f64 = 293.15;
 pub(crate) struct Run {
     pub(crate) block: usize,
     pub(crate) specimen: u32,
-    /// From where to where the pressure goes \[Pa\]; twice the same where it is held.
+    /// First and last pressure of a stroke \[Pa\]; equal if the pressure is held.
     pub(crate) pressure_pa: [f64; 2],
-    /// From where to where the contraction goes; twice the same where it is held.
+    /// First and last contraction of a stroke; equal if the length is held.
     pub(crate) contraction: [f64; 2],
 }
 
@@ -33,7 +33,7 @@ impl Run {
         self.contraction[0].total_cmp(&self.contraction[1]).is_eq()
     }
 
-    /// Whether this is a planned run, or what is left of it.
+    /// Whether this run is the planned one, or what is left of it.
     pub(crate) fn is_part_of(&self, planned: &Self) -> bool {
         let same = if planned.is_isometric() {
             Self { pressure_pa: planned.pressure_pa, ..*self }
@@ -45,7 +45,7 @@ impl Run {
 }
 
 impl Block {
-    /// Where in its range the muscle is, from 0 to 1, after `row` of the `rows` of a cycle.
+    /// Position of the muscle in its range, from 0 to 1, after `row` of the `rows` of a cycle.
     fn place(&self, row: u32) -> f64 {
         let phase = f64::from(row % self.rows) / f64::from(self.rows);
         match self.path {
@@ -65,13 +65,13 @@ impl Block {
 }
 
 impl Protocol {
-    /// The planned moments as a record for models: nothing is measured yet, so forces are 0. Directions, rates and cycles are those that would be read
-    /// from exact data.
+    /// The planned moments as a record for models. Nothing is measured yet, so forces are 0. Directions,
+    /// rates and cycles are those that would be read from exact data.
     ///
-    /// Nobody asks here whether the muscle can go there; [`crate::simulate`] does.
+    /// Whether the muscle can go there isn't checked here; [`crate::simulate`] does that.
     ///
     /// # Errors
-    /// If a number of the protocol is not possible; the message says what to write.
+    /// If a number of the protocol is impossible; the message says what to write.
     pub fn moments(&self, muscle: &Muscle) -> Result<Record, InferenceError> {
         self.check()?;
         Ok(Record::new(&self.planned(&self.runs())?, muscle.length().si()))
@@ -95,7 +95,7 @@ impl Protocol {
         runs
     }
 
-    /// The rows of some sweeps as exact data with forces of 0.
+    /// The rows of some sweeps as exact data, with forces of 0.
     pub(crate) fn planned(&self, runs: &[Run]) -> Result<Data, InferenceError> {
         let (mut pressure, mut contraction, mut time) = (Vec::new(), Vec::new(), Vec::new());
         let (mut sweep, mut specimen) = (Labels::default(), Labels::default());
@@ -133,7 +133,7 @@ impl Protocol {
         })
     }
 
-    /// Even in time; from row to row where there is none.
+    /// Temperatures, linear in time, or in the row number if there is no time.
     fn temperatures(&self, time: &[f64]) -> Vec<f64> {
         let rows = time.len().saturating_sub(1).max(1) as f64;
         let end = time.last().copied().unwrap_or(0.0);
@@ -153,7 +153,7 @@ mod tests {
         Protocol::new(vec![block]).moments(&preset("ppam-2-r16").unwrap()).unwrap()
     }
 
-    /// Loops have the directions and speeds of the planned motion, to the rows at the turning points.
+    /// Loops have the directions and speeds of the planned motion, up to the rows at the turning points.
     #[test]
     fn loops_move_as_planned() {
         let block = Block { cycles: 2, ..Block::loops(vec![1e5, 2e5], [0.02, 0.12], 40.0) };
@@ -170,7 +170,7 @@ mod tests {
         }
         assert!((moments[25].contraction - 0.12).abs() < 1e-15 && (moments[100].pressure - 2e5).abs() < 1e-9);
         assert!((moments[100].clock - (99.0 * 0.8 + 10.0)).abs() < 1e-9);
-        // With the part of a loop of 50 rows that is done.
+        // The cycle number includes the fraction of a loop (50 rows) that is done.
         assert!((moments[60].cycle - 1.2).abs() < 1e-9 && (moments[110].cycle - 2.2).abs() < 1e-9);
         let sine = record(Block { path: Path::Sine, ..block });
         let fastest = 0.05 * std::f64::consts::TAU / 40.0;

@@ -1,4 +1,5 @@
-//! Synthetic measurements: a model along a protocol, read with the noise, the steps and the rig errors that the protocol states.
+//! Synthetic measurements: a model along a protocol, read with the noise, resolution and rig errors that the
+//! protocol states.
 
 use bulge_measurements::Data;
 use bulge_model::{Model, ModelError, Prediction, Record, Wanted};
@@ -12,18 +13,19 @@ use crate::protocol::planned::Run;
 use crate::protocol::truth::{Ended, RigReadings, Truth, hidden};
 use bulge_numerics::Random;
 
-/// How often ranges may be ended anew.
+/// Most passes in which ranges are shortened.
 const MOST_PASSES: usize = 60;
-/// Rows of a cycle that say where a range ends.
+/// Rows of a cycle when searching for the ends of the ranges.
 const FEW_ROWS: u32 = 200;
-/// A sweep over less of the contraction is none.
+/// A sweep over less contraction than this is dropped.
 const LEAST_RANGE: f64 = 2e-3;
-/// At held length, a sweep over less than this part of its highest pressure is none.
+/// At held length, a sweep over less than this fraction of its highest pressure is dropped.
 const LEAST_PRESSURE_RANGE: f64 = 0.1;
-/// Decimals of the file: of time \[s\], pressure \[bar\], contraction \[%\], temperature \[K\] and force \[N\].
+/// Decimals in the file: time \[s\], pressure \[bar\], contraction \[%\], temperature \[K\] and force \[N\].
 const DECIMALS: [usize; 5] = [6, 7, 6, 4, 4];
 
-/// Streams of random numbers: that of the rig, and five for each sweep, so that no noise changes another.
+/// Random streams: one for the rig and five for each sweep, so that changing one noise leaves the others as
+/// they are.
 const RIG_STREAM: u64 = 0;
 const STREAMS: u64 = 8;
 const WHITE: u64 = 0;
@@ -37,37 +39,39 @@ const LENGTH: u64 = 4;
 pub struct Simulation {
     /// The data file, as text.
     pub csv: String,
-    /// The same, read.
+    /// The same data, as read from the text.
     pub data: Data,
-    /// The planned moments of its rows, without noise, with the exact force that the model says of them.
+    /// The planned moments of its rows, without noise, with the exact model force.
     pub exact: Record,
-    /// The muscle as stated, which knows nothing of hidden effects; its `[instruments]` have the noise.
+    /// The muscle as stated, without the hidden effects; its `[instruments]` have the noise.
     pub muscle: Muscle,
     /// What is hidden.
     pub truth: Truth,
 }
 
-/// The rows that a muscle can do, with the forces there.
+/// The rows that a muscle can do, with their forces.
 struct Done {
     runs: Vec<Run>,
-    /// Of a static map: whether each planned row is in it.
+    /// For a static map: whether each planned row is kept.
     kept: Vec<bool>,
     data: Data,
     record: Record,
     force: Vec<f64>,
 }
 
-/// What a bench would measure of a model with the numbers `theta` along a protocol.
+/// What a bench would measure of a model with parameters `theta` along a protocol.
 ///
 /// ```text
 /// force = F(p, eps, history; theta) (1 + g_f) + z_f + u + a + w        u per sweep, a exponentially correlated in time, w white
 /// pressure = p (1 + g_p) + z_p + w_p,    contraction = eps (1 + g_l) - (z_l + w_l)/l0        all rounded to the steps of the sensors
 /// ```
-/// p and eps are the planned ones. A sweep ends before the contractions at which the muscle would push or has no equilibrium; of a static map such rows
-/// are left out. Random numbers are counted ([`Random`]), so that a seed gives the same text whatever the number of threads.
+/// p and eps are the planned values. A sweep ends before the contractions at which the muscle would push or
+/// has no equilibrium; in a static map such rows are left out. Random numbers are counter-based ([`Random`]),
+/// so that a seed gives the same text whatever the number of threads.
 ///
 /// # Errors
-/// If the protocol is not possible, if it can't show an effect whose numbers are not fixed, or if the muscle pulls nowhere.
+/// If the protocol is impossible, if it can't show an effect whose parameters are not fixed, or if the muscle
+/// pulls nowhere.
 pub fn simulate(
     model: &Model,
     theta: &[f64],
@@ -105,11 +109,12 @@ pub fn simulate(
 }
 
 impl Protocol {
-    /// The planned moments as far as a model with the numbers `theta` pulls: sweeps end before the contractions at which it would push or has no
-    /// equilibrium, and of a static map such rows are left out. The forces of the record are those that the model says.
+    /// The planned moments as far as a model with parameters `theta` pulls. Sweeps end before the
+    /// contractions at which it would push or has no equilibrium; in a static map such rows are left out. The
+    /// forces of the record are those of the model.
     ///
     /// # Errors
-    /// If the protocol is not possible, or the muscle pulls nowhere in it.
+    /// If the protocol is impossible, or if the muscle pulls nowhere in it.
     pub fn moments_within(&self, model: &Model, theta: &[f64]) -> Result<Record, InferenceError> {
         self.check()?;
         Ok(done(model, theta, self)?.exact())
@@ -117,7 +122,8 @@ impl Protocol {
 }
 
 impl Done {
-    /// The rows with the forces of the model. Sweeps are those of the record, and as many as the forces.
+    /// The rows with the model's forces. `from_moments` can't fail here: the sweeps are the record's own, and
+    /// there is one force per row.
     fn exact(self) -> Record {
         let (moments, sweeps) = (self.record.moments().to_vec(), self.record.sweeps().to_vec());
         Record::from_moments(moments, self.force, sweeps).unwrap_or(self.record)
@@ -128,13 +134,14 @@ impl Done {
 fn done(model: &Model, theta: &[f64], protocol: &Protocol) -> Result<Done, InferenceError> {
     let mut runs = protocol.runs();
     if !protocol.is_static() {
-        // A search for an equilibrium that isn't there takes long: few rows say where the ranges end.
+        // A search for an equilibrium that doesn't exist takes long, so few rows find the ends of the ranges
+        // first.
         runs = pulled(model, theta, &thinned(protocol), runs)?.runs;
     }
     pulled(model, theta, protocol, runs)
 }
 
-/// One cycle of few rows in the same time.
+/// The protocol with one cycle of fewer rows in the same time.
 fn thinned(protocol: &Protocol) -> Protocol {
     let thin = |block: &Block| {
         let least = if let Path::Stairs { steps, .. } = block.path { 4 * steps } else { 0 };
@@ -143,7 +150,7 @@ fn thinned(protocol: &Protocol) -> Protocol {
     Protocol { blocks: protocol.blocks.iter().map(thin).collect(), ..protocol.clone() }
 }
 
-/// Ends ranges, or leaves rows out, until the muscle pulls everywhere.
+/// Shortens ranges, or leaves rows out, until the muscle pulls everywhere.
 fn pulled(
     model: &Model,
     theta: &[f64],
@@ -166,6 +173,7 @@ fn pulled(
             }
         }
         let record = Record::new(&data, l0);
+        // Rows without equilibrium, or in which the muscle would push.
         let bad: Vec<usize> = match model.evaluate(&record, theta, &Wanted::default()) {
             Ok(Prediction { force, .. }) => {
                 let bad: Vec<usize> = (0..force.len()).filter(|row| force[*row] <= 0.0).collect();
@@ -185,6 +193,7 @@ fn pulled(
                 rows
             }
         };
+        // A static map can drop single rows; the runs of a path are shortened instead.
         if protocol.is_static() {
             let places: Vec<usize> = (0..kept.len()).filter(|row| kept[*row]).collect();
             for row in bad {
@@ -203,7 +212,7 @@ fn pulled(
     })
 }
 
-/// The sweeps ended before their bad rows; without those that have nothing left.
+/// The sweeps, shortened to end before their bad rows; sweeps with nothing left are dropped.
 fn shortened(runs: &[Run], record: &Record, bad: &[usize]) -> Vec<Run> {
     let mut is_bad = vec![false; record.len()];
     for row in bad {
@@ -213,7 +222,8 @@ fn shortened(runs: &[Run], record: &Record, bad: &[usize]) -> Vec<Run> {
         if !rows.clone().any(|row| is_bad[row]) {
             return Some(*run);
         }
-        // A muscle pushes where it is too short, or at held length where the pressure is too low: in what follows, beyond the smallest bad value.
+        // A muscle pushes where it is too short or, at held length, where the pressure is too low: beyond the
+        // smallest bad value of the coordinate below.
         let value = |row: usize| {
             let moment = &record.moments()[row];
             if run.is_isometric() { -moment.pressure } else { moment.contraction }
@@ -232,7 +242,7 @@ fn shortened(runs: &[Run], record: &Record, bad: &[usize]) -> Vec<Run> {
     runs.iter().zip(record.sweeps()).filter_map(one).collect()
 }
 
-/// The draws of the sensors' errors.
+/// Draws the errors of the sensors.
 fn rig(muscle: &Muscle, protocol: &Protocol, seed: u64) -> Result<RigReadings, InferenceError> {
     if protocol.rig == RigErrors::None {
         return Ok(RigReadings::default());
@@ -257,12 +267,12 @@ fn rig(muscle: &Muscle, protocol: &Protocol, seed: u64) -> Result<RigReadings, I
     })
 }
 
-/// Everything that makes readings of forces.
+/// Turns forces into readings.
 struct Readings<'a> {
     protocol: &'a Protocol,
     done: &'a Done,
     rig: RigReadings,
-    /// Of the specimens, and their lengths \[m\].
+    /// Names of the specimens, and their lengths \[m\].
     names: Vec<&'a str>,
     lengths: Vec<f64>,
     seed: u64,
@@ -307,7 +317,7 @@ impl Readings<'_> {
         Random::new(self.seed, STREAMS * (sweep as u64 + 1) + kind)
     }
 
-    /// What the pressure and length sensors read, with standard normal noise.
+    /// Readings of the pressure and length sensors, with standard normal noise.
     fn inputs(&self, row: usize, noise: [f64; 2]) -> [f64; 2] {
         let Protocol { noise: sd, steps, .. } = self.protocol;
         let moment = &self.done.record.moments()[row];
@@ -321,7 +331,7 @@ impl Readings<'_> {
         [stepped(pressure, steps.pressure_pa), stepped(way, steps.length_m) / l0]
     }
 
-    /// What the load cell reads in one sweep.
+    /// Readings of the load cell in one sweep.
     fn forces(&self, number: usize, sweep: &std::ops::Range<usize>) -> Vec<f64> {
         let sd = &self.protocol.noise;
         let [mut white, mut correlated, mut offset] =
@@ -331,7 +341,7 @@ impl Readings<'_> {
         let reading = |row: usize| {
             let since = self.done.record.moments()[row].since;
             if row > sweep.start && sd.correlated_n > 0.0 {
-                // Exact for any times between the rows.
+                // Exact for any time step between the rows.
                 let kept = (-since / sd.correlation_time_s).exp();
                 drift = kept * drift + sd.correlated_n * (1.0 - kept * kept).sqrt() * correlated.normal();
             }
@@ -346,23 +356,23 @@ impl Readings<'_> {
     }
 }
 
-/// To the nearest step.
+/// Rounds to the nearest step.
 fn stepped(value: f64, step: f64) -> f64 {
     if step > 0.0 { (value / step).round() * step } else { value }
 }
 
-/// A number with so many decimals at most: the last bits, in which machines may differ, are not written.
+/// A number with at most `decimals` decimals. The last bits, in which machines may differ, are not written.
 fn decimal(value: f64, decimals: usize) -> String {
     let text = format!("{value:.decimals$}");
     let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
     if text == "-0" { "0".to_owned() } else { text.to_owned() }
 }
 
-/// What of the plan is not in the data, each pressure (or held length) and range once.
+/// The parts of the plan that are not in the data, each pressure (or held length) and range once.
 fn ended(protocol: &Protocol, done: &Done) -> Vec<Ended> {
     let mut found: Vec<Ended> = Vec::new();
     let mut add = |run: &Run, reached: Option<[[f64; 2]; 2]>, count: usize| {
-        // Twelve digits hide the rounding of the grid.
+        // Twelve digits hide the rounding errors of the grid.
         let reached = reached.map(|ranges| ranges.map(|range| range.map(|value| units::rounded(value, 12))));
         let [pressures, contractions] = reached.map_or([None; 2], |ranges| ranges.map(Some));
         let ended = Ended {
@@ -395,7 +405,7 @@ fn ended(protocol: &Protocol, done: &Done) -> Vec<Ended> {
     }
     let mut left = done.runs.iter().peekable();
     for run in &planned {
-        // Both lists are in the same order, one without the sweeps that have nothing left.
+        // Both lists are in the same order; the second one lacks the sweeps with nothing left.
         match left.next_if(|other| other.is_part_of(run)) {
             Some(other) if other == run => {}
             other => add(run, other.map(|other| [other.pressure_pa, other.contraction]), 1),
@@ -404,7 +414,7 @@ fn ended(protocol: &Protocol, done: &Done) -> Vec<Ended> {
     found
 }
 
-/// The muscle with the noise of one reading in its `[instruments]`, where the protocol states one:
+/// The muscle with the noise of one reading in its `[instruments]`, if the protocol states one:
 ///
 /// ```text
 /// sd^2 = white^2 + correlated^2 + step^2/12
@@ -416,7 +426,7 @@ fn stated(muscle: &Muscle, protocol: &Protocol) -> Muscle {
         let sd = (white * white + correlated * correlated + step * step / 12.0).sqrt();
         let (zero, gain) = known.map_or((0.0, None), |known| (known.zero(), Some(known.gain())));
         let gain = gain.unwrap_or(Ratio::one(0.0));
-        // Four digits: what is read in a file should not pretend to be exact.
+        // Four digits: a number in a file should not pretend to be exact.
         let sd = units::rounded(sd, 4);
         if sd > 0.0 { Instrument::new(sd, zero, gain).ok() } else { known }
     };

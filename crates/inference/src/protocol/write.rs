@@ -5,7 +5,7 @@ use std::fmt::Write;
 
 use crate::protocol::bench::{Block, Path, Protocol, RigErrors};
 
-/// Digits of which a number is known to be meant: 7 % and not 7.000000000000001 %.
+/// Digits to which numbers are written: 7 % and not 7.000000000000001 %.
 const DIGITS: i32 = 12;
 /// Units in which numbers are written, with their size in SI.
 const BAR: (&str, f64) = (" bar", 1e5);
@@ -16,7 +16,7 @@ const METRE: (&str, f64) = (" m", 1.0);
 const SECOND: (&str, f64) = (" s", 1.0);
 
 impl Protocol {
-    /// The protocol as the text of a file, which [`Protocol::from_toml`] reads as the same protocol, to 12 digits.
+    /// The protocol as the text of a file. [`Protocol::from_toml`] reads the same protocol back, to 12 digits.
     ///
     /// ```
     /// use bulge_inference::{Block, Protocol};
@@ -102,7 +102,7 @@ impl Block {
     }
 }
 
-/// A table of those numbers that are not 0.
+/// A table of the numbers that are not 0.
 fn table(out: &mut String, name: &str, numbers: &[(&str, f64, (&str, f64))]) {
     let mut stated = numbers.iter().filter(|(_, value, _)| *value != 0.0).peekable();
     if stated.peek().is_some() {
@@ -115,7 +115,7 @@ fn table(out: &mut String, name: &str, numbers: &[(&str, f64, (&str, f64))]) {
 
 fn line(out: &mut String, key: &str, value: f64, unit: (&str, f64)) {
     let value = text(value, unit);
-    // A number without a unit is one in TOML.
+    // A number without a unit stays a TOML number.
     let _ = if unit.0.is_empty() {
         writeln!(out, "{key} = {value}")
     } else {
@@ -123,7 +123,7 @@ fn line(out: &mut String, key: &str, value: f64, unit: (&str, f64)) {
     };
 }
 
-/// A number in a unit, without the digits that rounding has left.
+/// A number in a unit, without digits left by rounding.
 fn text(value: f64, (unit, size): (&str, f64)) -> String {
     let text = significant(value / size, DIGITS);
     let shortest = text.parse::<f64>().map_or(text, |number| format!("{number}"));
@@ -192,7 +192,7 @@ mod tests {
                 (shape, block.cycles, block.rows, block.repeats, block.specimens, p.rig, p.noise.tails)
             });
             assert_eq!(a, b, "{text}");
-            // And as JSON, which reads the last digit of a number as it likes.
+            // JSON is compared too; its parser may change the last digit of a number.
             let json = serde_json::to_string(&protocol).unwrap();
             let read: Protocol = serde_json::from_str(&json).unwrap();
             assert!(near(&numbers(&protocol), &numbers(&read)), "{json}");

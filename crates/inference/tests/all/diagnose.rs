@@ -1,4 +1,5 @@
-//! Diagnosis of simulated measurements: the hidden effect is named, nothing is named where nothing is hidden, and too few rows name nothing.
+//! Diagnosis of simulated measurements: the hidden effect is named, and nothing is named if nothing is hidden
+//! or if there are too few rows.
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
@@ -82,7 +83,7 @@ fn the_hidden_effect_is_named_with_its_number() {
         if first.effect == effect {
             let number = &first.parameters[key];
             let value = values[0] / unit;
-            // A 95 % interval: twice its width holds the truth in all but one of 10^4 runs.
+            // Twice the width of a 95 % interval contains the truth in all but one of 10^4 runs.
             let slack = 0.5 * (number.high - number.low);
             assert!(
                 number.low - slack < value && value < number.high + slack,
@@ -105,7 +106,7 @@ fn where_nothing_is_hidden_nothing_is_named() {
         }
         told += usize::from(found.noise.correlated == (correlated > 0.0));
     }
-    // At 5 % false alarms, three of 12 have a chance of 2 %.
+    // At 5 % false alarms, three of 12 have a probability of 2 %.
     assert!(named.len() <= 2, "{named:#?}");
     assert!(told >= 10, "{told} of 12 laws are right about correlation");
 }
@@ -119,7 +120,7 @@ fn two_effects_are_both_named() {
         let is_in = found.missing.iter().any(|missing| missing.class.iter().any(|name| name == effect));
         assert!(is_in, "{effect}: {:?}", names(&found));
     }
-    // And with them the model is adequate: the next diagnosis starts from there.
+    // With them the model is adequate: the next diagnosis starts from there.
     let catalogue = Catalogue::builtin();
     let effects =
         names(&found).iter().map(|name| std::sync::Arc::clone(catalogue.find(name).unwrap())).collect();
@@ -129,7 +130,8 @@ fn two_effects_are_both_named() {
     assert_eq!(again.verdict, Verdict::Adequate, "{}", again.says);
 }
 
-/// Friction of 200 sigma, and creep that explains half a per cent of what friction does: less than an error of the formula of friction might, but no error of it.
+/// Friction of 200 sigma, and creep that explains half a per cent of what friction does. An error of the
+/// friction formula might explain more, but this misfit isn't one.
 #[test]
 fn a_weak_effect_beside_a_strong_one_is_named_where_nothing_remains() {
     let hidden: [(&str, &[f64]); 2] = [("coulomb-friction", &[8.0]), ("creep", &[1.0])];
@@ -203,7 +205,7 @@ fn a_tolerance_is_what_matters() {
     let loose = with(Some(20.0));
     assert_eq!(loose.verdict, Verdict::Adequate, "{}", loose.says);
     assert!(loose.missing.is_empty() && loose.says.contains("20"), "{}", loose.says);
-    // Where nothing is named, no name stands anywhere as if it were.
+    // If nothing is named, no part of the document shows a name as if it were.
     assert!(loose.ladder.len() == 1 && loose.ladder[0].adequate && loose.explained.is_empty());
     assert!(!loose.remaining.structured && loose.next_experiment.is_none());
     assert!(loose.candidates.iter().all(|candidate| candidate.status != "confirmed"));
@@ -215,7 +217,7 @@ fn a_wrong_unit_is_no_physics() {
     let folder = std::env::temp_dir().join(format!("bulge-unit-{}", std::process::id()));
     std::fs::create_dir_all(&folder).unwrap();
     let path = folder.join("data.csv");
-    // Bar written into a column of psi.
+    // Pressures in bar under a heading in psi.
     let mut text = String::from("pressure [psi],contraction [%],force [N]\n");
     let contraction = exact.contraction(0.25);
     for (row, contraction) in contraction.iter().enumerate() {
@@ -243,8 +245,9 @@ fn cylinder(pressure: f64, e: f64) -> f64 {
         * (3.0 * (1.0 - e).powi(2) / angle.tan().powi(2) - angle.sin().powi(-2))
 }
 
-/// Triangles of 50 rows at four pressures in one recording that runs on, with noise of 2 N; `friction` is lost by direction and pressure, and `other` gives rows at
-/// turning points the direction of the next branch.
+/// Triangles of 50 rows at four pressures in one continuous recording, with noise of 2 N. `friction` is
+/// subtracted by direction and pressure, and `other` gives rows at turning points the direction of the next
+/// branch.
 fn recorded(friction: impl Fn(f64, f64) -> f64, other: bool, seed: u64) -> Columns {
     let mut random = bulge_inference::Random::new(seed, 0);
     let (mut p, mut c, mut f) = (Vec::new(), Vec::new(), Vec::new());
@@ -272,7 +275,8 @@ fn found(columns: Columns) -> Diagnosis {
     diagnose(&Data::from_columns(columns).unwrap(), &muscle, &DiagnoseOptions::new(base)).unwrap()
 }
 
-/// One loop of 21 contractions at each of four pressures, so that each point of a drawn curve is one row; `spring` is lost \[N\], with noise of 2 N.
+/// One loop of 21 contractions at each of four pressures, so that each point of a drawn curve is one row.
+/// `spring` is subtracted \[N\], with noise of 2 N.
 fn sprung(spring: impl Fn(f64) -> f64) -> Columns {
     let mut random = bulge_inference::Random::new(11, 0);
     let (mut p, mut c, mut f) = (Vec::new(), Vec::new(), Vec::new());
@@ -299,7 +303,8 @@ fn a_bent_effect_has_two_rungs_and_the_second_is_what_its_form_leaves() {
     assert_eq!(steps, [(None, false), (spring, false), (spring, true)]);
     assert_eq!(ladder[2].held_out_rmse_n, None);
     assert!(ladder[2].adequate && !ladder[1].adequate && ladder[1].held_out_rmse_n.is_some());
-    // y - F - B c by hand: the closed form, the spring at its number, and what the drawing adds to it.
+    // y - F - B c by hand: the closed form, the spring at its fitted stiffness, and the form error of the
+    // curves.
     let stiffness = &diagnosis.missing[0].parameters["stiffness"];
     assert_eq!(stiffness.unit, "N");
     let Trace::Contraction(contraction) = &columns.motion else { panic!("{:?}", columns.motion) };
@@ -324,12 +329,13 @@ fn a_bent_effect_has_two_rungs_and_the_second_is_what_its_form_leaves() {
     let rmse = ((0..rows).map(|row| left(row).powi(2)).sum::<f64>() / rows as f64).sqrt();
     assert!((ladder[2].rmse_n / rmse - 1.0).abs() < 1e-9, "{} {rmse}", ladder[2].rmse_n);
     assert!(rmse < 0.8 * ladder[1].rmse_n && rmse < 2.2, "{ladder:?}");
-    // What the formula explains as it is, by the squares of the rungs (nearly white noise, nothing left).
+    // The fraction that the formula explains without form error, from the squares of the rungs (nearly white
+    // noise, nothing left).
     let squares = [0, 1, 2].map(|rung| ladder[rung].rmse_n.powi(2));
     let part = (squares[0] - squares[1]) / (squares[0] - squares[2]);
     let by_formulas = diagnosis.remaining.by_formulas.unwrap();
     assert!((by_formulas - part).abs() < 0.005 && part < 0.999, "{by_formulas} {part}");
-    // Of a formula that holds there is one rung.
+    // An effect whose formula holds has one rung.
     let exact = found(sprung(|e| 500.0 * e));
     assert_eq!(names(&exact), ["bladder-axial"], "{}", exact.says);
     assert!(exact.ladder.len() == 2 && exact.ladder[1].adequate, "{:?}", exact.ladder);
@@ -389,7 +395,8 @@ fn spikes_and_heavy_tails_are_no_physics() {
 
 #[test]
 fn slow_noise_far_beyond_the_data_sheet_is_not_adequate() {
-    // Readings that share 9 N with their neighbours, where the data sheet of the load cell says 2.0 N: something moves that nobody stated. 3 N may be as well.
+    // Readings share 9 N with their neighbours, while the data sheet of the load cell says 2.0 N: something
+    // unstated varies. 3 N may be noise.
     let verdict = |correlated_n| diagnosed(&measured(&[], &protocol(2.0, correlated_n), 5));
     let (usual, far) = (verdict(3.0), verdict(9.0));
     assert_eq!(
@@ -433,7 +440,8 @@ fn units_that_cannot_be_true_are_asked_about() {
         let scaled = move |columns: &mut Columns| columns.force_n.iter_mut().for_each(|f| *f *= factor);
         assert_eq!(asked(&scaled), [kind], "{factor}");
     }
-    // A muscle that is merely wrong is shown, with a warning: that needs 0.369 of its force, or would push at some rows.
+    // A muscle that is merely wrong is shown with a warning: it needs 0.369 of its force, or would push at
+    // some rows.
     let mut weak = recorded(|_, _| 0.0, false, 7);
     weak.force_n.iter_mut().for_each(|f| *f *= 0.369);
     let diagnosis = found(weak);
@@ -444,7 +452,8 @@ fn units_that_cannot_be_true_are_asked_about() {
     assert!(!diagnosis.ladder.is_empty());
 }
 
-/// The noise of a reading within 20 % of the truth, whether something is hidden or not, in short tests and in long ones of many cycles.
+/// The estimated noise of a reading is within 20 % of the truth, whether something is hidden or not, in short
+/// tests and in long ones of many cycles.
 #[test]
 fn more_rows_and_cycles_never_hurt_the_law_of_the_noise() {
     let rubber: (&str, &[f64]) = ("bladder-elasticity", &[2e5]);
@@ -496,7 +505,8 @@ fn end_taper_of(lengths: &[u32]) -> Diagnosis {
 
 #[test]
 fn end_effects_show_in_several_lengths() {
-    // The nearest rival is nearer than by the square root of the number of rows: a factor of force suits one length, and none suits three.
+    // The separation of the nearest rival grows by more than the square root of the number of rows: a force
+    // gain fits one length, but none fits three.
     let separation = |lengths: &[u32]| {
         let diagnosis = end_taper_of(lengths);
         assert_eq!(names(&diagnosis), ["end-taper"], "{lengths:?}");
@@ -508,8 +518,9 @@ fn end_effects_show_in_several_lengths() {
     assert!(three > 2.0 * one, "{three} sigma with three lengths, {one} with one");
 }
 
-/// One run: the length goes to and fro while the pressure climbs. The force has the muscle's own number, `ripple` \[N\] over the contraction in either direction, and noise of `noise`
-/// newtons, most of it the moving average of 23 rows with a triangle's weights: no process that forgets exponentially.
+/// One run in which the length goes to and fro while the pressure climbs. The force contains a modified
+/// radius, a `ripple` \[N\] over the contraction in either direction, and noise of `noise` newtons. Most of
+/// the noise is a moving average of 23 rows with triangular weights, which isn't exponentially correlated.
 fn ramp_while_moving(noise: f64, ripple: f64, seed: u64) -> Data {
     let rows = 600_usize;
     let phase = |i: usize| i as f64 / 60.0;
@@ -541,7 +552,7 @@ fn slow_noise_of_one_run_is_no_structure_and_structure_no_slow_noise() {
     let claimed: Vec<u64> = (0..16)
         .filter(|seed| diagnosed(&ramp_while_moving(2.0, 0.0, *seed)).verdict != Verdict::Adequate)
         .collect();
-    // Of the first 32 it is five.
+    // Five of the first 32 are.
     assert!(claimed.len() <= 3, "{claimed:?}");
     let found = diagnosed(&ramp_while_moving(2.0, 8.0, 1));
     assert_eq!(found.verdict, Verdict::Unknown, "{}", found.says);
@@ -549,7 +560,7 @@ fn slow_noise_of_one_run_is_no_structure_and_structure_no_slow_noise() {
 
 #[test]
 fn more_rows_do_not_make_the_noise_larger() {
-    // Friction with presliding, viscous damping and an offset; 1.2 N of noise.
+    // Friction with presliding, viscous damping and an offset, with noise of 1.2 N.
     let effects: [(&str, &[f64]); 3] =
         [("presliding-hysteresis", &[12.0, 0.01]), ("viscous-damping", &[800.0]), ("force-offset", &[8.0])];
     for (cycles, rows) in [(1, 25), (5, 50), (40, 25)] {
@@ -570,7 +581,8 @@ fn more_rows_do_not_make_the_noise_larger() {
     }
 }
 
-/// Fillings and ventings at four held lengths, with stops of three sizes in the pressure for a hysteresis: formulas of no effect of the catalogue.
+/// Fillings and ventings at four held lengths, with three stop operators in the pressure as hysteresis:
+/// formulas that no effect of the catalogue has.
 fn held_lengths() -> Columns {
     let mut random = Random::new(77, 0);
     let [mut p, mut e, mut f, mut t] = [const { Vec::new() }; 4];
@@ -602,7 +614,8 @@ fn held_lengths() -> Columns {
     columns
 }
 
-/// Loops of the braid with other numbers than its file states, and the file as a catalogue has it: without widths, with changes.
+/// Loops of the braid with other numbers than its file states, and the file as a catalogue gives it: without
+/// widths, with changes.
 fn of_catalogue(truth: &str, effects: &[(&str, &[f64])], changes: &[(&str, &str)]) -> Diagnosis {
     let catalogue = Catalogue::builtin();
     let mut model = Model::new(&from_toml(truth, "truth.toml").unwrap());
@@ -627,7 +640,7 @@ fn a_radius_that_is_off_is_no_effect_of_the_material() {
     let radius = geometry.doubtful.iter().find(|number| number.number == "radius").unwrap();
     assert!(radius.by_default && (radius.width - 0.3).abs() < 1e-12, "{radius:?}");
     let moved = radius.found.as_ref().unwrap();
-    // To a hundredth: an equation that is off by 1 % in the force is off by half of that here.
+    // To a hundredth: an equation with an error of 1 % in the force gives half of that here.
     assert!((moved.value - 10.7).abs() < 0.1 && moved.sd.unwrap() < 0.1, "{moved:?}");
     assert!((moved.widths - (moved.value - 10.0) / 0.3).abs() < 1e-9);
     assert!(geometry.as_stated_rmse_n.unwrap() > 10.0 * found.noise.sd_n, "{geometry:?}");
@@ -636,7 +649,7 @@ fn a_radius_that_is_off_is_no_effect_of_the_material() {
         "{}",
         geometry.says
     );
-    // With a radius that is exact another answer comes out, and the sentence says so.
+    // With an exact radius the answer is another one, and the sentence says so.
     let exact = geometry.if_exact.as_ref().unwrap();
     assert!(exact.differs && geometry.says.contains("were they exact"), "{geometry:?}");
     let stated = of_catalogue(
@@ -673,7 +686,7 @@ fn rubber_is_found_where_no_wall_is_stated() {
     let [missing] = &found.missing[..] else { panic!("{}", found.says) };
     assert!(missing.effect == "bladder-elasticity", "{}", found.says);
     let modulus = &missing.parameters["modulus"];
-    // 0.3 MPa in 1.8 mm are 540 N/m: in the wall of 1 mm that was assumed, 0.54 MPa.
+    // 0.3 MPa in 1.8 mm is 540 N/m; in the assumed wall of 1 mm, that is 0.54 MPa.
     assert!((found.geometry.assumed[0].value - 1.0).abs() < 1e-12);
     assert!((modulus.value / 0.54 - 1.0).abs() < 0.05, "{modulus:?}");
     assert!(

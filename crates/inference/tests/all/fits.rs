@@ -1,4 +1,5 @@
-//! Fits on simulated data with a known truth: numbers come back within their intervals, and what can't be known is said to be so.
+//! Fits of simulated data with a known truth: parameters are recovered within their intervals, and
+//! undetermined ones are reported.
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
@@ -149,7 +150,7 @@ fn a_wrong_cure_is_flagged() {
 
 #[test]
 fn what_the_data_do_not_tell_is_said() {
-    // Gains of pressure and force are the same on a cylinder without rubber.
+    // On a cylinder without rubber, gains of pressure and force are the same.
     let muscle = muscle(BRAIDED);
     let data = measured(&muscle, &[("force-gain", &[0.05])], 2.0, 3);
     let found = fitted(&data, &muscle, &["force-gain", "pressure-gain"]);
@@ -182,7 +183,8 @@ fn what_the_data_do_not_tell_is_said() {
 
 #[test]
 fn a_profile_of_a_line_is_its_covariance() {
-    // The force is linear in an offset. An implausible one gets a profile, which is the same but for what the prior has to say.
+    // The force is linear in an offset. An implausible one gets a profile, which differs from the covariance
+    // only through the prior.
     let muscle = muscle(&PLEATED.replace("trial", "offset"));
     let catalogue = Catalogue::builtin();
     let offset = catalogue.find("force-offset").unwrap();
@@ -228,7 +230,8 @@ fn the_extended_muscle_predicts_what_was_fitted() {
         let known = known(&back, &Catalogue::builtin()).unwrap();
         let next = compare(&data, &back, &Options { known, ..options(&[]) }).unwrap();
         let (fitted, start) = (found.rmse_n, next.ladder[0].rmse_n);
-        // Numbers are rounded to a thousandth of their standard deviation, and beside another base one reading of four deviations more or less may count as a spike.
+        // Parameters are rounded to a thousandth of their standard deviation. With another base, one reading
+        // at four deviations more or less may count as a spike.
         assert!((start / fitted - 1.0).abs() < 3e-3, "{names:?}: {start} after {fitted}");
         assert_eq!(extension.written, names);
     }
@@ -258,7 +261,8 @@ fn an_effect_that_follows_the_noise_does_not_lower_the_held_out_error() {
     assert!((floor.sd_n / 3.0 - 1.0).abs() < 0.15, "{floor:?}");
 }
 
-/// Three lengths of one hose, each simulated as a muscle of its own: zeros of length \[m\] and force \[N\] of each mounting.
+/// Three lengths of one hose, each simulated as a muscle of its own, with the zeros of length \[m\] and force
+/// \[N\] of each mounting.
 const HOSES: [(&str, f64, f64, f64); 3] =
     [("short", 0.06, 3e-4, 1.5), ("middle", 0.12, -4e-4, -2.0), ("long", 0.25, 2e-4, 0.5)];
 
@@ -273,7 +277,7 @@ fn hose(ends: &str) -> Muscle {
     muscle(&text)
 }
 
-/// Lengths and forces of the hoses, clamped, with rubber of 0.2 MPa.
+/// Lengths and forces of the clamped hoses, with rubber of 0.2 MPa.
 fn of_hoses(which: &[&str], ends: &str, sd: f64) -> Data {
     let stated = hose(ends);
     let mut csv = String::from("time [s],sweep,specimen,pressure [Pa],length [m],force [N]\n");
@@ -323,7 +327,7 @@ fn three_lengths_share_their_rubber_and_have_zeros_of_their_own() {
             assert!(p.nuisance && (p.value - truth).abs() < 3.5 * sd, "{name} {effect}: {truth} {p:?}");
         }
     }
-    // What is learnt keeps the specimens.
+    // The learnt muscle keeps the specimens.
     let extension = extended(&found.model, &found.fit).unwrap();
     assert_eq!(extension.muscle.specimens(), muscle.specimens());
     let back = from_toml(&to_toml(&extension.muscle), "learnt.toml").unwrap();
@@ -354,7 +358,7 @@ fn specimens_of_the_muscle_and_of_the_data_must_be_the_same() {
     assert!(message.contains("of the 20.0 mm of the specimen `short` of trial"), "{message}");
 }
 
-/// Options of a fit with statements about its numbers: `hold x=v`, `bound x=a..b`, `tie x=y`.
+/// Options of a fit with restrictions of its parameters: `hold x=v`, `bound x=a..b`, `tie x=y`.
 fn restricted(muscle: &Muscle, names: &[&str], statements: &[&str]) -> Options {
     statements.iter().fold(options(names), |options, statement| {
         let (how, text) = statement.split_once(' ').unwrap();
@@ -367,7 +371,8 @@ fn restricted(muscle: &Muscle, names: &[&str], statements: &[&str]) -> Options {
     })
 }
 
-/// What is held stays, and the others are fitted as to data from which it has been taken.
+/// A held parameter stays, and the others are fitted as if its contribution had been subtracted from the
+/// data.
 #[test]
 fn a_held_number_is_taken_off_the_data() {
     let muscle = muscle(PLEATED);
@@ -376,7 +381,8 @@ fn a_held_number_is_taken_off_the_data() {
     let names = ["coulomb-friction", "force-offset"];
     let held = restricted(&muscle, &names, &["hold force-offset.offset=2 N"]);
     let found = fit_effects(&data, &muscle, &held).unwrap();
-    // Friction is odd and about as often there as back: an offset that is 3 N wrong hardly moves it, and leaves 3 N.
+    // Friction is odd and about equally frequent in both directions: an offset with an error of 3 N hardly
+    // changes it, and leaves 3 N.
     let [friction] = found.fit.parameters.as_slice() else { panic!("{:?}", found.fit.parameters) };
     assert!((friction.value - 12.0).abs() < 0.2 && (found.rmse_n - 3.0).abs() < 0.02, "{found:?}");
     let [offset] = found.held.as_slice() else { panic!("{:?}", found.held) };
@@ -384,10 +390,10 @@ fn a_held_number_is_taken_off_the_data() {
         (offset.effect.as_str(), offset.how, offset.value.to_bits()),
         ("force-offset", "held", 2.0_f64.to_bits())
     );
-    // The learnt muscle states it like what was fitted, without a width.
+    // The learnt muscle states the held parameter like the fitted ones, but without a width.
     let text = to_toml(&extended(&found.model, &found.fit).unwrap().muscle);
     assert!(text.contains("offset = \"2 N\""), "{text}");
-    // With all held nothing is fitted, and the ladder says so.
+    // If all parameters are held, nothing is fitted, and the ladder says so.
     let all = restricted(&muscle, &names, &["hold force-offset=2 N", "hold coulomb-friction=10 N"]);
     let comparison = compare(&data, &muscle, &all).unwrap();
     let last = &comparison.ladder[2];
@@ -408,7 +414,8 @@ fn a_bounded_number_stays_within_and_a_tied_one_follows() {
     assert!((friction.value - 9.0).abs() < 1e-6 && friction.at_bound == Some("upper"), "{friction:?}");
     let found = fitted("bound coulomb-friction.force=4..20 N");
     assert!((found.fit.parameters[0].value - 12.0).abs() < 0.02, "{:?}", found.fit.parameters);
-    // Of b (1 +- 1) the best is (12 + 6)/2 where both branches weigh the same: (12 - b)^2 + (6 - b)^2 is least.
+    // The best b (1 +- 1) is (12 + 6)/2 if both branches have the same weight: it minimises (12 - b)^2 + (6 -
+    // b)^2.
     let found = fitted("tie coulomb-friction.force=force-offset.offset");
     let [offset] = found.fit.parameters.as_slice() else { panic!("{:?}", found.fit.parameters) };
     assert!((offset.value - 9.0).abs() < 0.02 && (found.rmse_n - 18.0_f64.sqrt()).abs() < 0.02, "{offset:?}");
@@ -421,7 +428,8 @@ fn a_bounded_number_stays_within_and_a_tied_one_follows() {
     assert_eq!(value("coulomb-friction"), value("force-offset"));
 }
 
-/// What is stated of a number that isn't fitted is refused where it is asked, and passed over where effects come and go.
+/// Restrictions of parameters that aren't fitted are refused by the check, and ignored by a comparison in
+/// which effects come and go.
 #[test]
 fn statements_about_other_numbers_are_refused() {
     let muscle = muscle(PLEATED);
@@ -440,7 +448,7 @@ fn statements_about_other_numbers_are_refused() {
     assert!((found.ladder[1].rmse_n - 5.0_f64.sqrt()).abs() < 0.2, "{}", found.ladder[1].rmse_n);
 }
 
-/// A muscle that has learnt friction and an offset from loops, by its file; and that file.
+/// A muscle that has learnt friction and an offset from loops, read from its file; and that file.
 fn learnt_muscle(seed: u64) -> (Muscle, String) {
     let truth: &[(&str, &[f64])] = &[("coulomb-friction", &[12.0]), ("force-offset", &[5.0])];
     let plain = muscle(PLEATED);
@@ -450,7 +458,8 @@ fn learnt_muscle(seed: u64) -> (Muscle, String) {
     (muscle(&text), text)
 }
 
-/// Intervals are made of the covariance that the learnt file holds: of friction and an offset it can be written down.
+/// Intervals follow from the covariance in the learnt file, which has a closed form for friction and an
+/// offset.
 #[test]
 fn intervals_of_new_rows_are_those_of_the_numbers_and_of_a_reading() {
     let (learnt, text) = learnt_muscle(1);
@@ -482,7 +491,7 @@ fn intervals_of_new_rows_are_those_of_the_numbers_and_of_a_reading() {
     assert!(found.warnings.is_empty() && found.without_state.is_none(), "{found:?}");
     assert_eq!(found.uncertain[0].from, "fitted");
     assert!((found.uncertain[0].moves_n / friction - 1.0).abs() < 1e-9, "{:?}", found.uncertain);
-    // What was predicted is what a comparison of the learnt muscle says.
+    // The prediction equals that of a comparison of the learnt muscle.
     let base = Options { known: known_of(&learnt), ..options(&[]) };
     let compared = compare(&data, &learnt, &base).unwrap();
     assert!((compared.ladder[0].rmse_n / against.rmse_n - 1.0).abs() < 1e-9);
@@ -492,7 +501,8 @@ fn known_of(muscle: &Muscle) -> Vec<bulge_effects::Known> {
     known(muscle, &Catalogue::builtin()).unwrap()
 }
 
-/// Numbers that went into the muscle's own (a bladder's modulus) are in doubt as well, and a width that is stated.
+/// Fitted parameters among the muscle's own numbers (a bladder's modulus) and stated widths are uncertain as
+/// well.
 #[test]
 fn shape_and_stated_widths_widen_the_intervals() {
     let plain = muscle(BRAIDED);
@@ -522,7 +532,8 @@ fn shape_and_stated_widths_widen_the_intervals() {
     assert!((wider.columns.sd_n[7].powi(2) - sd * sd - 9.0).abs() < 1e-6, "{}", wider.columns.sd_n[7]);
 }
 
-/// A muscle that was never fitted, with the noise of its load cell: the interval is that of the normal distribution, and the search for it ends.
+/// A muscle that was never fitted, with the noise of its load cell: the interval is that of the normal
+/// distribution, and the search for the quantile ends.
 #[test]
 fn a_stated_muscle_has_the_intervals_of_its_instruments() {
     let plain = muscle(BRAIDED);
@@ -553,14 +564,14 @@ fn a_prediction_says_what_it_lacks() {
     let left = found.without_state.as_ref().unwrap();
     assert!(left.lines.contains('5') && found.columns.force_n[3].is_nan(), "{left:?}");
     assert!(found.columns.high_n[3].is_nan() && found.columns.high_n[1] > found.columns.force_n[1]);
-    // A muscle of which no fit knows anything has no intervals, and says so.
+    // A muscle without fit or noise has no intervals, and a warning says so.
     let plain = predict(&data, &muscle(PLEATED), &Catalogue::builtin(), &[]).unwrap();
     assert!(
         plain.columns.high_n.iter().all(|high| high.is_nan()) && plain.warnings.len() == 2,
         "{:?}",
         plain.warnings
     );
-    // A number that was changed by hand is no longer the one that was fitted.
+    // A value that was changed by hand isn't the fitted one any more.
     let value = text.lines().find(|line| line.starts_with("force = ")).unwrap();
     let changed = text.replacen(value, "force = \"20 N\"", 1);
     let message = predict(&data, &muscle(&changed), &Catalogue::builtin(), &[]).unwrap_err().to_string();

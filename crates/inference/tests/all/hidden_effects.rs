@@ -1,7 +1,9 @@
-//! A part of the published suite of hidden effects (`validation/hidden-effects/cases`): whoever changes the diagnosis so that it names a wrong effect hears of it here.
+//! A part of the published suite of hidden effects (`validation/hidden-effects/cases`). A change of the
+//! diagnosis that names a wrong effect fails here.
 //!
-//! The cases come from a simulator that shares no formula with this program, and were chosen by a rule that looks at no answer: so a few are answered wrongly, as often as the
-//! table of the whole suite in `docs/diagnose.md` says. They are listed by name; any other wrong name fails.
+//! The cases come from a simulator that shares no formula with this program, and were chosen by a rule that
+//! looks at no answer. A few are therefore answered wrongly, as often as the table of the whole suite in
+//! `docs/diagnose.md` says. They are listed by name; any other wrong name fails.
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
@@ -14,7 +16,7 @@ use bulge_measurements::Data;
 use bulge_muscles::from_toml;
 use rayon::prelude::*;
 
-/// Cases in which a name is wrong: known, and no more than these. One that comes out right must leave the list.
+/// Cases with a known wrong name. A case that comes out right must leave the list.
 const WRONG: [&str; 5] = [
     "null-006",
     "pair-002",
@@ -22,7 +24,8 @@ const WRONG: [&str; 5] = [
     "unknown-pressure-squared-0",
     "unknown-root-pressure-4",
 ];
-/// Cases in which nothing wrong is said, and not all that is hidden is found: a second effect is there, and its name is likelier wrong than right, or hardly leads a model without it.
+/// Cases in which nothing wrong is said, but not all hidden effects are found: the name of a second effect is
+/// more likely wrong than right, or hardly leads a model without it.
 const MISSED: [&str; 2] = ["pair-023", "pair-035"];
 
 /// What a case hides.

@@ -1,4 +1,5 @@
-//! The numbers of a ladder against what they must be by hand: errors, half-gaps, weights, priors, intervals, noise floor.
+//! The numbers of a ladder against hand calculations: errors, half-gaps, weights, priors, intervals, noise
+//! floor.
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
@@ -19,7 +20,7 @@ fn muscle(more: &str) -> Muscle {
     from_toml(&format!("{BRAID}{more}\n"), "m.toml").unwrap()
 }
 
-/// Loops of 40 rows at three pressures: the cylinder's force, and what `more` adds to it by row and direction.
+/// Loops of 40 rows at three pressures: the cylinder's force, plus `more` by row and direction.
 fn loops(more: impl Fn(usize, f64) -> f64) -> Data {
     let plain = muscle("");
     let model = Model::new(&plain);
@@ -40,7 +41,7 @@ fn climbed(data: &Data, muscle: &Muscle, with: &[&str]) -> Comparison {
     compare(data, muscle, &Options::new(catalogue, effects)).unwrap()
 }
 
-/// A disturbed reading is left out, and its size is that of nothing.
+/// A disturbed reading is left out and doesn't set the full scale.
 #[test]
 fn a_spike_is_no_full_scale() {
     let clean = loops(|row, _| alternating(row));
@@ -59,7 +60,8 @@ fn a_spike_is_no_full_scale() {
     assert!(!has_zeros(&spiked) && !has_zeros(&clean), "{:?}", spiked.quality);
 }
 
-/// Rows at turning points on the other branch count less, and the error of the others is told beside that of all.
+/// Rows at turning points on the other branch have smaller weights, and the error of the other rows is
+/// reported too.
 #[test]
 fn the_error_of_rows_whose_direction_is_known_is_told() {
     let on = |data: &Data| {
@@ -75,7 +77,7 @@ fn the_error_of_rows_whose_direction_is_known_is_told() {
     assert!((directed - 2.0).abs() < 0.04, "{directed}");
 }
 
-/// Whatever was asked before, the answer is that of a comparison with these effects.
+/// Whatever was asked before, the answer equals that of a comparison with these effects.
 #[test]
 fn asked_again_with_other_effects_the_answer_is_the_same() {
     let data = loops(|row, direction| 5.0 - 7.0 * direction + alternating(row));
@@ -96,7 +98,8 @@ fn asked_again_with_other_effects_the_answer_is_the_same() {
         assert_eq!(found.ladder.len(), 1 + with.len());
         assert_eq!(json(&found), json(&climbed(&data, &muscle, with)), "{with:?}");
     }
-    // Numbers held: of an effect, differently, not any more; and of an error of the rig that the base fits along.
+    // Held parameters: of an effect, at another value, free again; and of a rig error that the base fits
+    // along.
     let names = ["end-taper", "coulomb-friction"];
     let effects: Vec<_> = names.iter().map(|name| Arc::clone(catalogue.find(name).unwrap())).collect();
     let values =
@@ -121,7 +124,8 @@ fn asked_again_with_other_effects_the_answer_is_the_same() {
     }
 }
 
-/// A number that is held far from the data makes the error larger, and not the effect: that is said of it, by name and value.
+/// If a parameter held far from the data makes the error larger, the warning names it with its value, not the
+/// effect.
 #[test]
 fn a_number_that_is_held_amiss_is_named() {
     let data = loops(|row, direction| -7.0 * direction + alternating(row));
@@ -140,7 +144,7 @@ fn a_number_that_is_held_amiss_is_named() {
     assert_eq!([warned(&at(7.0)), warned(&free)], [None, None]);
 }
 
-/// What data lack for an effect is said by the names of the columns.
+/// Data that an effect needs but doesn't have are reported by the names of the columns.
 #[test]
 fn what_data_lack_is_said_by_its_column() {
     let (muscle, catalogue) = (muscle(""), Catalogue::builtin());
@@ -160,7 +164,8 @@ fn what_data_lack_is_said_by_its_column() {
     assert!(says(",time [s]", &|i| format!(",{i}")).is_ok());
 }
 
-/// Fibres that run rather around the axis than along it lengthen a muscle: the neutral angle is atan(sqrt 2) = 54.74 deg.
+/// Fibres that run around the axis rather than along it lengthen a muscle: the neutral angle is atan(sqrt 2)
+/// = 54.74 deg.
 #[test]
 fn a_braid_that_extends_is_noted() {
     let noted = |degrees: &str| {
@@ -173,7 +178,7 @@ fn a_braid_that_extends_is_noted() {
     assert_eq!([noted("54.7 deg"), noted("25 deg")], [None, None]);
 }
 
-/// 2 N or -2 N, neighbours unlike, the same number of both in either direction.
+/// 2 N or -2 N, different for neighbours, equally often in either direction.
 fn alternating(row: usize) -> f64 {
     if (row / 2 + row).is_multiple_of(2) { 2.0 } else { -2.0 }
 }
@@ -211,7 +216,8 @@ fn loops_and_maps_are_means_of_residuals() {
     assert!((by.bins[0].bias_n[0] - 3.0).abs() < 1e-6 && (by.bins[0].rmse_n[0] - 3.0).abs() < 1e-6);
 }
 
-/// At held length both branches are taken at the same pressure: a muscle without hysteresis has no gap, whatever pressures were read on the way.
+/// At held length both branches are taken at the same pressure: a muscle without hysteresis has no gap,
+/// whatever pressures were read on the way.
 #[test]
 fn a_model_without_hysteresis_has_no_gap_at_held_length() {
     let plain = muscle("");
@@ -239,7 +245,7 @@ fn an_interval_is_students_quantile_times_the_standard_deviation() {
     let comparison = climbed(&data, &muscle("[instruments]\nforce = { noise = \"2 N\" }"), &["force-offset"]);
     let fit = comparison.ladder[1].fit.as_ref().unwrap();
     let offset = &fit.parameters[0];
-    // The prior is wide; 119 degrees of freedom: 1.980. Rows that alternate don't count for less.
+    // The prior is wide; 119 degrees of freedom: 1.980. Alternating rows don't reduce the effective number.
     assert!((fit.effective_rows - 120.0).abs() < 1e-9);
     let half = 1.980_10 * 2.0 * (120.0_f64 / 119.0).sqrt() / 120.0_f64.sqrt();
     assert!((0.5 * (offset.high - offset.low) / half - 1.0).abs() < 2e-3, "{offset:?}, {half}");
@@ -248,7 +254,7 @@ fn an_interval_is_students_quantile_times_the_standard_deviation() {
 
 #[test]
 fn a_stated_width_is_a_prior_about_the_stated_value() {
-    // Data and statement agree: whatever their weights, the radius stays.
+    // Data and stated value agree, so the radius stays, whatever their weights.
     let stated = muscle("[instruments]\nforce = { noise = \"200 N\" }");
     let stated = from_toml(
         &bulge_muscles::to_toml(&stated)
@@ -260,7 +266,7 @@ fn a_stated_width_is_a_prior_about_the_stated_value() {
     let fit = comparison.ladder[0].fit.as_ref().unwrap();
     let radius = fit.parameters.iter().find(|p| p.effect == "radius-error").unwrap();
     assert!((radius.value - 10.0).abs() < 0.01 && radius.nuisance, "{radius:?}");
-    // 0.1 mm, hardly narrowed by such noise.
+    // 0.1 mm, hardly reduced by data with such noise.
     assert!((0.5 * (radius.high - radius.low) / 0.196 - 1.0).abs() < 0.25, "{radius:?}");
 }
 
@@ -291,7 +297,8 @@ fn the_floor_is_the_noise_and_not_below_the_resolution() {
     assert!(coarse >= 80.0 / 12.0_f64.sqrt() - 1e-6, "{coarse}");
 }
 
-/// Readings that scatter far more than their data sheet says: the fit goes on with the sheet, and says so.
+/// If the readings scatter far more than their data sheet says, the fit still uses the sheet, and a warning
+/// says so.
 #[test]
 fn noise_beyond_the_data_sheet_is_said() {
     let says = |noise: &str| {
@@ -302,7 +309,7 @@ fn noise_beyond_the_data_sheet_is_said() {
     assert_eq!(["2 N", "0.6 N", "0.25 N"].map(says), [0, 0, 1]);
 }
 
-/// Where the model lacks something, the rig errors of the data sheet may not make up for it in silence.
+/// If the model lacks something, rig errors beyond the data sheet compensate for it only with a warning.
 #[test]
 fn a_rig_error_beyond_its_data_sheet_is_said() {
     let sheet = "[instruments]\nforce = { noise = \"0.1 N\", zero = \"2 N\" }";
@@ -319,7 +326,7 @@ fn a_rig_error_beyond_its_data_sheet_is_said() {
     );
 }
 
-/// A load that exists up to a contraction of 15 % at most: beyond, its force is not a number.
+/// A load that exists up to a contraction of 15 %; beyond, its force is NaN.
 const GIVES_OUT: &str = "[effects.gives-out]\ntitle = \"A load that ends\"\nforce = \"-k * sqrt(end - eps)\"\n\
                          parameters.k = { unit = \"N\", typical = \"50 N\", low = \"0 N\", high = \"500 N\" }\n\
                          parameters.end = { unit = \"1\", typical = 0.14, low = 0.1, high = 0.15 }\n";
@@ -340,11 +347,12 @@ fn rows_without_a_state_are_counted_and_the_ladder_goes_on() {
     assert!(comparison.ladder[0].without_state.is_none());
     for rung in &comparison.ladder[1..] {
         let left = rung.without_state.as_ref().unwrap();
-        // From 15 % on there are seven contractions on each of six branches; none can be kept by other numbers.
+        // From 15 % on there are seven contractions on each of six branches; no parameters give them a state.
         assert!(left.rows == 42 && left.lines.contains("15-28"), "{left:?}");
         assert!(rung.rmse_n.is_finite() && rung.fit.is_some(), "{rung:?}");
     }
-    // The rows with a state know the friction; 10 N too much and 2 N of scatter are left, as this load only takes away.
+    // The rows with a state determine the friction. 10 N of offset and 2 N of scatter remain, as this load
+    // only reduces the force.
     let last = &comparison.ladder[2];
     let friction =
         last.fit.as_ref().unwrap().parameters.iter().find(|p| p.effect == "coulomb-friction").unwrap();
@@ -375,7 +383,7 @@ fn a_base_or_a_candidate_without_a_state_ends_no_diagnosis() {
 
 #[test]
 fn trial_numbers_without_an_equilibrium_end_no_comparison() {
-    // Where a comparison starts, c10 = 0.3 MPa, rubber carries what the gas has at 1 bar.
+    // At the start of the comparison, c10 = 0.3 MPa, rubber carries all the force that the gas has at 1 bar.
     let text = "name = \"x\"\nkind = \"braided\"\nlength = \"250 mm\"\nradius = \"9.75 mm\"\nbraid_angle = \"25 deg\"\nends = \"clamped\"\n\
                 wall = \"2 mm\"\n[instruments]\npressure = { noise = \"100 Pa\", zero = \"200 Pa\", gain = \"0.1 %\" }\n";
     let muscle = from_toml(text, "m.toml").unwrap();
@@ -390,7 +398,7 @@ fn trial_numbers_without_an_equilibrium_end_no_comparison() {
         let data = simulate(&truth, &[1.2e5, 3e4], &protocol, seed).unwrap().data;
         let options = Options::new(catalogue.clone(), vec![Arc::clone(&rubber)]);
         let last = compare(&data, &muscle, &options).unwrap().ladder.pop().unwrap();
-        // One constant for two: the sum of both, and nearly the noise.
+        // One parameter takes the sum of both, and the error is nearly the noise.
         let modulus =
             last.fit.unwrap().parameters.iter().find(|p| p.effect == "bladder-elasticity").unwrap().value;
         assert!((0.12..0.16).contains(&modulus) && last.rmse_n < 3.0, "{modulus} {}", last.rmse_n);
@@ -398,7 +406,7 @@ fn trial_numbers_without_an_equilibrium_end_no_comparison() {
     }
 }
 
-/// A cylinder under 300 N that is filled and vented: the length answers, and is read 0.4 % short of it.
+/// A cylinder under 300 N that is filled and vented: the length responds, and is read 0.4 % too short.
 #[test]
 fn under_a_held_load_the_error_is_told_in_contraction() {
     let plain = muscle("");
@@ -418,14 +426,16 @@ fn under_a_held_load_the_error_is_told_in_contraction() {
     let found = climbed(&data, &plain, &["length-zero-error"]);
     let [held] = &found.isotonic[..] else { panic!("{:?}", found.isotonic) };
     assert!((held.load_n - 300.0).abs() < 1e-9 && held.points.len() == 80);
-    // The error is the force's over its slope: exact but for the bend of the characteristic over 0.4 %.
+    // The error is that of the force over its slope: exact except for the curvature of the characteristic
+    // over 0.4 %.
     let [first, last] = held.rmse_contraction;
     assert!((first - 0.004).abs() < 2e-5 && last < 1e-5, "{first} {last}");
     assert!(held.points.iter().all(|p| (p.first - p.contraction - 0.004).abs() < 3e-5));
     assert_eq!(found.data.branches, ["shortening", "lengthening"]);
 }
 
-/// Loops at six pressures with friction of 10 N and noise of 2 N; what `changed` makes of the force of a row, by its sweep and its number.
+/// Loops at six pressures with friction of 10 N and noise of 2 N. `changed` modifies the force of a row by
+/// its sweep and its number.
 fn measured(changed: impl Fn(&str, usize, f64) -> f64) -> Data {
     let catalogue = Catalogue::builtin();
     let model = Model::new(&muscle("")).with(catalogue.find("coulomb-friction").unwrap(), None).unwrap();
@@ -474,19 +484,21 @@ fn heavy_tails_move_a_fitted_number_by_no_more_than_they_would_at_the_bound() {
         comparison.ladder[1].fit.as_ref().unwrap().parameters[0].value
     };
     let clean = force_of(&measured(|_, _, force| force));
-    // Two rows in each way of shortening, off to the same side by 4.5 and by 7.5 standard deviations: too little for a spike.
+    // Two rows in each shortening stroke are off to the same side by 4.5 and by 7.5 standard deviations,
+    // which is too little for a spike.
     let off = |by: f64| {
         let far = move |_: &str, row: usize, force: f64| {
             if [9, 21].contains(&(row % 60)) { force - by } else { force }
         };
         (force_of(&measured(far)) - clean).abs()
     };
-    // Least squares would go on in proportion, by two thirds more.
+    // With least squares the second shift would be two thirds larger, in proportion.
     let [near, far] = [off(9.0), off(15.0)];
     assert!(near > 0.1 && far < 1.2 * near, "{near} and {far}");
 }
 
-/// Row by row the errors are those of the ladder, and rows that don't count have their reason, their line and the force of the model.
+/// The errors row by row are those of the ladder, and rows that don't count have their reason, their line and
+/// the model's force.
 #[test]
 fn rows_are_those_of_the_ladder() {
     // One disturbed reading, and one without pressure.
@@ -522,7 +534,7 @@ fn rows_are_those_of_the_ladder() {
     }
     let reason = |row: usize| rows.reasons[rows.reason[row].unwrap() as usize].as_str();
     assert!(reason(50).contains("spike") && reason(119).contains("no gauge pressure"), "{:?}", rows.reasons);
-    // The model of a row that doesn't count is the one of the row at the same place that does.
+    // The model force of a row that doesn't count is the one at rest in the same place.
     let plain = Model::new(&muscle).at_rest(&[], rows.pressure_pa[50], rows.contraction[50]).unwrap().force_n;
     assert!((rows.base_n[50] / plain - 1.0).abs() < 1e-9, "{} {plain}", rows.base_n[50]);
     let friction = rows.base_n[50] - rows.model_n[50];
@@ -532,7 +544,7 @@ fn rows_are_those_of_the_ladder() {
     assert_eq!(rows.time_s.as_deref().unwrap()[7].to_bits(), 7.0_f64.to_bits());
 }
 
-/// For a report: the force of each rung is the one of a ladder that ends there, whoever is asked.
+/// For a report: the force of each rung equals that of a ladder that ends there, in either way of asking.
 #[test]
 fn rows_have_the_force_of_each_rung() {
     let data = loops(|row, direction| -7.0 * direction + alternating(row));

@@ -1,4 +1,5 @@
-//! Noise laws: whitening against dense matrices, laws found again from simulated noise, and silence about white noise.
+//! Noise laws: whitening against dense matrices, laws recovered from simulated noise, and no claim beyond
+//! white noise where there is none.
 
 #![expect(clippy::unwrap_used, reason = "a test stops where something is missing")]
 
@@ -6,7 +7,7 @@ use bulge_effects::Moment;
 use bulge_inference::{CorrelationTime, NoiseError, NoiseLaw, NoiseSource, Random, Whitening};
 use bulge_model::Record;
 
-/// Sweeps of `rows` rows at 0.05 s, the steps uneven by a quarter.
+/// Sweeps of `rows` rows at 0.05 s, with steps that vary by a quarter.
 fn record(sweeps: usize, rows: usize) -> Record {
     let moments: Vec<Moment> = (0..sweeps * rows)
         .map(|i| {
@@ -129,15 +130,15 @@ fn bytes_do_not_depend_on_threads_and_effective_rows_have_their_limits() {
     assert_eq!(format!("{:?}", run(1)), format!("{:?}", run(2)));
     let effective = |law| Whitening::new(&law, &record, &used, &[]).unwrap().effective_rows();
     assert!((effective(law(2.0, 0.0, 1.0, 0.0)) - 1000.0).abs() < 1e-9);
-    // Sweeps of equal correlation 1 - 1e-6: one row each.
+    // Rows with a correlation of 1 - 1e-6 within a sweep: each sweep counts as one row.
     assert!((effective(law(1e-3, 0.0, 1.0, 1.0)) - 20.0).abs() < 1e-3);
-    // A chain of correlation f: (1 + (n - 1) (1 - f)/(1 + f)) rows in each sweep of n.
+    // A Markov chain with correlation f: (1 + (n - 1) (1 - f)/(1 + f)) rows in each sweep of n.
     let f = (-0.25_f64).exp();
     let rows = NoiseLaw { time: Some(CorrelationTime::Rows(4.0)), ..law(1e-6, 1.0, 1.0, 0.0) };
     assert!((effective(rows) / (20.0 * (1.0 + 49.0 * (1.0 - f) / (1.0 + f))) - 1.0).abs() < 1e-6);
 }
 
-/// Means over seeds of (white, correlated, ln time, offset), with standard errors of the means.
+/// Means over seeds of (white, correlated, ln time, offset), with the standard errors of the means.
 fn found(truth: &NoiseLaw, record: &Record, known: &[f64]) -> [(f64, f64); 4] {
     let used = vec![true; record.len()];
     let design = design(record);
@@ -230,7 +231,7 @@ fn what_the_model_can_explain_changes_nothing() {
         .zip(columns.chunks_exact(12))
         .map(|(y, row)| y + 50.0 * row[4] - 300.0 * row[7])
         .collect();
-    // A column twice more, in another unit.
+    // A column added again, in combination and in another unit.
     let twice: Vec<f64> = columns.chunks_exact(12).flat_map(|r| [r, &[1e6 * r[3] - r[2]]].concat()).collect();
     let other = NoiseLaw::estimate(&record, &used, &[], &twice, &shifted).unwrap();
     let near = |a: f64, b: f64| (a / b - 1.0).abs() < 0.01;

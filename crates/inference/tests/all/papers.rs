@@ -1,5 +1,5 @@
-//! Diagnosis of the papers' own functions, which were fitted to measurements: curves without noise, so that every misfit stands out, and what is named must be
-//! no cure of the wrong thing.
+//! Diagnosis of published functions that were fitted to measurements. The curves have no noise, so that every
+//! misfit stands out, and no wrong effect may be named.
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
@@ -60,12 +60,12 @@ fn hysteresis_loops() -> String {
 fn cloth_that_stops_unfolding_is_among_what_the_pleated_muscle_lacks() {
     let found = diagnosed(&second_generation(), &preset("ppam-2-r16").unwrap());
     let names: Vec<&str> = found.missing.iter().map(|missing| missing.effect.as_str()).collect();
-    // Gains of 9 and 8 %, which no rig has, lower the error more than anything: they are no claim.
+    // Gains of 9 and 8 %, which no rig has, lower the error most, but are not claimed.
     assert_eq!(names, ["limited-unfolding"], "{}", found.says);
     assert!(found.verdict == Verdict::Missing && found.remaining.structured);
     assert!(found.nearest.iter().any(|nearest| !nearest.plausible));
     let errors: Vec<f64> = found.ladder.iter().map(|step| step.rmse_n).collect();
-    // 2.9 % of 3 kN with R = 16 mm, and below 0.44 % with three numbers.
+    // 2.9 % of 3 kN with R = 16 mm, and below 0.44 % with three parameters.
     assert!((errors[0] / 3000.0 - 0.029).abs() < 0.001, "{errors:?}");
     assert!(errors.windows(2).all(|pair| pair[1] < pair[0]) && errors[errors.len() - 1] < 0.0044 * 3000.0);
 }
@@ -75,13 +75,14 @@ fn loops_of_a_fluidic_muscle_show_hysteresis_and_bladder() {
     let file = "name = \"DMSP-20-400N\"\nkind = \"braided\"\nlength = \"400 mm\"\nradius = \"10 mm\"\nbraid_angle = \"25 deg\"\n\
                 ends = \"cylinder\"\nwall = \"2 mm\"\n";
     let found = diagnosed(&hysteresis_loops(), &from_toml(file, "muscle").unwrap());
-    // The head of a class, and what these data can't tell from it: of a loop without time a dead band of the valve makes nearly the same.
+    // The head of a class and the effects that these data can't distinguish from it: in a loop without time,
+    // a dead band of the valve is nearly the same.
     let families: Vec<String> =
         found.added().flat_map(|missing| &missing.class).map(|name| family(name)).collect();
     let has = |names: &[&str]| families.iter().any(|family| names.contains(&family.as_str()));
     assert!(has(&["bladder-elasticity"]), "{families:?}");
     assert!(has(&["coulomb-friction", "presliding-hysteresis", "pressure-friction"]), "{families:?}");
-    // Three effects are not all: the rest is said to remain.
+    // Three effects don't explain everything, and the answer says that something remains.
     assert!(found.verdict != Verdict::Adequate && found.remaining.structured, "{}", found.says);
     assert!(found.remaining.misfit_interval_n[0] > 10.0, "{}", found.says);
     let errors: Vec<f64> = found.ladder.iter().map(|step| step.rmse_n).collect();

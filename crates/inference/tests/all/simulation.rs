@@ -1,4 +1,5 @@
-//! Simulated measurements: the model without noise, the statistics of the noise, seeds, ranges that end, rig errors.
+//! Simulated measurements: the model without noise, the statistics of the noise, seeds, shortened ranges, rig
+//! errors.
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
@@ -97,7 +98,7 @@ fn noise_has_the_stated_size() {
     is_sd(&lengths, 20e-6, 1e4);
     // A mean of 0, within 3 standard deviations.
     assert!(errors(&found).iter().sum::<f64>().abs() / 1e4 < 3.0 * 2.0 / 100.0);
-    // The instruments of the muscle state it.
+    // The instruments of the muscle state the noise.
     let stated = found.muscle.instruments();
     assert!(
         (stated.force.unwrap().noise() - 2.0).abs() < 1e-12
@@ -105,7 +106,8 @@ fn noise_has_the_stated_size() {
     );
     let tails = plain(&noisy(loops(5000, 1), ReadingNoise { tails: Some(6.0), ..noise }), 3);
     let heavy = errors(&tails);
-    // Kurtosis 3 + 6/(6 - 4) of Student's t, whose own scatter is wide; that of its variance follows from it.
+    // Kurtosis 3 + 6/(6 - 4) of Student's t; its estimate has a large scatter, and the scatter of the
+    // variance follows from it.
     assert!((sd(&heavy) / 2.0 - 1.0).abs() < 3.0 * (5.0_f64 / 4e4).sqrt(), "{}", sd(&heavy));
     let kurtosis = heavy.iter().map(|e| (e / 2.0).powi(4)).sum::<f64>() / 1e4;
     assert!(kurtosis > 4.0, "{kurtosis}");
@@ -117,7 +119,7 @@ fn correlated_noise_and_offsets_follow_their_law() {
     let noise = ReadingNoise { correlated_n: 3.0, correlation_time_s: 0.05, ..ReadingNoise::default() };
     let found = errors(&plain(&noisy(loops(5000, 2), noise), 5));
     let kept = (-0.2_f64).exp();
-    // So many independent ones would have the same scatter of the variance.
+    // This many independent values have the same scatter of the variance.
     is_sd(&found, 3.0, 2e4 * (1.0 - kept * kept) / (1.0 + kept * kept));
     let lag = |k: usize| found[..10_000 - k].iter().zip(&found[k..10_000]).map(|(a, b)| a * b).sum::<f64>();
     let [one, five] = [lag(1) / lag(0), lag(5) / lag(0)];
@@ -140,7 +142,7 @@ fn a_seed_is_a_data_set() {
     assert_ne!(errors(&first), errors(&plain(&protocol, 8)));
     let single = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
     assert_eq!(first.csv, single.install(|| plain(&protocol, 7).csv));
-    // Noise of the pressure changes no force, and another pressure no sweep before it.
+    // Noise of the pressure changes no force, and another pressure changes no sweep before it.
     let more = Protocol { noise: ReadingNoise { pressure_pa: 50.0, ..noise }, ..protocol.clone() };
     assert_eq!(plain(&more, 7).data.force(), first.data.force());
     let mut longer = protocol;
@@ -162,7 +164,7 @@ fn readings_come_in_steps() {
 
 #[test]
 fn sweeps_end_where_the_muscle_would_push() {
-    // It pushes beyond 36.2 %, and with friction on the way up before.
+    // It pushes beyond 36.2 % and, with friction, already before that while shortening.
     let (model, theta) = friction(14.0);
     let block = Block { contraction: [0.01, 0.5], cycles: 2, rows: 200, ..loops(50, 1) };
     let found = simulate(&model, &theta, &Protocol::new(vec![block.clone()]), 1).unwrap();
@@ -175,7 +177,7 @@ fn sweeps_end_where_the_muscle_would_push() {
         assert!((low - 0.01).abs() < 1e-12 && high <= most + 1e-4 && high > most - 0.012, "{high} of {most}");
     }
     assert!(found.exact.force().iter().all(|force| *force > 0.0));
-    // A map leaves rows out, and the plan says the same.
+    // In a map, rows are left out, and the plan says the same.
     let map = Protocol::new(vec![Block { path: Path::Static, rows: 50, cycles: 1, ..block }]);
     let left = plain(&map, 1);
     let expected = map
@@ -211,7 +213,7 @@ fn rig_errors_are_drawn_from_the_instruments() {
         let e = moment.contraction * (1.0 + rig.length_gain) - rig.length_zero_m / 0.25;
         assert!((found.data.contraction(0.25)[20] - e).abs() < 1e-8);
         assert!(rig.pressure_gain.abs() < 1e-15);
-        // The widths stay what they are.
+        // The stated widths stay.
         assert_eq!(to_toml(&found.muscle), to_toml(&muscle(WIDTHS)));
         assert!((found.muscle.instruments().length.unwrap().gain().si() - 0.005).abs() < 1e-15);
     }
@@ -247,7 +249,7 @@ fn specimens_of_the_muscle_are_simulated_by_their_names() {
         let expected = factor * force(moment.pressure, moment.contraction);
         assert!((both.exact.force()[row] - expected).abs() < 1e-9 * expected, "{row}");
     }
-    // As stated, where the protocol has one specimen.
+    // A protocol with one specimen takes the muscle as stated.
     let one = of(1).unwrap();
     assert!(one.muscle.specimens().is_empty() && one.data.specimens() == ["1"]);
     let message = of(3).err().unwrap().to_string();

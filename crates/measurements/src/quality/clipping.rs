@@ -4,16 +4,19 @@ use super::{Finding, FindingKind, Gate, Severity, rows_in_words};
 use crate::resolution::{Resolution, bounds};
 use std::ops::Range;
 
-/// Equal readings that are no chance: in a row, or in several runs of at least two where a test has few rows at each top.
+/// Number of equal readings that isn't chance: in one run, or in several runs of at least the next constant,
+/// if a test has few rows at each top.
 const RUN: usize = 5;
 const SHORT: usize = 2;
-/// Readings of exactly the largest force that are no chance wherever they are, and how many times as many as of any other force: a noisy load cell repeats none. (At the top of a sine the
-/// largest of coarse readings comes 2.4 times as often as the next, at rest all do.)
+/// Number of readings of exactly the largest force that isn't chance, wherever they are; the next constant is
+/// the ratio to the number at any other force, which a noisy load cell repeats rarely. (At the top of a sine,
+/// the largest of coarse readings is 2.4 times as frequent as the next; at rest all readings are equal.)
 const AGAIN: usize = 8;
 const TIMES: usize = 3;
-/// How far the force should have moved, in what it resolves, to be called stuck.
+/// Expected change of the force, relative to its resolution, from which it counts as stuck.
 const FORCE_STEPS: f64 = 10.0;
-/// How far the force has to move, as a share of its range in the sweep, while motion or pressure are stuck and the other keeps still to this share.
+/// Change of the force, relative to its range in the sweep, from which motion or pressure count as stuck; the
+/// other of the two must be constant within the next fraction.
 const FORCE_SHARE: f64 = 0.1;
 const STILL: f64 = 0.02;
 
@@ -75,7 +78,7 @@ pub(super) fn in_columns(gate: &Gate) -> Vec<(&'static str, Vec<usize>)> {
     ]
 }
 
-/// Rows with the column's largest or smallest value, where it is stuck in some run of them.
+/// Rows with the column's largest or smallest value, if it is stuck there in some run.
 #[expect(clippy::float_cmp, reason = "a sensor that is stuck repeats its reading bit for bit")]
 fn in_column(
     gate: &Gate,
@@ -83,7 +86,7 @@ fn in_column(
     is_stuck: &dyn Fn(&Range<usize>, &Range<usize>) -> bool,
 ) -> Vec<usize> {
     let (low, high) = bounds(values);
-    // Rows of stuck runs at the lowest and the highest value.
+    // Numbers of rows in stuck runs at the lowest and at the highest value.
     let mut stuck = [0_usize; 2];
     for (sweep, _) in gate.data.paths() {
         let mut start = sweep.rows.start;
@@ -102,12 +105,12 @@ fn in_column(
     }
     let is_end = |(end, rows): (f64, usize)| (rows >= RUN).then_some(end);
     let ends: Vec<f64> = [low, high].into_iter().zip(stuck).filter_map(is_end).collect();
-    // Where the range ends for some rows it ends for all.
+    // If the range ends there for some rows, it does for all.
     let at_end = |row: &usize| ends.contains(&values[*row]);
     gate.data.paths().flat_map(|(sweep, _)| sweep.rows.clone()).filter(at_end).collect()
 }
 
-/// Rows with the largest force where it comes far more often than any other.
+/// Rows with the largest force, if it is far more frequent than any other.
 fn repeated_top(gate: &Gate) -> Vec<usize> {
     let force = gate.data.force();
     let mut rows: Vec<usize> = gate.data.paths().flat_map(|(sweep, _)| sweep.rows.clone()).collect();
@@ -119,9 +122,9 @@ fn repeated_top(gate: &Gate) -> Vec<usize> {
     if is_clipped { top.to_vec() } else { Vec::new() }
 }
 
-/// By how much the force should have changed in a run, from how it changed with motion and pressure just before and after.
+/// Expected change of the force in a run, from its change with motion and pressure just before and after.
 pub(super) fn expected(gate: &Gate, run: &Range<usize>) -> f64 {
-    /// Rows that show the slope.
+    /// Number of rows that determine the slope.
     const AROUND: usize = 20;
     let sweep = &gate.data.sweeps()[gate.data.sweep_of(run.start)].rows;
     let sides = [
@@ -135,7 +138,7 @@ pub(super) fn expected(gate: &Gate, run: &Range<usize>) -> f64 {
         let along = sides.iter().map(|(from, to)| {
             let change = (values[*to] - values[*from]).abs();
             let force = (gate.data.force()[*to] - gate.data.force()[*from]).abs();
-            // A change that is little more than noise shows no slope.
+            // A change within the noise gives no slope.
             if change > 2.0 * noise + 1e-3 * resolution.range { force / change * way } else { 0.0 }
         });
         along.fold(0.0, f64::max)

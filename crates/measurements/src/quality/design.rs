@@ -1,17 +1,17 @@
-//! Is there enough, and does it vary: rows, pressures, contractions, temperature.
+//! Sufficiency and variation of the data: rows, pressures, contractions, temperature.
 
 use super::{Finding, FindingKind, Gate, Severity};
 use crate::resolution::bounds;
 
-/// Fewer rows than this are hardly a characteristic.
+/// Fewer rows hardly make a characteristic.
 const FEW_ROWS: usize = 8;
-/// Pressures within this share of the largest are one level.
+/// Pressures within this fraction of the largest form one level.
 const LEVEL: f64 = 0.05;
-/// A contraction that changes less than this is constant.
+/// A contraction with a smaller change is constant.
 const TRAVEL: f64 = 2e-3;
 /// A change of temperature worth a note \[K\].
 const KELVIN: f64 = 2.0;
-/// Correlation with temperature beyond which the two can't be told apart.
+/// Correlation with temperature from which the two can't be separated.
 const CORRELATION: f64 = 0.95;
 
 pub(super) fn find(gate: &Gate) -> Vec<Finding> {
@@ -79,7 +79,7 @@ fn temperature(gate: &Gate) -> Option<Finding> {
     Some(gate.finding(FindingKind::TemperatureChanges, severity, &[], says, instead))
 }
 
-/// Pearson's correlation; 0 where one doesn't vary.
+/// Pearson's correlation; 0 if one of them is constant.
 fn correlation(a: &[f64], b: &[f64]) -> f64 {
     let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
     let (ma, mb) = (mean(a), mean(b));

@@ -2,9 +2,9 @@
 
 use super::{Finding, FindingKind, Gate, Severity};
 
-/// An offset is no chance beyond so many of its standard deviations,
+/// An offset isn't chance beyond this many of its standard deviations,
 const DEVIATIONS: f64 = 4.0;
-/// and matters beyond this share of the range of the force, and beyond the noise of one reading.
+/// and it matters beyond this fraction of the force's range and beyond the noise of one reading.
 const RANGE: f64 = 2e-3;
 
 pub(super) fn find(gate: &Gate) -> Vec<Finding> {

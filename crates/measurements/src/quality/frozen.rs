@@ -1,4 +1,5 @@
-//! A recording that stood still: rows in a row with the same pressure, motion and force, although the readings are noisy; or a force that did, while the others moved on.
+//! Frozen recordings: consecutive rows with the same pressure, motion and force although the readings are
+//! noisy, or with the same force while the others move on.
 
 use super::clipping::expected;
 use super::{Finding, FindingKind, Gate, Severity, rows_in_words};
@@ -6,22 +7,24 @@ use crate::resolution::Resolution;
 use crate::sweep::SweepKind;
 use std::ops::Range;
 
-/// Fewer equal rows in a row may be chance.
+/// Fewer consecutive equal rows may be chance.
 const RUN: usize = 8;
-/// Noise of so many quantisation steps makes neighbours differ: two normal readings are then equal with a probability of 1/(2 * 2 sqrt(pi)) = 14 %.
+/// With noise of this many quantisation steps, neighbours differ: two normal readings are equal with a
+/// probability of 1/(2 * 2 sqrt(pi)) = 14 %.
 const STEPS: f64 = 2.0;
-/// Noise below this share of the range is that of the arithmetic: nothing was measured.
+/// Noise below this fraction of the range comes from arithmetic, not from measuring.
 const LEAST: f64 = 1e-7;
-/// The same of the force alone, while the rest moves on.
+/// The same limit if only the force is frozen while the rest moves on.
 const RUN_ALONE: usize = 4;
-/// Chance that a run of equal forces comes about in a file of these rows.
+/// Probability that a run of equal forces occurs by chance in a file of this length.
 const CHANCE: f64 = 1e-6;
-/// How far the force should have moved, in what it resolves: its noise, its steps, and this share of its range.
+/// Expected change of the force relative to its resolution: its noise, its steps, and the next fraction of
+/// its range.
 const MOVES: f64 = 10.0;
 const LEAST_SEEN: f64 = 1e-3;
-/// A force below this share of the largest may be that of a slack muscle, which stays the same.
+/// A force below this fraction of the largest may be that of a slack muscle, which is constant.
 const SLACK: f64 = 0.01;
-/// A force that stays in a larger part of the rows is how this test was made.
+/// If the force is constant in more than this fraction of the rows, the test was made that way.
 const MOST: f64 = 0.2;
 
 /// Rows that repeat the one before: in all readings, and in the force alone.
@@ -36,17 +39,17 @@ pub(super) fn rows(gate: &Gate) -> Frozen {
         resolution.noise > STEPS * resolution.step && resolution.noise > LEAST * resolution.range
     };
     let resolutions = [&gate.pressure, gate.motion_resolution(), &gate.force];
-    // One noisy column is enough where all repeat.
+    // One noisy column is enough if all columns repeat.
     let all = if resolutions.into_iter().any(is_noisy) {
         runs(gate, RUN, |row| [pressure[row].to_bits(), motion[row].to_bits(), force[row].to_bits()])
     } else {
         Vec::new()
     };
-    // The force should have changed by more than it resolves.
+    // The force should have changed by more than its resolution.
     let seen = (3.0 * gate.force.noise).max(gate.force.step).max(LEAST_SEEN * gate.force.range);
     let moves = |rows: &Range<usize>| expected(gate, rows) > MOVES * seen;
     let repeats = runs(gate, longest_by_chance(gate), |row| force[row].to_bits());
-    // Under a weight the force is meant to stay.
+    // Under a weight the force is constant by design.
     let sweeps = gate.data.sweeps();
     let is_weight = |row: usize| sweeps[gate.data.sweep_of(row)].kind == SweepKind::Isotonic;
     let is_alone = |rows: &Range<usize>| {
@@ -59,7 +62,7 @@ pub(super) fn rows(gate: &Gate) -> Frozen {
     if (alone.iter().map(Range::len).sum::<usize>() as f64) > MOST * force.len() as f64 {
         alone.clear();
     }
-    // The first row of a run is a reading.
+    // The first row of a run is a genuine reading.
     let repeated = |runs: &[Range<usize>]| runs.iter().flat_map(|run| run.start + 1..run.end).collect();
     Frozen { all: repeated(&all), force: repeated(&alone) }
 }
@@ -81,8 +84,8 @@ fn runs<T: PartialEq>(gate: &Gate, least: usize, bits: impl Fn(usize) -> T) -> V
     found
 }
 
-/// The length from which on a run of equal forces is none of chance, if neighbours are as often equal as the force repeats itself in runs that chance allows: `n q^(k - 1) < CHANCE` with
-/// the share q of short runs' rows that repeat the one before.
+/// The length from which a run of equal forces isn't chance: `n q^(k - 1) < CHANCE`. The probability q that
+/// neighbours are equal is estimated from the rows of short runs that repeat the one before.
 fn longest_by_chance(gate: &Gate) -> usize {
     let force = gate.data.force();
     let short: usize = runs(gate, 2, |row| force[row].to_bits())

@@ -1,4 +1,4 @@
-//! Labels against the rows: stated directions, runs that are interrupted, rows that are there twice.
+//! Labels that contradict the rows: stated directions, interrupted runs, duplicated rows.
 
 use super::{Finding, FindingKind, Gate, Severity, rows_in_words};
 use crate::stretch;
@@ -40,7 +40,7 @@ fn directions(gate: &Gate) -> Option<Finding> {
     )
 }
 
-/// Isometric sweeps whose length changes by more than a clamped one does.
+/// Isometric sweeps whose length changes by more than that of a clamped muscle.
 fn drifting(gate: &Gate) -> Option<Finding> {
     let scale = gate.data.structure.scale;
     let (mut rows, mut most) = (Vec::new(), 0.0_f64);
@@ -85,7 +85,7 @@ fn interrupted(gate: &Gate) -> Option<Finding> {
     )
 }
 
-/// Labels that go on over what ends a run: each part is taken as a run of its own.
+/// Labels that continue although their run has ended: each part is taken as a run of its own.
 fn contradicted(gate: &Gate) -> impl Iterator<Item = Finding> {
     let of = |what: Contradiction, says: &str, instead: &str| {
         let found = gate.data.contradictions.iter().filter(|(_, other)| *other == what);
@@ -121,7 +121,9 @@ fn contradicted(gate: &Gate) -> impl Iterator<Item = Finding> {
     .flatten()
 }
 
-/// Rows that say the same as an earlier one in every column. Where a static map repeats its states, some repeats are equal to the last digit. Along a path without times that is no copy: a muscle at rest reads the same again.
+/// Rows that equal an earlier one in every column. If a static map repeats its states, some repeats are equal
+/// to the last digit. Along a path without times, equal rows aren't copies, because a muscle at rest reads
+/// the same again.
 fn duplicates(gate: &Gate) -> Option<Finding> {
     let data = gate.data;
     if data.is_path() && data.time().is_none() {
@@ -152,7 +154,7 @@ fn duplicates(gate: &Gate) -> Option<Finding> {
     }
     let equals = |count| format!("{} equal to an earlier one in every column", rows_in_words(count));
     if !data.is_path() {
-        // Rows of an earlier state, whatever their force.
+        // Rows in the state of an earlier one, whatever their force.
         let mut states = HashSet::new();
         let state = |row: usize| (data.pressure()[row].to_bits(), gate.motion[row].to_bits(), marks(row));
         let again = (0..data.len()).filter(|row| !states.insert(state(*row))).count();

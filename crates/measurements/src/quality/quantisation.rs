@@ -1,18 +1,21 @@
-//! Coarse sensors: few levels over the range of the readings, or up to the largest where that range is small.
+//! Coarse sensors: few levels over the range of the readings, or up to the largest reading if that range is
+//! small.
 
 use super::{Finding, FindingKind, Gate, Severity};
 use crate::resolution::{Resolution, bounds};
 
-/// Fewer levels are worth a note, much fewer a warning.
+/// Fewer levels give a note, much fewer a warning.
 const NOTE: f64 = 1000.0;
 const WARNING: f64 = 50.0;
-/// Fewer rows show no sensor's grid.
+/// Fewer rows don't show the sensor's grid.
 const ROWS: usize = 20;
-/// A column that changes in a smaller share of the rows is a list of set points.
+/// A column that changes in a smaller fraction of the rows is a list of set points.
 const CHANGES: f64 = 0.05;
-/// A range below this share of the largest reading is that of a quantity that was held: a regulated pressure, a weight.
+/// A quantity whose range is below this fraction of the largest reading was held, like a regulated pressure
+/// or a weight.
 const HELD: f64 = 0.5;
-/// A motion over a smaller share of the muscle was held too; its zero is arbitrary, so that there is no largest to compare with.
+/// A motion over less of the muscle was held as well; its zero is arbitrary, so there is no largest value for
+/// comparison.
 const TRAVEL: f64 = 2e-3;
 
 pub(super) fn find(gate: &Gate) -> Vec<Finding> {
@@ -56,7 +59,7 @@ pub(super) fn find(gate: &Gate) -> Vec<Finding> {
     columns.into_iter().filter_map(of_column).collect()
 }
 
-/// Share of the rows at which a value differs from that of the row before in its sweep.
+/// Fraction of the rows whose value differs from that of the row before in the sweep.
 #[expect(clippy::float_cmp, reason = "a set point that is held is the same number")]
 fn share_of_changes(gate: &Gate, values: &[f64]) -> f64 {
     let changes =
@@ -65,7 +68,7 @@ fn share_of_changes(gate: &Gate, values: &[f64]) -> f64 {
     count as f64 / values.len().max(1) as f64
 }
 
-/// Four significant digits, as people write them.
+/// Four significant digits in plain notation.
 pub(super) fn four(value: f64) -> String {
     let rounded = bulge_muscles::units::rounded(value, 4);
     if rounded == 0.0 || (1e-5..1e7).contains(&rounded.abs()) {

@@ -1,26 +1,27 @@
-//! Forces at and below zero: a muscle that is slack, or a load cell whose zero is off.
+//! Forces at and below zero: the muscle is slack, or the zero of the load cell is off.
 
 use super::clipping::expected;
 use super::{Finding, FindingKind, Gate, QualityOptions, Severity, rows_in_words};
 use crate::data::Data;
 use std::ops::Range;
 
-/// Forces within this share of the largest are near zero.
+/// Forces within this fraction of the largest count as near zero.
 const NEAR_ZERO: f64 = 1e-3;
-/// However far neighbours lie apart (in a map whose points were set at random that isn't noise), forces beyond this share of the largest are not.
+/// Upper limit of that level relative to the largest force: in a map with random set points, differences of
+/// neighbours aren't noise.
 const SMALL: f64 = 0.05;
-/// Pressures above this share of the largest should give a force.
+/// Pressures above this fraction of the largest should give a force.
 const PRESSURE: f64 = 0.02;
-/// Readings near zero in a row that aren't a crossing of zero.
+/// Fewest consecutive readings near zero that are more than a zero crossing.
 const RUN: usize = 3;
-/// How far the force should have moved, in what counts as near zero, for the muscle to be slack.
+/// Expected change of the force, relative to the level near zero, from which the muscle is slack.
 const STEPS: f64 = 5.0;
-/// A negative force beyond this share of the largest is no noise.
+/// A negative force beyond this fraction of the largest isn't noise.
 const NEGATIVE: f64 = 0.01;
 
 impl Data {
-    /// Rows in which the muscle didn't pull, in ascending order: it moved on at zero force, or the force was clearly negative. No model of a pulling
-    /// muscle says anything about them.
+    /// Rows in which the muscle didn't pull, in ascending order: it moved on at zero force, or the force was
+    /// clearly negative. No model of a pulling muscle applies to them.
     #[must_use]
     pub fn not_pulling(&self) -> Vec<usize> {
         if self.is_empty() {
@@ -36,7 +37,7 @@ impl Data {
     }
 }
 
-/// Forces up to this are as good as zero \[N\].
+/// Forces up to this level count as zero \[N\].
 fn level(gate: &Gate) -> f64 {
     let noise = (4.0 * gate.force.noise).min(SMALL * gate.largest_force);
     noise.max(gate.force.step).max(NEAR_ZERO * gate.largest_force)
@@ -65,10 +66,10 @@ pub(super) fn find(gate: &Gate) -> Vec<Finding> {
     [hung, stopped, pushing(gate)].into_iter().flatten().collect()
 }
 
-/// Rows near zero force at pressure: those that move on at it, and those that don't (or whose order means nothing).
+/// Rows near zero force at pressure: those that move on there, and those that don't (or have no order).
 fn near_zero(gate: &Gate, level: f64) -> (Vec<usize>, Vec<usize>) {
     let data = gate.data;
-    // Where nothing was pulled at all there is no zero to stay at.
+    // If no force was measured at all, there is no zero to stay at.
     let is_near_zero = |row: usize| {
         level < gate.largest_force
             && data.force()[row].abs() <= level

@@ -1,4 +1,4 @@
-//! Spikes: one to three readings that lie off the path on which their neighbours on both sides agree.
+//! Spikes: one to three readings off the path on which their neighbours on both sides agree.
 
 use super::{Finding, FindingKind, Gate, Severity, rows_in_words};
 use crate::data::Data;
@@ -7,23 +7,24 @@ use std::ops::Range;
 
 /// Longest spike in rows.
 const LONGEST: usize = 3;
-/// Readings on each side that say where it should be.
+/// Readings on each side that determine the expected value.
 const SIDE: usize = 3;
-/// It lies beyond both sides by this many standard deviations of the noise,
+/// A spike lies beyond the predictions of both sides by this many standard deviations of the noise,
 const NOISE: f64 = 8.0;
 /// quantisation steps,
 const STEPS: f64 = 4.0;
-/// bends of the neighbours (their second differences),
+/// second differences of the neighbours,
 const BENDS: f64 = 2.0;
-/// and which share of the range.
+/// and by this fraction of the range.
 const RANGE: f64 = 5e-3;
-/// Rows further apart than this many usual steps of time have a pause between them.
+/// Rows further apart than this many usual time steps have a pause between them.
 const PAUSE: f64 = 3.0;
-/// Neighbouring spikes hide each other: those found are bridged, and the rest is looked at again so often.
+/// Number of passes: neighbouring spikes hide each other, so found ones are bridged and the search is
+/// repeated.
 const PASSES: usize = 3;
-/// Spikes at more than one turning point in so many are its form.
+/// If more than one turning point in this many has a spike, it is the shape of the curve.
 const COMES_BACK: usize = 5;
-/// More than one row in so many is the way this quantity scatters.
+/// If more than one row in this many is a spike, the quantity scatters in this way.
 const MOST: usize = 20;
 
 /// Spikes of the force.
@@ -68,15 +69,17 @@ pub(super) fn find(gate: &Gate) -> Vec<Finding> {
 }
 
 impl Data {
-    /// Rows at which `values`, one for each row (such as the difference of measured and computed forces), have spikes: one to three of them beyond what the three on either side
-    /// lead to, by 8 standard deviations of their noise and twice the bend of the neighbours. A step, a tip, and a turn of friction are none: each of their
-    /// values is where one of the sides leads. Sweeps that were recorded without a pause are looked at as one. None in a static map.
+    /// Rows at which `values` (one per row, such as measured less computed forces) have spikes: one to three
+    /// values beyond the predictions of the three on either side, by 8 standard deviations of their noise and
+    /// twice the second difference of the neighbours. A step, a tip, and a reversal of friction are no
+    /// spikes, because each of their values agrees with the prediction of one side. Sweeps that were recorded
+    /// without a pause are treated as one. None in a static map.
     #[must_use]
     pub fn spikes(&self, values: &[f64]) -> Vec<usize> {
         self.spikes_where(values, |_| true)
     }
 
-    /// The same where some rows don't count: sweeps of which none does say nothing of the noise, whatever stands in their values.
+    /// The same if some rows don't count: sweeps without any counting row are left out of the noise estimate.
     #[must_use]
     pub fn spikes_where(&self, values: &[f64], counts: impl Fn(usize) -> bool) -> Vec<usize> {
         if values.len() != self.len() {
@@ -89,7 +92,8 @@ impl Data {
     }
 }
 
-/// Rows that were recorded without a pause: where paths are cut at steps of the set points, what a model leaves goes on.
+/// Ranges of rows that were recorded without a pause. Where paths are cut at steps of the set points,
+/// residuals of a model go on.
 fn recordings(data: &Data) -> Vec<Range<usize>> {
     let steps = |rows: &Range<usize>| -> Vec<f64> {
         data.time().map_or(Vec::new(), |time| time[rows.clone()].windows(2).map(|w| w[1] - w[0]).collect())
@@ -112,7 +116,7 @@ fn recordings(data: &Data) -> Vec<Range<usize>> {
     found
 }
 
-/// Rows of spikes of a quantity that was read like this; below `share` of its range there are none.
+/// Rows of spikes of a quantity with this resolution; deviations below `share` of its range are ignored.
 fn along(
     data: &Data,
     values: &[f64],
@@ -131,7 +135,8 @@ fn along(
     if MOST * found.len() > values.len() { Vec::new() } else { found }
 }
 
-/// What comes back turn by turn is no spike but a tip, of which few rows show both sides.
+/// A spike that recurs at the turning points is a tip of the curve, both sides of which are seen in few rows
+/// only.
 fn leave_tips(data: &Data, found: &mut Vec<usize>) {
     let turning = data.direction_in_doubt();
     let turns = |row: &usize| turning.binary_search(row).is_ok();
@@ -149,7 +154,8 @@ fn in_run(values: &[f64], least: f64) -> Vec<usize> {
         let before = found.len();
         let mut row = SIDE;
         while row + SIDE < x.len() {
-            // The shortest that ends back on the path: the rows beside a spike look like a part of it.
+            // Take the shortest length after which the path continues: the rows next to a spike look like a
+            // part of it.
             let length = (1..=LONGEST).find(|length| is_spike(&x, row, *length, least));
             for place in row..row + length.unwrap_or(0) {
                 found.push(place);
@@ -168,17 +174,17 @@ fn in_run(values: &[f64], least: f64) -> Vec<usize> {
     found
 }
 
-/// Whether `length` readings from `first` lie on one side of where both sides lead.
+/// Whether `length` readings from `first` lie on one side of the predictions from both sides.
 fn is_spike(x: &[f64], first: usize, length: usize, least: f64) -> bool {
     let end = first + length;
     let (Some(before), Some(after)) = (x.get(first - SIDE..first), x.get(end..end + SIDE)) else {
         return false;
     };
     let bend = |side: &[f64]| (side[0] - 2.0 * side[1] + side[2]).abs();
-    // A straight line from one side is off by the bend k (k + 1)/2 after k rows; its noise grows like k.
+    // Linear extrapolation over k rows is off by k (k + 1)/2 second differences; its noise grows like k.
     let reach = length as f64;
     let bends = BENDS * bend(before).max(bend(after)) * 0.5 * reach * (reach + 1.0);
-    // Both sides have to lead to the same place, or nothing says where the readings should be.
+    // The predictions from both sides have to agree; otherwise nothing determines the expected value.
     let needed = (least * reach).max(bends);
     let excess = |row: usize| {
         let (k, back) = ((row - first + 1) as f64, (end - row) as f64);
@@ -195,7 +201,7 @@ fn is_spike(x: &[f64], first: usize, length: usize, least: f64) -> bool {
     [0, 1].iter().any(|side| (first..end).all(|row| excess(row)[*side] > needed))
 }
 
-/// Puts spiked readings on the line between their neighbours.
+/// Replaces spiked readings by linear interpolation between their neighbours.
 fn bridge(x: &mut [f64], first: usize, length: usize) {
     let (from, to) = (x[first - 1], x[first + length]);
     for k in 0..length {

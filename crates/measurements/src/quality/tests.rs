@@ -1,4 +1,4 @@
-//! Each fault planted in clean loops is found, where it is, and nothing else is.
+//! Each fault planted in clean loops is found in the right place, and nothing else is found.
 
 use super::*;
 use crate::columns::{Columns, Trace};
@@ -35,7 +35,7 @@ fn plants(kind: FindingKind, rows: &[usize], fault: impl Fn(&mut Columns)) {
     }
 }
 
-/// A kind that is about the data as a whole.
+/// Requires a finding about the data as a whole.
 #[track_caller]
 fn has(quality: &Quality, kind: FindingKind, severity: Severity) -> String {
     let found = quality.of(kind).find(|finding| finding.severity == severity);
@@ -54,7 +54,7 @@ fn clean_loops_are_clean() {
             let columns = clean_loops(loops, seed);
             let found = quality(columns.clone());
             assert_eq!(found.findings, [], "{seed}");
-            // Neither labels nor their absence, nor lengths, nor the muscle's size matter.
+            // Labels or none, lengths and the muscle's size make no difference.
             let mut lengths = columns.clone();
             lengths.sweep = None;
             lengths.motion = Trace::Length(columns.motion.values().iter().map(|c| 0.3 * (1.0 - c)).collect());
@@ -98,7 +98,7 @@ fn time_that_goes_back_or_stands_still() {
         time.swap(100, 101);
         time[500] = time[499];
     });
-    // Without labels as well.
+    // The same without labels.
     let mut columns = clean_loops(2, 1);
     columns.sweep = None;
     columns.time_s.as_mut().unwrap().swap(100, 101);
@@ -130,7 +130,7 @@ fn pauses_within_a_run() {
 #[test]
 fn a_slack_muscle() {
     let columns = |c_max: f64, seed: u64| {
-        // Contracts beyond its free contraction of 1/2.8 = 35.7 %.
+        // The muscle contracts beyond its free contraction of 1/2.8 = 35.7 %.
         let mut noise = Noise::new(seed);
         let c: Vec<f64> = (0..=200)
             .map(|i| c_max * 0.5 * (1.0 - (std::f64::consts::TAU * f64::from(i) / 200.0).cos()))
@@ -147,9 +147,9 @@ fn a_slack_muscle() {
         let found = quality(slack);
         let rows = lines(&found, FindingKind::Slack);
         assert!(beyond.iter().all(|line| rows.contains(line)), "{found:#?}");
-        // Rows near zero on both sides are within its resolution.
+        // Rows near zero on both sides are within the resolution.
         assert!(rows.len() <= beyond.len() + 4, "{found:#?}");
-        // Up to the free contraction: a note at most.
+        // Up to the free contraction there is a note at most.
         let found = quality(columns(1.0 / 2.8, seed));
         assert!(found.worst() <= Some(Severity::Note), "{found:#?}");
     }
@@ -238,7 +238,7 @@ fn rows_that_are_there_twice() {
     );
     map.filter(&[0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 3]);
     assert_eq!(lines(&quality(map.clone()), FindingKind::DuplicateRow), [11]);
-    // Repeats of which some are equal by chance.
+    // Repeats, some of which are equal by chance.
     map.filter(&(0..30).map(|row| row % 10).collect::<Vec<_>>());
     for (row, force) in map.force_n.iter_mut().enumerate().skip(10).filter(|(row, _)| row % 10 != 7) {
         *force += row as f64;

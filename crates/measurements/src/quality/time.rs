@@ -1,4 +1,4 @@
-//! Time that stands still, goes back or pauses.
+//! Times that stand still, go back or pause.
 
 use super::{Finding, FindingKind, Gate, Severity, rows_in_words};
 use crate::resolution::median;
@@ -10,7 +10,8 @@ pub(super) fn find(gate: &Gate) -> Vec<Finding> {
     let is_labelled = data.columns().sweep.is_some();
     let (mut back, mut pauses, mut longest) = (Vec::new(), Vec::new(), 0.0_f64);
     for (i, sweep) in data.sweeps().iter().enumerate() {
-        // Without labels a run begins where the clock goes back. It was restarted if it goes back before the run before; else the rows are out of order.
+        // Without labels a run begins where the clock goes back. If it goes back to before the previous run,
+        // it was restarted; otherwise the rows are out of order.
         let before = i.checked_sub(1).map(|i| &data.sweeps()[i]);
         if let Some(before) = before
             && !is_labelled
@@ -22,7 +23,7 @@ pub(super) fn find(gate: &Gate) -> Vec<Finding> {
             if next > start && next < end {
                 back.push(sweep.rows.start);
             } else if next > end {
-                // A jump to another isobaric run is no pause.
+                // A jump to another isobaric run isn't a pause.
                 let mut steps: Vec<f64> = time[before.rows.clone()].windows(2).map(|w| w[1] - w[0]).collect();
                 if next - end > GAP * median(&mut steps) {
                     pauses.push(sweep.rows.start);
@@ -43,7 +44,7 @@ pub(super) fn find(gate: &Gate) -> Vec<Finding> {
             }
         }
     }
-    // A clock that runs backwards makes a run of every row.
+    // A clock that runs backwards makes every row a run.
     let starts = data.sweeps().iter().skip(1).map(|sweep| sweep.rows.start);
     let backwards: Vec<usize> = starts.filter(|row| time[*row] < time[*row - 1]).collect();
     if !is_labelled && 2 * backwards.len() > data.len() {

@@ -1,21 +1,21 @@
-//! Values that no muscle has, most often a wrong unit or sign.
+//! Impossible values, most often from a wrong unit or sign.
 
 use super::{Finding, FindingKind, Gate, Severity, rows_in_words};
 use crate::Motion;
 use crate::resolution::bounds;
 use std::f64::consts::PI;
 
-/// Less than a vacuum, as gauge pressure with some error of the zero \[Pa\].
+/// Below a vacuum as gauge pressure, with some margin for the zero error \[Pa\].
 const VACUUM: f64 = -1.05e5;
-/// More than any muscle holds, also a hydraulic one \[Pa\].
+/// Above the pressure that any muscle holds, hydraulic ones included \[Pa\].
 const BURST: f64 = 1.5e7;
-/// Less than any test is about, if all pressures are positive \[Pa\]: bars that were called pascals.
+/// Below the pressure of any test if all pressures are positive: bars labelled as pascals \[Pa\].
 const HARDLY: f64 = 20.0;
-/// More than any muscle pulls \[N\].
+/// Above the force of any muscle \[N\].
 const FORCE: f64 = 1e6;
-/// More than p pi r^2 is ever multiplied by.
+/// Above any ratio of the force to p pi r^2.
 const FORCE_OF_AREA: f64 = 1e3;
-/// Contractions that a muscle can have, compressed and overstretched.
+/// Contractions that are possible for a muscle, from overstretched to fully contracted.
 const CONTRACTION: [f64; 2] = [-1.0, 0.6];
 /// Temperatures at which muscles are tested \[K\].
 const TEMPERATURE: [f64; 2] = [150.0, 500.0];
@@ -28,7 +28,7 @@ pub(super) fn find(gate: &Gate) -> Vec<Finding> {
     found
 }
 
-/// Rows whose value is wrong; `what` comes after "3 rows with" and before the worst value and its unit.
+/// Rows with an impossible value; `what` comes after "3 rows with" and before the worst value and its unit.
 fn impossible(
     gate: &Gate,
     values: &[f64],
@@ -65,7 +65,7 @@ fn pressures(gate: &Gate) -> Vec<Finding> {
     );
     let (low, high) = bounds(values);
     let mean = values.iter().sum::<f64>() / values.len() as f64;
-    // Readings around zero are those of a vented muscle.
+    // Readings around zero belong to a vented muscle.
     let is_tiny = low >= 0.0 && high > 0.0 && high < HARDLY && mean > 0.25 * high;
     let tiny = impossible(
         gate,

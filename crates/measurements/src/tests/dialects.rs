@@ -1,4 +1,5 @@
-//! One table in the dialects of many laboratories: the same numbers, bit for bit, and what was made of each heading.
+//! One table in the dialects of many laboratories: it gives the same numbers, bit for bit, and the right
+//! meaning of each heading.
 
 #![expect(
     clippy::too_many_lines,
@@ -305,7 +306,8 @@ fn what_the_user_says_settles_it() {
     }
 }
 
-/// A displacement counts from the unpressurised length; its sign is seen from the force, said by its name, or stated.
+/// A displacement is measured from the unpressurised length; its sign is found from the force, given by its
+/// name, or stated.
 #[test]
 fn displacements() {
     let table = |name: &str, values: [f64; 5]| {
@@ -369,7 +371,7 @@ fn copies_and_times_out_of_order() {
     let data = reads("copied", copied.as_bytes(), "");
     assert_eq!((data.len(), data.set_apart()[0].row), (5, 7));
     assert_eq!(data.set_apart()[0].reason, "equal to row 3 in every column");
-    // A clock of whole seconds: a muscle at rest reads the same again.
+    // With a clock of whole seconds, a muscle at rest reads the same again.
     let coarse = "0,1,300,5\n0,1,299,5\n1,1,298,5\n1,1,298,5\n";
     assert_eq!(reads("coarse", format!("{header}{coarse}").as_bytes(), "").len(), 4);
     // A time that begins again is another run, as before.
@@ -377,7 +379,7 @@ fn copies_and_times_out_of_order() {
     let mut shuffled = header.to_owned();
     for i in 0..40_u32 {
         writeln!(runs, "{},{},{},5", i % 10, 1 + i / 10, 300 - i % 10).unwrap();
-        // The readings follow the file, not the times.
+        // The readings follow the order in the file, not the times.
         writeln!(shuffled, "{},1,{},{}", i * 17 % 40, 300 - i, 500 - 3 * i).unwrap();
     }
     let data = reads("runs", runs.as_bytes(), "");
@@ -414,7 +416,7 @@ fn a_computed_contraction_is_left_aside() {
     assert!(error.contains("both given"), "{error}");
 }
 
-/// A way of writing a table.
+/// A dialect: a way of writing a table.
 #[derive(Debug, Clone)]
 struct Dialect {
     separator: usize,
@@ -430,7 +432,7 @@ fn dialect() -> impl Strategy<Value = Dialect> {
     (0..3_usize, any::<bool>(), 0..4_usize, 0..4_usize, any::<bool>(), 0..6_usize, any::<bool>()).prop_map(
         |(separator, comma, encoding, metadata, units, header, crlf)| Dialect {
             separator,
-            // Commas can't be both.
+            // A comma can't be both.
             comma: comma && separator > 0,
             encoding,
             metadata,
@@ -487,7 +489,7 @@ impl Dialect {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// The same numbers are the same columns, however they are written.
+    /// The same numbers give the same columns in any dialect.
     #[test]
     fn any_dialect_gives_the_same_bits(
         dialect in dialect(),

@@ -1,9 +1,10 @@
-//! Files that leave out what a person would know: their units, which header counts, what a clock's hour was.
+//! Files without information that their authors take for granted: units, which header counts, the hour of a
+//! clock.
 
 use super::dialects::{ROWS, equal, options, reads, rows};
 use crate::{Data, ReadOptions};
 
-/// A muscle of 300 mm that pulls what the rows say at 2.5 bar.
+/// A muscle of 300 mm with the forces of the rows at 2.5 bar.
 fn muscle(columns: &str) -> ReadOptions {
     ReadOptions { pull: vec![[0.0, 812.25 / 2.5e5], [0.1, 420.0 / 2.5e5]], ..options(columns) }
 }
@@ -31,7 +32,7 @@ fn refused(name: &str, text: &str, parts: &[&str]) {
     }
 }
 
-/// The unit that is possible alone is taken, and said.
+/// The only possible unit is taken and reported.
 #[test]
 fn units_are_known_by_the_size_of_the_readings() {
     for (name, header, factors) in [
@@ -61,7 +62,7 @@ fn units_are_known_by_the_size_of_the_readings() {
     assert_eq!(guesses("units in the fields", inside).pressure(), [2.5e5; 2]);
 }
 
-/// Where two are possible, or none is, one message says what to write; what it says leads on.
+/// If two units are possible, or none, one message says what to write, and doing so works.
 #[test]
 fn units_that_the_readings_do_not_show_are_asked_for() {
     let table = |factors| format!("t,p,l,F\n{}", scaled(factors));
@@ -87,11 +88,11 @@ fn units_that_the_readings_do_not_show_are_asked_for() {
         &["some of its fields have one"],
     );
     refused("an unknown one", "t,p [furlong],l [mm],F\n0,2,300,812\n", &["`p [furlong]`"]);
-    // Without a muscle nothing is known but the size of a pressure.
+    // Without a muscle only the size of a pressure is known.
     let plain = Data::from_csv(&format!("t,p,l [mm],F\n{}", rows(",", false)), "d.csv").unwrap_err();
     assert!(plain.to_string().contains("bar (up to 2.5 bar)"), "{plain}");
     equal("settled", &reads("settled", table([1.0; 4]).as_bytes(), "length=l [mm], pressure=p [bar]"));
-    // What an analysis can do without doesn't stop it.
+    // A column that an analysis doesn't need doesn't stop it.
     let other = format!("t,p [bar],l [mm],F,Temp\n{}", rows(",", false).replace('\n', ",21\n"));
     let data = guesses("no unit of temperature", &other);
     assert_eq!((data.temperature(), data.reading().columns[4].quantity.as_deref()), (None, None));

@@ -51,7 +51,7 @@ fn parquet(path: &Path, schema: &str, groups: &[&dyn Fn(&mut SerializedRowGroupW
     writer.close().unwrap();
 }
 
-// The schema parser has no names with blanks and brackets other than bare ones: "length[mm]" is read like "length [mm]".
+// The schema parser only knows bare names with blanks and brackets: "length[mm]" is read like "length [mm]".
 const SCHEMA: &str =
     "message schema { required double pressure[bar]; required float length[mm]; required int32 force[N];
     optional double time[s]; required int64 cycle; required binary specimen (UTF8); }";
@@ -97,7 +97,7 @@ fn parquet_reads_like_csv() {
     let rows = |data: &Data| (0..data.len()).map(|row| data.specimen_of(row)).collect::<Vec<u32>>();
     assert_eq!((rows(&found), found.specimens()), (rows(&csv), csv.specimens()));
     assert_eq!((found.line(2), csv.line(2)), ((0, 3), (0, 4)));
-    // The first bytes tell, whatever the name.
+    // The first bytes decide, whatever the name.
     for name in ["data", "data.csv", "data.dat"] {
         let other = folder.path().join(name);
         std::fs::copy(&path, &other).unwrap();
@@ -136,7 +136,7 @@ fn parquet_defects_name_column_and_row() {
     let text = fill(&|group| column::<ByteArrayType>(group, &["5".into(), "x5".into()], None));
     parquet(&path, &schema("required binary force[N] (UTF8);"), &[&text]);
     says(&["`force[N]` is not a number (row 2)"]);
-    // Dates and decimals are integers in disguise.
+    // Dates and decimals are stored as integers.
     let date = fill(&|group| column::<Int32Type>(group, &[5, 6], None));
     parquet(&path, &schema("required int32 force[N] (DATE);"), &[&date]);
     says(&["`force[N]`", "INT32 as Date:", "int64"]);
@@ -180,7 +180,7 @@ fn several_files_are_one_analysis() {
     let [one, two] = [&data.files()[0].sha256, &data.files()[1].sha256];
     assert!(one != two && one.len() == 64 && data.sha256().len() == 64);
     assert_eq!(Data::read(&[&first]).unwrap().sha256(), *one);
-    // What is left of a file keeps its lines.
+    // A subset keeps the line numbers of the file.
     assert_eq!(data.subset(&[false, true, false, true, true]).line(1), (1, 3));
 
     let copy = written(folder.path(), "copy.csv", &std::fs::read_to_string(&first).unwrap());
@@ -233,7 +233,7 @@ fn files_that_can_not_be_read() {
     assert!(message.contains("absent.csv: can't be read"), "{message}");
     let message = Data::read(&[folder.path()]).unwrap_err().to_string();
     assert!(message.contains("it is a folder"), "{message}");
-    // A sparse file of more than 2 GiB is refused by its size, before it is read.
+    // A sparse file of more than 2 GiB is refused for its size before it is read.
     let huge = folder.path().join("huge.csv");
     File::create(&huge).unwrap().set_len((2 << 30) + 1).unwrap();
     let message = Data::read(&[&huge]).unwrap_err().to_string();
@@ -255,7 +255,7 @@ fn martens_boblan_2017_table_a1() {
     assert!(matches!(data.motion(), Motion::Length(lengths) if lengths[65] == 0.222));
     let options = bulge_measurements::QualityOptions { l0_m: Some(0.3), radius_m: Some(0.01) };
     let quality = data.quality(&options);
-    // Free contractions only.
+    // The findings are free contractions only.
     assert!(quality.worst() <= Some(bulge_measurements::Severity::Note), "{quality:#?}");
     assert_eq!(quality.of(bulge_measurements::FindingKind::Slack).map(|found| found.count).sum::<usize>(), 6);
 }

@@ -1,4 +1,5 @@
-//! Histories with known answers: loops, minor loops, dwells, isometric ramps; sweeps that are labelled or found.
+//! Histories with known answers: loops, minor loops, dwells, isometric ramps; sweeps that are labelled or
+//! found.
 
 #![expect(
     clippy::unwrap_used,
@@ -19,7 +20,7 @@ fn timed(contraction: Vec<f64>) -> Data {
     Data::from_columns(columns).unwrap()
 }
 
-/// From corner to corner in so many rows.
+/// Linear interpolation from corner to corner, with the given numbers of rows.
 fn polyline(corners: &[(f64, usize)]) -> Vec<f64> {
     let mut values = vec![corners[0].0];
     for pair in corners.windows(2) {
@@ -92,7 +93,7 @@ fn dwells_between_ramps() {
     let expected = [(102, 1.0), (50, 0.0), (37, -1.0), (40, 0.0), (53, -1.0), (60, 0.0)];
     let directions = expected.iter().flat_map(|(rows, direction)| std::iter::repeat_n(*direction, *rows));
     close(&history.direction, directions, 0.0);
-    // A rest keeps the approach and the way since the reversal; its rate is 0.
+    // A rest keeps the approach and the distance since the reversal; its rate is 0.
     assert_eq!([120, 210, 330].map(|row| history.approach[row]), [1.0, -1.0, -1.0]);
     assert_eq!([120, 210, 330].map(|row| history.rate[row]), [0.0; 3]);
     let since = [120, 210, 330].map(|row| history.since_reversal[row]);
@@ -118,7 +119,7 @@ fn lengths_become_contractions() {
 
 #[test]
 fn isometric_ramps_and_holds() {
-    // The rig gives way by 0.05 % while the pressure rises.
+    // The rig has a compliance of 0.05 % while the pressure rises.
     let rows = 200;
     let ramp = |row: usize| 1.5e3 * row as f64;
     let mut columns = Columns::new(
@@ -231,7 +232,7 @@ fn force(pressure: f64, contraction: f64) -> f64 {
     2e-3 * pressure * (1.0 - 2.8 * contraction)
 }
 
-/// A recording that runs on, of states (pressure, contraction, force).
+/// A continuous recording of states (pressure, contraction, force).
 fn recorded(rows: usize, step_s: f64, state: &dyn Fn(usize) -> [f64; 3]) -> Data {
     let column = |i: usize| (0..rows).map(|row| state(row)[i]).collect::<Vec<f64>>();
     let mut columns = Columns::new(column(0), Trace::Contraction(column(1)), column(2));
@@ -250,7 +251,7 @@ fn jitter(row: usize) -> f64 {
 
 #[test]
 fn sweeps_are_found_where_an_isobar_ends() {
-    // Half loops at three pressures, the clock and the recording run on.
+    // Half loops at three pressures in a continuous recording.
     let state = |row: usize| {
         let (level, part) = (row / 200, (row % 200) as f64 / 199.0);
         (1e5 * (1 + level) as f64, 0.1 - 0.1 * (PI * part).cos())
@@ -259,10 +260,10 @@ fn sweeps_are_found_where_an_isobar_ends() {
     let data = recorded(600, 0.01, &|row| with_force(state(row)));
     assert_eq!(ranges(&data), [0..200, 200..400, 400..600]);
     assert_eq!(kinds(&data), [SweepKind::Shortening; 3]);
-    // Also where the muscle starts short, and the jump goes the way of the pressure.
+    // Also if the muscle starts short, and the length jumps in the direction of the pressure.
     let long = |row: usize| with_force((state(row).0, 0.2 - state(row).1));
     assert_eq!(kinds(&recorded(600, 0.01, &long)), [SweepKind::Lengthening; 3]);
-    // Steps of pressure under a weight are one run: the force hardly changes, however slowly the muscle follows.
+    // Pressure steps under a weight are one run: the force hardly changes, however slowly the muscle follows.
     for slow in [1.0, 40.0] {
         let steps = |row: usize| {
             let follows = 1.0 - (-((row % 100) as f64) / slow).exp();
@@ -300,11 +301,11 @@ fn loops_at_four_pressures_in_one_recording_are_four_sweeps() {
         assert_eq!(data.sweeps().len(), 4, "{case}: {:?}", ranges(&data));
         assert!(kinds(&data).iter().all(|kind| *kind == SweepKind::Loop), "{case}");
         for (level, sweep) in data.sweeps().iter().enumerate() {
-            // The rows of a ramp belong to the run that they lead to, but for its last ones at the pressure before.
+            // The rows of a ramp belong to the next run, except for its last ones at the previous pressure.
             assert!(sweep.rows.start.abs_diff(level * all) <= ramp / 4, "{case}: {:?}", ranges(&data));
         }
         let between = data.between_isobars();
-        // Where the pressure droops and is noisy, a row or two of a run look like its steps.
+        // If the pressure droops and is noisy, a row or two of a run look like its steps.
         assert!(between.len() <= 3 * ramp + 2 && between.len() >= 3 * ramp / 2, "{case}: {}", between.len());
         assert!(between.iter().all(|row| (row + 2) % all < ramp + 4), "{case}");
     }
@@ -319,7 +320,7 @@ fn droop_and_pressure_that_drives_split_nothing() {
         [p, loops(row), force(p, loops(row))]
     };
     assert_eq!(ranges(&recorded(800, 0.05, &droop)).len(), 1);
-    // Filling and venting at held length; a staircase of pressure there; pressure and length that both run.
+    // Filling and venting at held length; a pressure staircase there; pressure and length that move together.
     let fill = |row: usize| {
         let p = 3e5 * (1.0 - (2.0 * (row % 1000) as f64 / 1000.0 - 1.0).abs());
         [p, 0.1 + 1e-4 * jitter(row), force(p, 0.1)]
@@ -371,7 +372,7 @@ fn labels_that_contradict_their_rows_fall_apart() {
     });
     assert_eq!(found, [0..150, 150..300]);
     assert!(says.starts_with("the specimen changes"), "{says}");
-    // Labels of one run each say nothing wrong.
+    // Labels of one run each are correct.
     let (found, says) = labelled(&|columns| {
         columns.sweep = Some((0..300).map(|row| (row / 100).to_string()).collect());
     });
@@ -380,10 +381,11 @@ fn labels_that_contradict_their_rows_fall_apart() {
 
 #[test]
 fn the_direction_at_turning_points_is_in_doubt() {
-    // A triangle along set points, of which the upper one is read twice.
+    // A triangle along set points, the upper one of which is read twice.
     let way = [0.0, 0.05, 0.1, 0.15, 0.2, 0.2, 0.15, 0.1, 0.05, 0.0];
     assert_eq!(timed(way.to_vec()).direction_in_doubt(), [0, 4, 5]);
-    // Dense and noisy: as far as the noise feigns a way; rows at rest in a long hold have no direction to doubt.
+    // Dense and noisy rows: as far as the noise looks like motion. The direction of rows at rest in a long
+    // hold isn't uncertain.
     let corners = [(0.0, 0), (0.2, 1000), (0.2, 400), (0.0, 1000)];
     let noisy: Vec<f64> =
         polyline(&corners).iter().enumerate().map(|(row, c)| c + 1e-4 * jitter(row)).collect();
@@ -420,7 +422,8 @@ fn subsets_keep_the_structure() {
     assert!(data.subset(&[]).history(1.0).direction.is_empty());
 }
 
-/// Filling and venting at one length: the pressure goes to and fro, the rig gives way by 0.1 mm, and nothing shortens.
+/// Filling and venting at one length: the pressure goes to and fro, the rig gives way by 0.1 mm, and the
+/// muscle doesn't shorten.
 #[test]
 fn at_held_length_the_pressure_says_where_the_loop_turns() {
     let mut text = String::from("time [s], pressure [bar], length [mm], force [N]\n");
@@ -444,7 +447,7 @@ fn at_held_length_the_pressure_says_where_the_loop_turns() {
     assert_eq!([history.branch[100], history.branch[101], history.branch[300]], [0, 1, 2]);
 }
 
-/// Filling and venting in triangles of 100 rows each way, with what the length does and a force.
+/// Filling and venting in triangles of 100 rows each way, with a given length and force.
 fn driven_by_pressure(
     length_mm: impl Fn(f64, u32) -> f64,
     force: impl Fn(f64) -> f64,
@@ -457,7 +460,7 @@ fn driven_by_pressure(
         let pressure = 1.0 + 5.0 * if phase < 1.0 { phase } else { 2.0 - phase };
         let (length, force) = (length_mm(pressure, i), force(pressure));
         let _ = write!(text, "{:.2},{pressure:.4},{length:.4},{force:.1}", 0.1 * f64::from(i));
-        // A file that counts the first three rows of each branch to the one before.
+        // A file that assigns the first three rows of each branch to the one before.
         let stated = if (i.max(3) - 3) % 200 < 100 { 1 } else { -1 };
         let _ = if direction { writeln!(text, ",{stated}") } else { writeln!(text) };
     }
@@ -468,7 +471,7 @@ fn driven_by_pressure(
 fn under_a_weight_a_sweep_is_isotonic() {
     let lengthens = |pressure: f64, _| 250.0 - 8.0 * pressure;
     assert_eq!(kinds(&driven_by_pressure(lengthens, |_| 300.0, false)), [SweepKind::Isotonic]);
-    // Friction of the guide is no reason; a force that follows the pressure is.
+    // Friction of the guide makes no difference, but a force that follows the pressure does.
     assert_eq!(kinds(&driven_by_pressure(lengthens, |p| 300.0 + 5.0 * p, false)), [SweepKind::Isotonic]);
     assert_eq!(kinds(&driven_by_pressure(lengthens, |p| 100.0 * p, false)), [SweepKind::Loop]);
     let history = driven_by_pressure(lengthens, |_| 300.0, false).history(0.25);
@@ -482,7 +485,8 @@ fn a_held_length_that_drifts_is_held_and_told() {
         let found = data.quality(&QualityOptions::default());
         found.of(FindingKind::HeldLengthDrifts).next().map(|finding| finding.says.clone())
     };
-    // The frame gives way by 0.6 % of the length; the clamp creeps by as much; a length driven to and fro at each pressure is a motion.
+    // The frame gives way by 0.6 % of the length, and the clamp creeps by as much; a length driven to and fro
+    // at each pressure is a motion.
     let pulls = |p: f64| 100.0 * p;
     let cases = [
         (driven_by_pressure(|p, _| 240.0 + 0.3 * (p - 1.0), pulls, false), SweepKind::Isometric),
@@ -512,7 +516,7 @@ fn stated_directions_are_taken_where_they_go_with_the_motion() {
         );
         assert_eq!(history.approach[50], 1.0);
     }
-    // Labels the other way round are none.
+    // Reversed labels aren't used.
     let mut columns = Columns::new(
         vec![2e5; 40],
         Trace::Contraction((0..40).map(|row| 0.005 * f64::from(row)).collect()),

@@ -1,4 +1,5 @@
-//! Files of measurements, what is found in them, and what they survive: one program of tests, one module for each part.
+//! Reading files of measurements, analysing them, and surviving bad ones: one test program, one module for
+//! each part.
 
 mod files;
 mod history;

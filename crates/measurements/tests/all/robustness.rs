@@ -1,4 +1,5 @@
-//! Whatever the bytes: a data set whose every question is answered with finite numbers, or an error of one line. No panic, no hang.
+//! Any bytes give either a data set whose every method returns finite numbers, or an error of one line.
+//! Nothing panics or hangs.
 
 #![expect(
     clippy::unwrap_used,
@@ -9,7 +10,7 @@ use bulge_measurements::{Data, History, MeasurementError, QualityOptions};
 use proptest::prelude::*;
 use std::fmt::Write as _;
 
-/// Asks everything of a data set.
+/// Calls every method of a data set.
 fn ask(data: &Data) {
     let History {
         direction, approach, rate, since_reversal, time_since_reversal, time, cycle, branch, ..
@@ -48,13 +49,13 @@ fn read(text: &str) {
     }
 }
 
-/// A bounded text with the file in it; of several complaints each has its line.
+/// The message is a bounded text with the file in it; each of several complaints has its line.
 fn complete(error: &MeasurementError) {
     let message = error.to_string();
     assert!(message.contains("any.") && message.lines().count() < 25 && message.len() < 8000, "{message}");
 }
 
-/// A table that is right.
+/// A valid table.
 fn table(rows: usize) -> String {
     let mut text =
         "# rig 3\ntime [s],pressure [bar],length [mm],force [N],sweep,direction,cycle\n".to_owned();
@@ -167,7 +168,7 @@ proptest! {
         read(&text);
     }
 
-    /// Steps up, down and none at equal times: every history is a path of rows.
+    /// Steps up and down and equal values, at equal times: every history is a path of rows.
     #[test]
     fn any_zigzag(steps in prop::collection::vec(-3..4_i32, 1..120), has_time in any::<bool>()) {
         let mut text = format!("sweep,pressure [bar],contraction [%],force [N]{}\n", if has_time { ",time [s]" } else { "" });
@@ -189,7 +190,7 @@ fn every_cut_of_a_table() {
     }
 }
 
-/// A valid file of Parquet with bytes changed.
+/// A valid Parquet file with changed bytes.
 #[test]
 fn changed_bytes_of_parquet() {
     use parquet::data_type::DoubleType;

@@ -1,4 +1,5 @@
-//! The ends of a muscle: between which fittings a contraction is measured, and which way they pull.
+//! The ends of a muscle: the fittings between which a contraction is measured, and the direction in which
+//! they pull.
 
 use serde::Serialize;
 
@@ -6,17 +7,18 @@ use crate::mesh::Mesh;
 use crate::state::Copies;
 use crate::structure::Support;
 
-/// The uppermost and the lowest fitting by the mean z of their nodes in the mesh. With one fitting only, the other end is a plane or is fixed,
-/// and stays.
+/// The uppermost and the lowest fitting by the mean z of their nodes in the mesh. With a single fitting, the
+/// other end is a plane or is fixed, and doesn't move.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Ends {
-    /// The fitting that comes nearer to the other end as the muscle contracts: the upper one, if there are two.
+    /// The fitting that approaches the other end as the muscle contracts: the upper one if there are two.
     pub moving: usize,
     /// The fitting at the other end.
     pub other: Option<usize>,
-    /// 1 if the moving one is the upper end, -1 if it is the lower.
+    /// 1 if the moving end is the upper one, -1 if it is the lower one.
     pub sign: f64,
-    /// Distance of the two in the mesh, m; of a lone fitting from the far end of the mesh.
+    /// Distance between the two in the mesh, m; for a single fitting, its distance from the far end of the
+    /// mesh.
     pub distance: f64,
 }
 
@@ -51,12 +53,12 @@ impl Ends {
         Some(Self { moving: upper, other: None, sign, distance: up.max(down) })
     }
 
-    /// How much farther apart the ends of the mesh are than in the mesh, m, from the places of all fittings.
+    /// Increase of the distance between the ends relative to the mesh, m, from the positions of all fittings.
     pub(crate) fn apart(&self, places: &[f64]) -> f64 {
         self.sign * (places[self.moving] - self.other.map_or(0.0, |other| places[other]))
     }
 
-    /// The place of the moving fitting at a contraction.
+    /// The position of the moving fitting at a contraction.
     pub(crate) fn place(&self, contraction: f64, length: f64, copies: Copies, places: &[f64]) -> f64 {
         let other = self.other.map_or(0.0, |other| places[other]);
         other - self.sign * contraction * length / copies.along

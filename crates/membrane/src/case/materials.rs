@@ -40,7 +40,7 @@ const KINDS: &[(&str, Kind)] = &[
     ("orthotropic", Kind::Orthotropic),
 ];
 
-/// What wrinkles leave of the stiffness.
+/// Fraction of the stiffness that a wrinkled sheet keeps.
 const RESIDUAL: f64 = 1e-6;
 
 pub(super) fn read(settings: &Settings<'_>) -> Result<Vec<(String, Sheet)>, FileError> {

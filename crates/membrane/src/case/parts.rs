@@ -1,4 +1,4 @@
-//! What the groups of a case's mesh are made of.
+//! Materials of the groups of a case's mesh.
 
 use bulge_muscles::settings::{Keys, Setting, Settings};
 use bulge_muscles::{Construction, Dimension, FileError, Muscle, Parameter};
@@ -69,7 +69,8 @@ pub(super) fn read(
         check_cells(table, source, group, kind)?;
         let part = part(table, kind, source, materials)?;
         match (parts.iter_mut().find(|(name, _)| name == group), part) {
-            // Layers of a membrane of revolution lie on each other; no others may share a group, which is refused when the structure is built.
+            // Layers of a membrane of revolution lie on each other. No other parts may share a group;
+            // building the structure refuses them.
             (Some((_, Part::Revolved { layers })), Part::Revolved { layers: more }) => layers.extend(more),
             (_, part) => parts.push((group.to_owned(), part)),
         }
@@ -165,7 +166,7 @@ fn part(
                     return Err(table.error(table.value_span("fibres"), what, "leave the part out"));
                 }
                 (Some(count), _) | (None, Some(count)) => count,
-                // Only their sum matters where they can't stretch.
+                // Only their sum matters if they are inextensible.
                 (None, None) => 1,
             };
             let braid = muscle.and_then(|muscle| match muscle.construction() {
@@ -189,7 +190,7 @@ fn part(
         Kind::Facet => Part::Membrane { sheet: None, warp: [1.0, 0.0, 0.0] },
         Kind::Cable => {
             let share = number(table, "share", |x| x > 0.0 && x <= 1.0, "above 0 and at most 1")?;
-            // On a plane of symmetry of our own mesher lies half a fibre.
+            // In meshes of our own mesher, half a fibre lies on a plane of symmetry.
             let usual = if source
                 .supports
                 .iter()

@@ -1,4 +1,4 @@
-//! Case files: TOML into a case, with the place and the cure for everything that is wrong.
+//! Case files: parses TOML into a case. Every error has its place and its remedy.
 
 use bulge_muscles::settings::{Document, FileKind, Keys, Settings};
 use bulge_muscles::{Dimension, FileError, Muscle, Parameter};
@@ -9,7 +9,7 @@ use crate::material::Thread;
 use crate::state::{Copies, Tolerance};
 use crate::structure::Part;
 
-/// What messages call the file.
+/// Name of the file in messages.
 const KIND: FileKind = FileKind { name: "membrane case", file: "case.toml", line: "pressure = \"3 bar\"" };
 
 const TOP: Keys = &[
@@ -30,7 +30,8 @@ const MOST_ITERATIONS: u32 = 100_000;
 const SOLVER: Keys = &[("residual", "residual = 1e-10"), ("iterations", "iterations = 2000")];
 
 impl Case {
-    /// Reads a case file; [`super::CASE_EXAMPLE`] has every key. The mesh and the muscle that it names stand beside it.
+    /// Reads a case file; [`super::CASE_EXAMPLE`] has every key. The mesh and the muscle that it names are
+    /// relative to its folder.
     ///
     /// # Errors
     /// If the file, its mesh or its muscle can't be read, or if it is no valid case. The message is complete.
@@ -40,8 +41,8 @@ impl Case {
         Self::from_toml(&text, &origin, path.parent())
     }
 
-    /// Reads a case from TOML text; `origin` is what messages call the text, and `folder` is where its mesh and its muscle lie, if not in the
-    /// current one.
+    /// Reads a case from TOML text. `origin` is its name in messages; `folder` contains its mesh and its
+    /// muscle, if they aren't in the current one.
     ///
     /// ```
     /// use bulge_membrane::case::{CASE_EXAMPLE, Case};
@@ -53,7 +54,7 @@ impl Case {
     /// ```
     ///
     /// # Errors
-    /// With the place and the cure, if the text is no valid case.
+    /// If the text is no valid case; the error has the place and the remedy.
     pub fn from_toml(text: &str, origin: &str, folder: Option<&Path>) -> Result<Self, FileError> {
         let document = Document::parse(KIND, text, origin)?;
         let settings = document.settings("the case", TOP);
@@ -115,7 +116,7 @@ fn tolerance(settings: &Settings<'_>) -> Result<Tolerance, FileError> {
     Ok(tolerance)
 }
 
-/// A pure number that must pass a test.
+/// A dimensionless number that satisfies a condition.
 pub(super) fn number(
     settings: &Settings<'_>,
     key: &str,
@@ -125,7 +126,7 @@ pub(super) fn number(
     in_range(settings, key, Dimension::NONE, is_good, range)
 }
 
-/// A quantity that must pass a test, in SI.
+/// A quantity that satisfies a condition, in SI.
 pub(super) fn in_range(
     settings: &Settings<'_>,
     key: &str,
@@ -151,12 +152,12 @@ pub(super) fn positive(
     in_range(settings, key, dimension, |x| x > 0.0, "> 0")
 }
 
-/// The same where it must be there.
+/// The same for a mandatory key.
 pub(super) fn needed(settings: &Settings<'_>, key: &str, dimension: Dimension) -> Result<f64, FileError> {
     positive(settings, key, dimension)?.ok_or_else(|| settings.missing(key))
 }
 
-/// Three pure numbers, not all zero.
+/// Three dimensionless numbers, not all zero.
 pub(super) fn direction(settings: &Settings<'_>, key: &str) -> Result<Option<[f64; 3]>, FileError> {
     let Some(value) = settings.get(key) else { return Ok(None) };
     let items = value.items().unwrap_or_default();
@@ -175,7 +176,7 @@ pub(super) fn direction(settings: &Settings<'_>, key: &str) -> Result<Option<[f6
     }
 }
 
-/// A name that must be there and not be empty.
+/// A mandatory nonempty name.
 pub(super) fn name<'a>(settings: &Settings<'a>, key: &str) -> Result<&'a str, FileError> {
     let text = settings.text(key)?.ok_or_else(|| settings.missing(key))?;
     if text.trim().is_empty() {
@@ -185,7 +186,7 @@ pub(super) fn name<'a>(settings: &Settings<'a>, key: &str) -> Result<&'a str, Fi
     Ok(text)
 }
 
-/// How many copies of a mesh from a file make the whole.
+/// Number of copies of a mesh from a file in the whole structure.
 pub(super) fn copies(settings: &Settings<'_>) -> Result<Copies, FileError> {
     let one = |key: &str| {
         let count = number(

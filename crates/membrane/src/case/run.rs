@@ -1,4 +1,4 @@
-//! A case run: state after state, each an equilibrium.
+//! Runs a case: a sequence of states, each an equilibrium.
 
 use serde::Serialize;
 use thiserror::Error;
@@ -11,13 +11,13 @@ use crate::solver::Solver;
 use crate::state::{Effort, State};
 use crate::structure::{Fitting, Structure};
 
-/// Why a case gives no next state.
+/// Reasons why a case has no next state.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum CaseError {
-    /// The case doesn't make a structure.
+    /// The case doesn't define a valid structure.
     #[error("{0}")]
     Structure(#[from] MembraneError),
-    /// No equilibrium was found; those before stand.
+    /// No equilibrium was found; the earlier states remain valid.
     #[error("state {state} (step {step}): {source}")]
     State {
         /// Step, from 1.
@@ -29,7 +29,7 @@ pub enum CaseError {
     },
 }
 
-/// One state in numbers.
+/// The results of one state.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Row {
     /// State, from 1.
@@ -42,15 +42,15 @@ pub struct Row {
     /// Volume, m^3.
     #[serde(rename = "volume_m3")]
     pub volume: f64,
-    /// Contraction, where the case has a length.
+    /// Contraction, if the case has a length.
     pub contraction: Option<f64>,
-    /// Force with which the ends are pulled together, N: what the muscle pulls with.
+    /// Force that pulls the ends together, N: the pulling force of the muscle.
     #[serde(rename = "force_n")]
     pub force: Option<f64>,
     /// Largest diameter, m.
     #[serde(rename = "largest_diameter_m")]
     pub diameter: f64,
-    /// Shares of the sheets that are taut, wrinkled and slack.
+    /// Fraction of the sheets that is taut; the next two fields are those wrinkled and slack.
     pub taut: f64,
     /// See `taut`.
     pub wrinkled: f64,
@@ -65,22 +65,22 @@ pub struct Row {
     /// Stored energy, J.
     #[serde(rename = "energy_j")]
     pub energy: f64,
-    /// Directions in which the energy falls: above 0 the equilibrium is unstable.
+    /// Number of directions in which the energy decreases: above 0 the equilibrium is unstable.
     pub unstable: usize,
     /// Iterations.
     pub iterations: usize,
-    /// Residual over the forces at a node.
+    /// Residual relative to the forces at a node.
     pub residual: f64,
 }
 
-/// A case on its way.
+/// A case in progress.
 pub struct CaseRun<'a> {
     case: &'a Case,
     solver: Solver,
     last: State,
-    /// Prescribed places and forces.
+    /// Prescribed positions and forces.
     fittings: Vec<f64>,
-    /// The step under way: its number, its load at the beginning and at the end, and the states made.
+    /// The current step: its number, its load at the beginning and at the end, and the states done.
     at: usize,
     made: usize,
     under_way: Option<(Load, Load)>,
@@ -90,10 +90,11 @@ pub struct CaseRun<'a> {
 }
 
 impl Case {
-    /// The structure, ready to be loaded.
+    /// The structure, ready for loading.
     ///
     /// # Errors
-    /// If the mesh has an element without area, an edge of a cyclic sector without partner, or nothing that can move.
+    /// If the mesh has an element without area, if an edge of a cyclic sector has no partner, or if nothing
+    /// can move.
     pub fn start(&self) -> Result<CaseRun<'_>, CaseError> {
         let fittings: Vec<Fitting> = self.fittings.iter().map(|(_, fitting)| *fitting).collect();
         let structure = Structure::new(&self.mesh, &self.parts, &self.supports, &fittings)?;
@@ -112,7 +113,7 @@ impl Case {
         })
     }
 
-    /// States that it asks for.
+    /// Total number of states.
     #[must_use]
     pub fn states(&self) -> usize {
         self.steps.iter().map(|step| step.states).sum()
@@ -120,29 +121,31 @@ impl Case {
 }
 
 impl CaseRun<'_> {
-    /// The solver: sizes and effort.
+    /// The computational effort so far.
     #[must_use]
     pub fn effort(&self) -> Effort {
         self.solver.effort()
     }
 
-    /// Unknowns, numbers of the stiffness matrix and of its factors.
+    /// Number of unknowns, and of entries of the stiffness matrix and its factors.
     #[must_use]
     pub fn sizes(&self) -> [usize; 3] {
         let (matrix, factors) = self.solver.sizes();
         [self.solver.structure().unknowns(), matrix, factors]
     }
 
-    /// Elements.
+    /// Number of elements.
     #[must_use]
     pub fn elements(&self) -> usize {
         self.solver.structure().elements()
     }
 
-    /// The next state; `None` after the last. `seen` is told each equilibrium on the way with its share of it.
+    /// The next state; `None` after the last one. `seen` is called with each equilibrium on the way and its
+    /// fraction of the way.
     ///
     /// # Errors
-    /// [`CaseError::State`]; the states before stand, and the run ends. [`Self::rescued`] has what was found on the way.
+    /// [`CaseError::State`]; the earlier states remain valid, and the run ends. [`Self::rescued`] returns the
+    /// last equilibrium on the way.
     pub fn advance(
         &mut self,
         seen: impl FnMut(f64, &State),
@@ -208,7 +211,7 @@ impl CaseRun<'_> {
         Err(MembraneError::Collapsed { what })
     }
 
-    /// Where a state wasn't reached, the last equilibrium on the way to it, with the number of that state.
+    /// If a state wasn't reached, the last equilibrium on the way to it, with the number of that state.
     pub fn rescued(&mut self) -> Option<(Row, State, Fields)> {
         let (step, state) = self.rescued.take()?;
         self.last = state.clone();
@@ -216,7 +219,7 @@ impl CaseRun<'_> {
         Some((self.row(step, &state, &fields), state, fields))
     }
 
-    /// All states; the row of the last.
+    /// Computes all states and returns the row of the last one.
     ///
     /// # Errors
     /// As [`Self::advance`].
@@ -237,7 +240,7 @@ impl CaseRun<'_> {
         (&self.last, fields)
     }
 
-    /// The loads at the beginning and at the end of a step, in the same kind of inflation.
+    /// The loads at the beginning and at the end of a step, with the same kind of inflation.
     fn loads(&self, step: &Step) -> Result<(Load, Load), MembraneError> {
         let (begin, end) = match step.filling {
             Filling::Pressure(p) => (Inflation::Pressure(self.last.pressure), Inflation::Pressure(p)),
@@ -265,7 +268,7 @@ impl CaseRun<'_> {
         let summary = fields.summary();
         let ends = self.case.ends;
         let contraction = ends.zip(self.case.length).map(|(ends, length)| {
-            // Not -0.
+            // Avoids -0.
             0.0 - self.case.copies.along * ends.apart(&state.fittings) / length
         });
         let [taut, wrinkled, slack] = summary.shares;

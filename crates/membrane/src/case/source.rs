@@ -1,4 +1,4 @@
-//! Where the mesh of a case comes from: a file, or one of our meshers.
+//! The mesh of a case: from a file, or from one of our meshers.
 
 use bulge_muscles::settings::{Keys, Settings};
 use bulge_muscles::{Construction, Dimension, FileError, Length, Muscle};
@@ -37,17 +37,17 @@ pub(super) const SCALE: Keys = &[
 const MOST_CELLS: u64 = 100_000;
 /// Most elements of a mesh.
 const MOST_ELEMENTS: u64 = 2_000_000;
-/// Bytes of a mesh file.
+/// Largest size of a mesh file in bytes.
 const MOST_BYTES: u64 = 1 << 31;
 
-/// A mesh, and what is known about it.
+/// A mesh with its known properties.
 pub(super) struct Source {
     pub(super) mesh: Mesh,
     pub(super) copies: Copies,
     pub(super) length: Option<f64>,
     pub(super) unfolded_radius: Option<f64>,
     pub(super) muscle: Option<Muscle>,
-    /// What holds it by its symmetry.
+    /// Supports that follow from its symmetry.
     pub(super) supports: Vec<(String, Support)>,
     pub(super) fittings: Vec<(String, Fitting)>,
 }
@@ -128,7 +128,7 @@ fn from_file(settings: &Settings<'_>, folder: Option<&Path>) -> Result<Source, F
     })
 }
 
-/// What is in a mesh file. Only a file has an end: a device may have none, and a pipe keeps us waiting.
+/// Reads a mesh file. Only regular files are accepted: a device may be endless, and a pipe may never deliver.
 fn bytes(path: &Path) -> Result<Vec<u8>, String> {
     let unreadable = |error: std::io::Error| format!("cannot read {}: {error}", path.display());
     let too_large = || format!("{} is larger than 2 GiB", path.display());
@@ -143,7 +143,7 @@ fn bytes(path: &Path) -> Result<Vec<u8>, String> {
     let size = usize::try_from(known.len()).map_err(|_| too_large())?;
     bytes.try_reserve_exact(size).map_err(|_| format!("no memory for the bytes of {}", path.display()))?;
     let file = std::fs::File::open(path).map_err(unreadable)?;
-    // It may have grown.
+    // The file may have grown since.
     file.take(MOST_BYTES + 1).read_to_end(&mut bytes).map_err(unreadable)?;
     if bytes.len() as u64 > MOST_BYTES {
         return Err(too_large());
@@ -151,7 +151,7 @@ fn bytes(path: &Path) -> Result<Vec<u8>, String> {
     Ok(bytes)
 }
 
-/// The keys that a kind of mesh has.
+/// The keys of a kind of mesh.
 fn known(kind: Kind) -> &'static [&'static str] {
     match kind {
         Kind::Tube => &["muscle", "radius", "length", "grading"],
@@ -161,7 +161,7 @@ fn known(kind: Kind) -> &'static [&'static str] {
     }
 }
 
-/// What `[mesher]` says of any mesh.
+/// The options of `[mesher]` that any mesh has.
 struct MesherOptions<'a, 't> {
     table: &'a Settings<'t>,
     cells: Vec<usize>,
@@ -216,7 +216,7 @@ fn source(mesh: Mesh, copies: Copies, supports: Vec<(String, Support)>) -> Sourc
 }
 
 impl MesherOptions<'_, '_> {
-    /// Elements of a line.
+    /// Number of elements of a line.
     fn line(&self) -> Result<usize, FileError> {
         let [one] = self.cells[..] else {
             let what = "this mesh is a line: it takes one number of cells";
@@ -229,7 +229,7 @@ impl MesherOptions<'_, '_> {
         Ok(one)
     }
 
-    /// Cells of a surface.
+    /// Numbers of cells of a surface.
     fn surface(&self) -> Result<[usize; 2], FileError> {
         let [u, v] = self.cells[..] else {
             let what = "this mesh is a surface: it takes two numbers of cells";
@@ -239,7 +239,7 @@ impl MesherOptions<'_, '_> {
         Ok([u, v])
     }
 
-    /// A length of the table, or else of the muscle.
+    /// A length from the table, or else from the muscle.
     fn length(&self, key: &str, of_muscle: impl Fn(&Muscle) -> Option<Length>) -> Result<f64, FileError> {
         let stated = positive(self.table, key, Dimension::LENGTH)?;
         let known = || self.muscle.as_ref().and_then(of_muscle).map(Length::to_m);
@@ -270,7 +270,7 @@ impl MesherOptions<'_, '_> {
 
     fn disc(&self) -> Result<Source, FileError> {
         let radius = needed(self.table, "radius", Dimension::LENGTH)?;
-        // From the rim inwards: z grows along the line as it is inflated.
+        // From the rim inwards, so that z grows along the line as it is inflated.
         let line = |t: f64| [radius * (1.0 - t), 0.0];
         let mesh = revolved(line, self.line()?, self.is_quadratic, Grading::Even);
         let supports = vec![held("first", Support::Fixed), held("last", Support::Axis)];

@@ -21,7 +21,7 @@ const KEYS: Keys = &[
 ];
 
 const GASES: &[(&str, f64)] = &[("isothermal", 1.0), ("adiabatic", 1.4)];
-/// Pressure of the air around, Pa.
+/// Default ambient pressure, Pa.
 const AMBIENT: f64 = 101_325.0;
 /// Most states of a step.
 const MOST_STATES: u32 = 100_000;
@@ -58,7 +58,7 @@ pub(super) fn read(
     Ok(steps)
 }
 
-/// The ends can't pass each other.
+/// Checks that the ends don't pass each other.
 fn are_apart(
     table: &Settings<'_>,
     ends: Ends,
@@ -101,7 +101,7 @@ fn step(
         }
     };
     let is_restart = table.flag("restart")?.unwrap_or(false);
-    // After a restart there is no gas in it, and nothing is as before.
+    // After a restart there is no enclosed gas, and nothing is taken from the previous step.
     let filling = filling(table, before.filter(|_| !is_restart))?;
     let held = held(table, fittings)?;
     let contraction = contraction(table, source, fittings, ends, &held)?;
@@ -145,7 +145,7 @@ fn filling(table: &Settings<'_>, before: Option<&Step>) -> Result<Filling, FileE
             Ok(Filling::Closed { gamma, ambient: ambient.unwrap_or(AMBIENT) })
         }
         [] => match before {
-            // As before, with other fittings.
+            // Unchanged, with other fittings.
             Some(step) => Ok(step.filling),
             None => Err(table.missing("pressure")),
         },
@@ -157,7 +157,7 @@ fn filling(table: &Settings<'_>, before: Option<&Step>) -> Result<Filling, FileE
     }
 }
 
-/// What each fitting does.
+/// The motion of each fitting.
 fn held(table: &Settings<'_>, fittings: &[(String, Fitting)]) -> Result<Vec<Option<f64>>, FileError> {
     let mut held = vec![None; fittings.len()];
     for (key, kind, dimension) in
@@ -194,7 +194,7 @@ fn held(table: &Settings<'_>, fittings: &[(String, Fitting)]) -> Result<Vec<Opti
     Ok(held)
 }
 
-/// How much nearer the ends come to each other, over the length.
+/// Approach of the ends relative to the length.
 fn contraction(
     table: &Settings<'_>,
     source: &Source,

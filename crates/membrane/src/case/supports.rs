@@ -1,4 +1,4 @@
-//! What holds the mesh of a case.
+//! The supports of a case's mesh.
 
 use bulge_muscles::settings::{Keys, Settings};
 use bulge_muscles::{Dimension, FileError};
@@ -49,7 +49,7 @@ pub(super) struct Supports {
 
 pub(super) fn read(settings: &Settings<'_>, source: &Source) -> Result<Supports, FileError> {
     let mut all = Supports { held: source.supports.clone(), fittings: source.fittings.clone() };
-    // The motions that tables state, by the fittings' names.
+    // The motions that tables state, by the names of the fittings.
     let mut stated = Vec::new();
     for table in settings.tables("support", "a `[[support]]`", KEYS)?.unwrap_or_default() {
         table.check_keys()?;
@@ -92,7 +92,8 @@ fn support(
         Kind::Slide => Support::Slide,
         Kind::Plane => {
             let normal = direction(table, "normal")?.ok_or_else(|| table.missing("normal"))?;
-            // The volume is that between the membrane and the axis: such planes close it without elements.
+            // The volume is measured between the membrane and the axis, so such planes close it without
+            // elements.
             let size = (normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]).sqrt();
             let (along, across) = (normal[2].abs() / size, normal[0].hypot(normal[1]) / size);
             if along > 1e-6 && across > 1e-6 {
@@ -121,7 +122,7 @@ fn support(
     })
 }
 
-/// Gives a fitting the motion that a table states; two tables must say the same.
+/// Sets the motion of a fitting from a table; two tables must agree.
 fn set_motion(
     table: &Settings<'_>,
     name: &str,
@@ -145,7 +146,7 @@ fn set_motion(
     Ok(())
 }
 
-/// That a cyclic edge has another one as partner.
+/// Checks that a cyclic edge has another one as its partner.
 fn check_turn(table: &Settings<'_>, group: &str, partner: &str, angle: f64) -> Result<(), FileError> {
     if group == partner {
         let what = format!("`{group}` is its own partner");
@@ -160,7 +161,7 @@ fn check_turn(table: &Settings<'_>, group: &str, partner: &str, angle: f64) -> R
     Err(table.error(table.value_span("angle"), what, "write 360 degrees over the number of sectors"))
 }
 
-/// That as many sectors as the case says go round the axis, where the supports fix their angle.
+/// Checks that as many sectors as the case says make a full turn, if the supports fix their angle.
 pub(super) fn check_sectors(
     settings: &Settings<'_>,
     source: &Source,
@@ -168,7 +169,7 @@ pub(super) fn check_sectors(
     supports: &Supports,
 ) -> Result<(), FileError> {
     let Some(scale) = settings.table("scale", "`[scale]`", super::source::SCALE)? else { return Ok(()) };
-    // Other faults of the mesh are found when the structure is built.
+    // Other faults of the mesh are reported when the structure is built.
     let Ok(Some(angle)) = sector(&source.mesh, parts, &supports.held) else { return Ok(()) };
     let (around, fitting) = (source.copies.around, TAU / angle);
     if (fitting - around).abs() < 1e-2 {

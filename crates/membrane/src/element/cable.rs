@@ -8,7 +8,8 @@ use super::shape::line_strain;
 use super::{Local, Vector, mixed, norm};
 use crate::material::{Thread, pull};
 
-/// A cable's place of strain: derivatives of the shape functions by the unstretched length, and the length that it stands for.
+/// A strain point of a cable: derivatives of the shape functions by the unstretched length, and the length
+/// that it represents.
 #[derive(Debug, Clone, Copy)]
 struct Point<const N: usize> {
     by: [f64; N],
@@ -20,14 +21,14 @@ struct Point<const N: usize> {
 pub(crate) struct Cable<const N: usize> {
     points: Vec<Point<N>>,
     thread: Thread,
-    /// The part of the cable that belongs to the structure.
+    /// The fraction of the cable that belongs to the structure.
     share: f64,
-    /// Tensions T0 at each point, of an inextensible thread.
+    /// Tensions T0 of an inextensible thread at each point.
     held: Vec<f64>,
 }
 
 impl<const N: usize> Cable<N> {
-    /// Along the stress-free places of its nodes; `None` if they have no length or fold over.
+    /// A cable through the stress-free positions of its nodes; `None` if it has no length or folds over.
     pub(crate) fn new(places: &[Vector; N], thread: Thread, share: f64) -> Option<Self> {
         let mut points = Vec::new();
         for (weight, _, d) in line_strain::<N>() {
@@ -92,7 +93,7 @@ impl<const N: usize> Cable<N> {
         out
     }
 
-    /// Tension at the middle of the cable, N, and its stretch there.
+    /// Tension at the middle of the cable, N, and the stretch there.
     pub(crate) fn tension(&self, x: &[Vector; N], penalty: f64) -> (f64, f64) {
         let stiffness = self.stiffness(penalty);
         let (mut tension, mut stretch, mut length) = (0.0, 0.0, 0.0);
@@ -113,7 +114,7 @@ impl<const N: usize> Cable<N> {
         }
     }
 
-    /// Takes the tensions of an inextensible thread over into T0; the largest |l - 1| of a taut one.
+    /// Transfers the tensions of an inextensible thread to T0. Returns the largest |l - 1| of a taut one.
     pub(crate) fn hold(&mut self, x: &[Vector; N], penalty: f64) -> f64 {
         if self.thread != Thread::Inextensible {
             return 0.0;

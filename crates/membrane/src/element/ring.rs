@@ -9,7 +9,8 @@
 //! V = pi integral of r^2 dz
 //! ```
 //!
-//! The threads cross each other in pinned points, as those of a braid do; half of them at +a, half at -a, or all at a = 0.
+//! The threads are pinned to each other where they cross, as in a braid. Half of them run at +a and half at
+//! -a, or all at a = 0.
 
 use super::shape::{line_strain, line_volume};
 use super::{Local, Vector, mixed, norm};
@@ -17,28 +18,28 @@ use crate::material::{Principal, Sheet, Tension, Thread, pull};
 use core::f64::consts::PI;
 use serde::Serialize;
 
-/// One of the things that lie on a membrane of revolution.
+/// A layer of a membrane of revolution.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub enum RingLayer {
     /// A sheet.
     Sheet {
         /// Its material.
         sheet: Sheet,
-        /// Its stress-free circumference over that of the mesh: above 1 for a pleated cloth.
+        /// Ratio of its stress-free circumference to that of the mesh; above 1 for a pleated cloth.
         fullness: f64,
     },
     /// Threads.
     Threads {
-        /// What each is.
+        /// The material of each thread.
         thread: Thread,
-        /// How many go round.
+        /// Number of threads around the circumference.
         count: f64,
-        /// Angle to the meridian in the mesh, rad, at most in size that of 89 degrees.
+        /// Angle to the meridian in the mesh, rad; its absolute value is at most 89 degrees.
         angle: f64,
     },
 }
 
-/// A layer with what its points remember.
+/// A layer with the state variables of its points.
 #[derive(Debug, Clone)]
 pub(crate) struct Layer {
     kind: RingLayer,
@@ -47,7 +48,7 @@ pub(crate) struct Layer {
 }
 
 impl Layer {
-    /// Threads in it.
+    /// Number of threads in it.
     pub(crate) fn count(&self) -> f64 {
         match self.kind {
             RingLayer::Sheet { .. } => 0.0,
@@ -59,9 +60,9 @@ impl Layer {
 #[derive(Debug, Clone, Copy)]
 struct Point<const N: usize> {
     n: [f64; N],
-    /// Derivatives by the stress-free length.
+    /// Derivatives of the shape functions by the stress-free length.
     by: [f64; N],
-    /// The stress-free length that it stands for, and the radius there.
+    /// The stress-free length that it represents; the next field is the radius there.
     length: f64,
     radius: f64,
 }
@@ -73,7 +74,8 @@ pub(crate) struct Ring<const N: usize> {
     pub(crate) layers: Vec<Layer>,
 }
 
-/// The energy of all layers per unit length by the squares c1 = l1^2, c2 = l2^2, and its derivatives.
+/// The energy of all layers per unit length as a function of the squares c1 = l1^2, c2 = l2^2, and its
+/// derivatives.
 #[derive(Debug, Clone, Copy, Default)]
 struct Sum {
     w: f64,
@@ -84,17 +86,18 @@ struct Sum {
     w22: f64,
 }
 
-/// What one layer carries at the middle of an element.
+/// Forces of one layer at the middle of an element.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Carried {
-    /// Forces per unit present length along the meridian and around, N/m, and stretches.
+    /// Forces per unit current length along the meridian and around, N/m, and stretches.
     Sheet { force: [f64; 2], stretch: [f64; 2], tension: Tension, folded: f64 },
     /// Tension of each thread, N, its stretch, and its angle to the meridian, rad.
     Threads { tension: f64, stretch: f64, angle: f64 },
 }
 
 impl<const N: usize> Ring<N> {
-    /// Over the stress-free places of its nodes (y = 0, x the radius); `None` if they have no length, fold over, or lie on the axis.
+    /// An element through the stress-free positions of its nodes (y = 0, x the radius); `None` if it has no
+    /// length, folds over, or lies on the axis.
     pub(crate) fn new(places: &[Vector; N], layers: &[RingLayer]) -> Option<Self> {
         let mut points = Vec::new();
         for (weight, n, d) in line_strain::<N>() {
@@ -118,7 +121,7 @@ impl<const N: usize> Ring<N> {
         (tangent, r, c1, l2 * l2)
     }
 
-    /// Everything that the layers store at a point.
+    /// The energy of all layers at a point.
     #[inline]
     fn stored(&self, index: usize, point: &Point<N>, c1: f64, c2: f64, penalty: f64) -> Sum {
         let mut sum = Sum::default();
@@ -126,7 +129,7 @@ impl<const N: usize> Ring<N> {
             match layer.kind {
                 RingLayer::Sheet { sheet, fullness } => {
                     let area = 2.0 * PI * point.radius * fullness;
-                    // l2 of the sheet is r over its own stress-free radius.
+                    // The sheet's l2 refers to its own stress-free radius.
                     let over = 1.0 / (fullness * fullness);
                     let Principal { energy: e, .. } = sheet.principal(c1, c2 * over);
                     sum.w += area * e.w;
@@ -174,7 +177,7 @@ impl<const N: usize> Ring<N> {
         rule.iter().map(|(w, n, d)| PI * w * mixed(x, n)[0].powi(2) * mixed(x, d)[2]).sum()
     }
 
-    /// The points at which [`Ring::volume`] is summed.
+    /// Quadrature points of [`Ring::volume`].
     pub(crate) fn volume_rule() -> Vec<(f64, [f64; N], [f64; N])> {
         line_volume()
     }
@@ -242,7 +245,7 @@ impl<const N: usize> Ring<N> {
         self.layers.iter_mut().filter(is_held).flat_map(|layer| layer.held.iter_mut()).collect()
     }
 
-    /// Takes over the tensions of inextensible threads; the largest |l - 1| of a taut one.
+    /// Transfers the tensions of inextensible threads to T0. Returns the largest |l - 1| of a taut one.
     pub(crate) fn hold(&mut self, x: &[Vector; N], penalty: f64) -> f64 {
         let mut worst = 0.0_f64;
         for layer in &mut self.layers {
@@ -260,7 +263,7 @@ impl<const N: usize> Ring<N> {
         worst
     }
 
-    /// What each layer carries, the mean over the points.
+    /// Forces of each layer, averaged over the points.
     pub(crate) fn carried(&self, x: &[Vector; N], penalty: f64) -> Vec<Carried> {
         self.layers.iter().map(|layer| self.carried_by(layer, x, penalty)).collect()
     }
@@ -275,7 +278,7 @@ impl<const N: usize> Ring<N> {
                     let c2 = c2 / (fullness * fullness);
                     let at = sheet.principal(c1, c2);
                     let (l1, l2) = (c1.sqrt(), c2.sqrt());
-                    // Per present length across: dW/dl1/l2 and dW/dl2/l1.
+                    // Per current length across: dW/dl1/l2 and dW/dl2/l1.
                     force[0] += share * 2.0 * at.energy.w1 * l1 / l2;
                     force[1] += share * 2.0 * at.energy.w2 * l2 / l1;
                     stretch[0] += share * l1;
@@ -303,7 +306,7 @@ impl<const N: usize> Ring<N> {
         }
     }
 
-    /// Stress-free area of the mesh under it.
+    /// Stress-free area of the mesh in this element.
     pub(crate) fn area(&self) -> f64 {
         self.points.iter().map(|point| 2.0 * PI * point.radius * point.length).sum()
     }

@@ -33,12 +33,12 @@ fn line_points<const N: usize>(points: &[(f64, f64)]) -> Vec<LinePoint<N>> {
         .collect()
 }
 
-/// Where strains are taken: as many points as the nodes have strains for, so that threads without stretch don't lock.
+/// Strain points: as many as the nodes have independent strains, so that inextensible threads don't lock.
 pub(crate) fn line_strain<const N: usize>() -> Vec<LinePoint<N>> {
     if N == 2 { line_points(&[(2.0, 0.0)]) } else { line_points(&[(1.0, -TWO), (1.0, TWO)]) }
 }
 
-/// Exact for the volume under a line of revolution: r^2 dz is of degree 2 or 5.
+/// Exact for the volume of a line of revolution, where r^2 dz has degree 2 or 5.
 pub(crate) fn line_volume<const N: usize>() -> Vec<LinePoint<N>> {
     if N == 2 {
         line_points(&[(1.0, -TWO), (1.0, TWO)])
@@ -47,7 +47,8 @@ pub(crate) fn line_volume<const N: usize>() -> Vec<LinePoint<N>> {
     }
 }
 
-/// Shape functions of a triangle at (xi, eta): corners (0, 0), (1, 0), (0, 1), then the middles of the edges 1-2, 2-3, 3-1.
+/// Shape functions of a triangle at (xi, eta): corners (0, 0), (1, 0), (0, 1), then the midpoints of the
+/// edges 1-2, 2-3, 3-1.
 pub(crate) fn triangle<const N: usize>(xi: f64, eta: f64) -> ([f64; N], [[f64; N]; 2]) {
     let l = [1.0 - xi - eta, xi, eta];
     let by = [[-1.0, 1.0, 0.0], [-1.0, 0.0, 1.0]];
@@ -83,7 +84,7 @@ fn triangle_points<const N: usize>(points: &[(f64, f64, f64)]) -> Vec<TrianglePo
         .collect()
 }
 
-/// Where strains are taken: one point, or three of degree 2.
+/// Strain points: one point, or three of degree 2.
 pub(crate) fn triangle_strain<const N: usize>() -> Vec<TrianglePoint<N>> {
     let (w, a, b) = (1.0 / 6.0, 1.0 / 6.0, 2.0 / 3.0);
     if N == 3 {
@@ -93,7 +94,7 @@ pub(crate) fn triangle_strain<const N: usize>() -> Vec<TrianglePoint<N>> {
     }
 }
 
-/// Exact for the volume under a triangle: one point of degree 1, or six of degree 4 (Cowper 1973).
+/// Exact for the volume of a triangle: one point of degree 1, or six of degree 4 (Cowper 1973).
 pub(crate) fn triangle_volume<const N: usize>() -> Vec<TrianglePoint<N>> {
     if N == 3 {
         return triangle_strain();

@@ -1,4 +1,4 @@
-//! Elements against differences of their energies, against rotations, and against closed forms.
+//! Elements against finite differences of their energies, rotations, and closed forms.
 
 mod cables;
 mod rings;
@@ -23,7 +23,7 @@ const LAWS: [Law; 5] = [
 ];
 const WOVEN: Orthotropic = Orthotropic { warp: 4.0, weft: 2.5, poisson: 0.35, shear: 0.4 };
 
-/// Every cloth, wrinkling or not; the residual is large enough to be seen.
+/// Every cloth, with and without wrinkling; the residual is large enough to show.
 fn sheets() -> Vec<Sheet> {
     let cloths = LAWS.into_iter().map(Cloth::Isotropic).chain([Cloth::Orthotropic(WOVEN)]);
     cloths
@@ -37,7 +37,7 @@ fn sheets() -> Vec<Sheet> {
         .collect()
 }
 
-/// dW/dl1 and dW/dl2 over the stretches themselves, by hand.
+/// dW/dl1 and dW/dl2 with respect to the stretches themselves, by hand.
 fn by_hand(cloth: &Cloth, l1: f64, l2: f64) -> [f64; 2] {
     let volume = 1.0 / (l1 * l2).powi(2);
     match *cloth {
@@ -67,7 +67,7 @@ fn by_hand(cloth: &Cloth, l1: f64, l2: f64) -> [f64; 2] {
     }
 }
 
-/// Stretch of a strip across its pull along the first axis, by hand.
+/// Transverse stretch of a strip pulled along the first axis, by hand.
 fn natural(cloth: &Cloth, l: f64) -> f64 {
     match *cloth {
         Cloth::Isotropic(Law::Hencky { poisson, .. }) => l.powf(-poisson),
@@ -77,7 +77,8 @@ fn natural(cloth: &Cloth, l: f64) -> f64 {
     }
 }
 
-/// Pairs of stretches with what a wrinkling sheet does there: inside each state, and 1e-3 to either side of each border.
+/// Pairs of stretches with the state of a wrinkling sheet: inside each state, and 1e-3 to either side of each
+/// border.
 fn states(cloth: &Cloth) -> Vec<([f64; 2], Tension)> {
     let n = natural(cloth, 1.2);
     vec![
@@ -91,10 +92,10 @@ fn states(cloth: &Cloth) -> Vec<([f64; 2], Tension)> {
     ]
 }
 
-/// Step of the differences: two of them stay on one side of a border that is 1e-3 away.
+/// Step of the differences; two steps stay on one side of a border 1e-3 away.
 const STEP: f64 = 1e-4;
 
-/// Numbers between -1 and 1 without order.
+/// Pseudo-random numbers between -1 and 1.
 fn noise(seed: usize) -> f64 {
     let x = (seed as f64 * 12.9898 + 4.1414).sin() * 43_758.545_3;
     2.0 * (x - x.floor()) - 1.0
@@ -110,14 +111,14 @@ fn shaken<const N: usize>(x: &[Vector; N], by: f64) -> [Vector; N] {
     out
 }
 
-/// A rotation about an axis that is none of the coordinate ones.
+/// A rotation about an axis that isn't a coordinate axis.
 fn rotated(v: Vector, angle: f64) -> Vector {
     let axis = scaled([2.0, -1.0, 1.5], 1.0 / norm([2.0, -1.0, 1.5]));
     let (sin, cos) = angle.sin_cos();
     add(add(scaled(v, cos), scaled(cross(axis, v), sin)), scaled(axis, dot(axis, v) * (1.0 - cos)))
 }
 
-/// Force, sweep and stiffness against differences of fourth order, and the symmetry of what is stored.
+/// Force, sweep and stiffness against fourth-order differences, and the symmetry of the stored entries.
 fn check<E: Element<N>, const N: usize>(element: &E, x: &[Vector; N], what: &str) {
     let rule = E::rule();
     let now = element.local(x, PENALTY, PRESSURE, &rule);
@@ -170,7 +171,7 @@ const WARP: Vector = [1.0, 0.0, 0.0];
 
 const MERIDIAN: [Vector; 3] = [[0.9, 0.0, 0.1], [1.5, 0.0, 1.1], [1.3, 0.0, 0.5]];
 
-/// Six nodes from three corners, the middles moved by `bulge`.
+/// Six nodes from three corners, with the midpoints displaced by `bulge`.
 fn six(corners: [Vector; 3], bulge: f64) -> [Vector; 6] {
     let middle = |i: usize, j: usize| {
         let at = scaled(add(corners[i], corners[j]), 0.5);

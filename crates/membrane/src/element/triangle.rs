@@ -1,14 +1,14 @@
 //! Membrane triangles with three or six nodes under large displacements and rotations.
 //!
-//! With X the places in the flat stress-free pattern and F = dx/dX (3 x 2):
+//! With X the positions in the flat stress-free pattern and F = dx/dX (3 x 2):
 //!
 //! ```text
 //! energy = integral of W(E) dA,   C = F'F,   E = (C - 1)/2,   force on node a: F S grad N_a
 //! V = 1/2 integral of (x, y, 0).n dA
 //! ```
 //!
-//! The flux form of the volume counts nothing on planes z = const. and on planes through the z axis, so that end discs and planes of
-//! symmetry need no elements.
+//! The flux form of the volume vanishes on planes z = const. and on planes through the z axis, so that end
+//! discs and planes of symmetry need no elements.
 
 use super::shape::{triangle_strain, triangle_volume};
 use super::{Local, Vector, add, cross, dot, mixed, norm, scaled, sub};
@@ -25,15 +25,15 @@ struct Point<const N: usize> {
 #[derive(Debug, Clone)]
 pub(crate) struct Triangle<const N: usize> {
     points: Vec<Point<N>>,
-    /// `None`: it only hands the pressure on.
+    /// `None`: it only transmits the pressure.
     sheet: Option<Sheet>,
 }
 
-/// A point of [`Triangle::volume_rule`].
+/// A quadrature point of [`Triangle::volume_rule`].
 pub(crate) type VolumePoint<const N: usize> = (f64, [f64; N], [[f64; N]; 2]);
 
-/// What a membrane carries at the middle of an element: principal forces per unit present length, N/m, the larger first, the stretches,
-/// and the direction of the larger one.
+/// Forces of a membrane at the middle of an element: principal forces per unit current length, N/m, the
+/// larger first, the stretches, and the direction of the larger force.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Carried {
     pub(crate) force: [f64; 2],
@@ -44,8 +44,9 @@ pub(crate) struct Carried {
 }
 
 impl<const N: usize> Triangle<N> {
-    /// Over the stress-free places of its nodes: on a surface in space, or in the plane of a pattern. `warp`: the direction of the sheet's
-    /// first axis. `None` if the element has no area or folds over.
+    /// An element through the stress-free positions of its nodes, on a surface in space or in the plane of a
+    /// pattern. `warp` is the direction of the sheet's first axis. `None` if the element has no area or folds
+    /// over.
     pub(crate) fn new(places: &[Vector; N], warp: Vector, sheet: Option<Sheet>) -> Option<Self> {
         let mut points = Vec::new();
         let corner = cross(sub(places[1], places[0]), sub(places[2], places[0]));
@@ -53,13 +54,13 @@ impl<const N: usize> Triangle<N> {
             let (u, v) = (mixed(places, &d[0]), mixed(places, &d[1]));
             let normal = cross(u, v);
             let size = norm(normal);
-            // Much smaller than its edges: a needle or a fold.
+            // An area much smaller than the edges means a needle or a fold.
             if !(size.is_finite() && size > 1e-10 * (dot(u, u) + dot(v, v)) && dot(normal, corner) > 0.0) {
                 return None;
             }
             let normal = scaled(normal, 1.0 / size);
             let (e1, e2) = axes(normal, warp, u);
-            // dX/dxi in the plane's own axes, inverted.
+            // dX/dxi in the axes of the plane, inverted.
             let j = [[dot(u, e1), dot(v, e1)], [dot(u, e2), dot(v, e2)]];
             let det = j[0][0] * j[1][1] - j[0][1] * j[1][0];
             let mut by = [[0.0; 2]; N];
@@ -94,7 +95,7 @@ impl<const N: usize> Triangle<N> {
         self.points.iter().map(|point| point.area * Self::plane(sheet, &Self::gradient(point, x)).w).sum()
     }
 
-    /// The points at which [`Triangle::volume`] is summed.
+    /// Quadrature points of [`Triangle::volume`].
     pub(crate) fn volume_rule() -> Vec<VolumePoint<N>> {
         triangle_volume()
     }
@@ -126,7 +127,7 @@ impl<const N: usize> Triangle<N> {
         let f = Self::gradient(point, x);
         let Plane { w, s, d, .. } = Self::plane(sheet, &f);
         out.energy += point.area * w;
-        // Variations of (E11, E22, 2 E12) with node a, and the forces they make.
+        // Variations of (E11, E22, 2 E12) with node a, and the resulting forces.
         let mut strain = [[[0.0; 3]; 3]; N];
         let mut stress = [[[0.0; 3]; 3]; N];
         for a in 0..N {
@@ -156,7 +157,7 @@ impl<const N: usize> Triangle<N> {
         }
     }
 
-    /// What it carries, the mean over its points; `None` for a facet without material.
+    /// Forces averaged over its points; `None` for a facet without material.
     pub(crate) fn carried(&self, x: &[Vector; N]) -> Option<Carried> {
         let sheet = self.sheet.as_ref()?;
         let share = 1.0 / self.points.len() as f64;
@@ -175,7 +176,7 @@ impl<const N: usize> Triangle<N> {
                 sum.force[i] += share * at.force[i];
                 sum.stretch[i] += share * at.stretch[i];
             }
-            // A direction is the same with its sign changed.
+            // A direction and its negative are equivalent.
             let sign = if dot(sum.direction, at.direction) < 0.0 { -1.0 } else { 1.0 };
             sum.direction = add(sum.direction, scaled(at.direction, sign));
             sum.tension = sum.tension.min(at.tension);
@@ -194,7 +195,8 @@ impl<const N: usize> Triangle<N> {
     }
 }
 
-/// Unit axes of the plane across `normal`: the first along `warp`, or along `instead` where that stands upright.
+/// Unit axes of the plane orthogonal to `normal`. The first is along `warp`, or along `instead` if `warp` is
+/// perpendicular to the plane.
 fn axes(normal: Vector, warp: Vector, instead: Vector) -> (Vector, Vector) {
     let in_plane = |v: Vector| sub(v, scaled(normal, dot(v, normal)));
     let mut first = in_plane(warp);
@@ -205,7 +207,8 @@ fn axes(normal: Vector, warp: Vector, instead: Vector) -> (Vector, Vector) {
     (first, cross(normal, first))
 }
 
-/// Principal forces per present length of S at F: those of the Kirchhoff stress F S F' over the stretch of the area.
+/// Principal forces per current length for S at F: those of the Kirchhoff stress F S F' over the area
+/// stretch.
 fn principal(f: &[Vector; 2], plane: &Plane) -> Carried {
     let (g11, g22, g12) = (dot(f[0], f[0]), dot(f[1], f[1]), dot(f[0], f[1]));
     let [s11, s22, s12] = plane.s;
@@ -226,7 +229,8 @@ fn principal(f: &[Vector; 2], plane: &Plane) -> Carried {
     Carried { force, stretch, direction, tension: plane.tension, folded: 0.0 }
 }
 
-/// Adds weight a.(u x v) with a = (x, y, 0), u = x_xi, v = x_eta, its gradient, and - p times its second derivatives.
+/// Adds weight a.(u x v) with a = (x, y, 0), u = x_xi, v = x_eta, its gradient, and -p times its second
+/// derivatives.
 #[inline]
 fn swept<const N: usize>(
     weight: f64,
@@ -247,7 +251,8 @@ fn swept<const N: usize>(
             out.sweep[i][k] += weight * (flat + d[0][i] * va[k] + d[1][i] * au[k]);
         }
         for j in i..N {
-            // da.(du x v) + da.(u x dv) + a.(du x dv), and with i and j changed: [w]x is skew, so each pair has one vector.
+            // da.(du x v) + da.(u x dv) + a.(du x dv), and with i and j exchanged: [w]x is skew, so each pair
+            // has one vector.
             let on_v = n[i] * d[0][j];
             let on_v_back = n[j] * d[0][i];
             let on_u = n[i] * d[1][j];

@@ -41,7 +41,7 @@ pub enum Law {
         /// c2 h.
         c2: f64,
     },
-    /// Rubber whose chains have an end: I1 stays below 3 + J.
+    /// Rubber with finite chain extensibility: I1 stays below 3 + J.
     Gent {
         /// mu h.
         shear: f64,
@@ -62,7 +62,7 @@ pub(crate) struct Energy {
 }
 
 impl Law {
-    /// Energy at the squared stretches; infinite where the law has an end.
+    /// Energy at the squared stretches; infinite beyond the limit of the law.
     #[inline]
     pub(crate) fn energy(&self, c1: f64, c2: f64) -> Energy {
         match *self {
@@ -120,7 +120,8 @@ impl Law {
         }
     }
 
-    /// Squared stretch across an uncrossed strip that is pulled to the squared stretch c: where the stress across is zero.
+    /// Squared transverse stretch of an unsupported strip that is pulled to the squared stretch c, so that
+    /// its transverse stress is zero.
     #[inline]
     pub(crate) fn natural_width(&self, c: f64) -> f64 {
         match *self {
@@ -130,7 +131,7 @@ impl Law {
         }
     }
 
-    /// Stiffness against small strains, N/m.
+    /// Stiffness at small strains, N/m.
     #[cfg(test)]
     fn stiffness(&self) -> f64 {
         match *self {

@@ -4,9 +4,9 @@
 //! W = E.D.E/2,   D = 1/(1 - nu12 nu21) [[Y1, nu12 Y2, 0], [nu12 Y2, Y2, 0], [0, 0, (1 - nu12 nu21) G]],   nu21 = nu12 Y2/Y1
 //! ```
 //!
-//! Relaxed: the least of W(E + Z) over all wrinkle strains Z >= 0 (in the sense of matrices). Where neither the unrelaxed stress is a
-//! tension in every direction (taut) nor E a contraction in every direction (slack), Z = g n n with one direction n across the wrinkles:
-//! no stress acts across it.
+//! Relaxed energy: the minimum of W(E + Z) over all wrinkle strains Z >= 0 (in the matrix sense). If neither
+//! the unrelaxed stress is a tension in every direction (taut) nor E a contraction in every direction
+//! (slack), then Z = g n n with a single direction n across the wrinkles, along which no stress acts.
 
 use super::sheet::Plane;
 use super::tension_field::Tension;
@@ -25,9 +25,9 @@ pub struct Orthotropic {
     pub shear: f64,
 }
 
-/// Directions looked at before the best is polished.
+/// Number of directions that are tried before the best one is refined.
 const DIRECTIONS: usize = 24;
-/// Steps of polishing; three are enough where the direction is sharp.
+/// Most refinement steps; three are enough if the direction is well determined.
 const STEPS: usize = 40;
 
 impl Orthotropic {
@@ -90,7 +90,8 @@ fn wrinkled(e: [f64; 3], full: Plane) -> Plane {
     Plane { w: 0.5 * dot(s, z), s, d: tangent, tension: Tension::Wrinkled }
 }
 
-/// The angle of n: where the energy that a wrinkle can take, (m.S)^2/(m.D m)/2 with m.S < 0, is largest.
+/// The angle of n, at which the energy that a wrinkle can release, (m.S)^2/(m.D m)/2 with m.S < 0, is
+/// largest.
 fn across(d: &[[f64; 3]; 3], s: [f64; 3]) -> f64 {
     let gain = |angle: f64| {
         let m = Across::at(angle).m;
@@ -98,7 +99,8 @@ fn across(d: &[[f64; 3]; 3], s: [f64; 3]) -> f64 {
         q * q / dot(m, times(d, m))
     };
     let step = core::f64::consts::PI / DIRECTIONS as f64;
-    // Close to the border with taut the stress is a compression only in directions next to its least principal one.
+    // Near the border to the taut state, the stress is compressive only in directions close to that of its
+    // least principal value.
     let least = 0.5 * (-2.0 * s[2]).atan2(s[1] - s[0]);
     let best = (0..DIRECTIONS)
         .map(|i| i as f64 * step)
@@ -107,12 +109,12 @@ fn across(d: &[[f64; 3]; 3], s: [f64; 3]) -> f64 {
         .fold((f64::MIN, least), |a, b| if b.0 > a.0 { b } else { a });
     let mut good = best.1;
     let (mut angle, mut low, mut high) = (good, good - step, good + step);
-    // Newton on d/da ln gain = 2 q'/q - k'/k, kept within the bracket by halving it.
+    // Newton's method on d/da ln gain = 2 q'/q - k'/k, kept within the bracket by bisection.
     for _ in 0..STEPS {
         let Across { m, m1, m2 } = Across::at(angle);
         let q = dot(m, s);
         if q >= 0.0 {
-            // No compression there: back towards where there was.
+            // No compression there: go back towards the directions that had it.
             if angle > good {
                 high = angle;
             } else {
@@ -141,7 +143,7 @@ fn across(d: &[[f64; 3]; 3], s: [f64; 3]) -> f64 {
     good
 }
 
-/// n n over the strains (11, 22, 2 x 12), and its derivatives by the angle of n.
+/// n n as strains (11, 22, 2 x 12), and its derivatives by the angle of n.
 struct Across {
     m: [f64; 3],
     m1: [f64; 3],
@@ -180,7 +182,8 @@ mod tests {
     use core::f64::consts::PI;
 
     const WOVEN: Orthotropic = Orthotropic { warp: 4.0, weft: 2.5, poisson: 0.35, shear: 0.4 };
-    /// Very different along warp and weft, very soft in shear, and one that contracts more than it is pulled.
+    /// Very different along warp and weft, very soft in shear, and one that contracts more across than it is
+    /// stretched.
     const CLOTHS: [Orthotropic; 4] = [
         WOVEN,
         Orthotropic { warp: 40.0, weft: 1.0, poisson: 0.3, shear: 0.05 },
@@ -188,13 +191,13 @@ mod tests {
         Orthotropic { warp: 4.0, weft: 2.0, poisson: 1.2, shear: 0.5 },
     ];
 
-    /// Green's strain with these principal ones, the first at `angle`.
+    /// Green's strain with these principal values, the first at `angle`.
     fn strain(e1: f64, e2: f64, angle: f64) -> [f64; 3] {
         let (sin, cos) = angle.sin_cos();
         [e1 * cos * cos + e2 * sin * sin, e1 * sin * sin + e2 * cos * cos, 2.0 * (e1 - e2) * sin * cos]
     }
 
-    /// Strains all over the three states.
+    /// Strains throughout the three states.
     fn strains() -> impl Iterator<Item = [f64; 3]> {
         let sizes = [-0.3, -0.11, -0.02, 0.01, 0.04, 0.13, 0.3];
         let pairs = sizes.into_iter().flat_map(move |a| sizes.map(|b| (a, b)));
@@ -235,7 +238,7 @@ mod tests {
                 for i in 0..3 {
                     assert!((a.s[i] - b.s[i]).abs() < 1e-13, "{e:?}: {:?} {:?}", a.s, b.s);
                     for j in 0..3 {
-                        // Where all stretches are equal the last digits of the isotropic one's directions are lost.
+                        // With equal stretches, the last digits of the isotropic law's directions are lost.
                         assert!((a.d[i][j] - b.d[i][j]).abs() < 1e-9, "{e:?} {i} {j}: {:?} {:?}", a.d, b.d);
                     }
                 }
@@ -252,8 +255,8 @@ mod tests {
                 let relaxed = cloth.relaxed(e);
                 let full = cloth.taut(e).w;
                 assert!(relaxed.w >= -1e-16 && relaxed.w <= full + 1e-15, "{cloth:?} {e:?}");
-                // Wrinkles of any direction and amount, and others across them. Along each direction the energy is a parabola: its least by
-                // three values of the unrelaxed law.
+                // Wrinkles of any direction and amount, and others across them. Along each direction the
+                // energy is a parabola, whose minimum follows from three values of the unrelaxed law.
                 let mut least = full;
                 for i in 0..720 {
                     let n = Across::at(f64::from(i) * PI / 720.0).m;
@@ -265,7 +268,7 @@ mod tests {
                                 |g: f64| cloth.taut([z[0] + g * m[0], z[1] + g * m[1], z[2] + g * m[2]]).w;
                             let (a, b, c) = (at(-1.0), at(0.0), at(1.0));
                             let by = -0.5 * (c - a) / (a - 2.0 * b + c);
-                            // What has been added along m so far, which mustn't fall below zero.
+                            // The wrinkle strain along m so far, which mustn't become negative.
                             let so_far = (z[0] - other[0]) * m[0]
                                 + (z[1] - other[1]) * m[1]
                                 + 0.5 * (z[2] - other[2]) * m[2];
@@ -277,7 +280,7 @@ mod tests {
                     }
                     least = least.min(cloth.taut(z).w);
                 }
-                // The grid of directions misses the least by O(step^2).
+                // The grid of directions misses the minimum by O(step^2).
                 assert!(relaxed.w <= least + 1e-14, "{cloth:?} {e:?}: {} {least}", relaxed.w);
                 assert!(least - relaxed.w < 2e-3 * full + 1e-14, "{cloth:?} {e:?}: {} {least}", relaxed.w);
             }
@@ -286,7 +289,7 @@ mod tests {
 
     #[test]
     fn no_stress_acts_across_wrinkles() {
-        // What makes the least of a convex energy the least: S >= 0, Z >= 0, S:Z = 0 with Z = D^-1 S - E.
+        // Optimality conditions of the convex energy: S >= 0, Z >= 0, S:Z = 0 with Z = D^-1 S - E.
         for cloth in CLOTHS {
             let mut wrinkled = 0;
             for e in strains() {
@@ -352,7 +355,7 @@ mod tests {
         }
     }
 
-    /// Where along the line of strains from `a` to `b` the state changes.
+    /// The parameter on the line of strains from `a` to `b` at which the state changes.
     fn border(cloth: &Orthotropic, a: [f64; 3], b: [f64; 3]) -> f64 {
         let at = |t: f64| cloth.relaxed(between(a, b, t)).tension;
         let (mut low, mut high) = (0.0, 1.0);
@@ -374,7 +377,8 @@ mod tests {
 
     #[test]
     fn stress_is_continuous_across_the_borders() {
-        // From taut to wrinkled the direction of the wrinkles is sharp: very few directions have any compression.
+        // At the transition from taut to wrinkled, the direction of the wrinkles is sharp: very few
+        // directions have any compression.
         for cloth in CLOTHS {
             for i in 0..40 {
                 let angle = 0.08 * f64::from(i);
@@ -389,7 +393,7 @@ mod tests {
                         let [a, b] = [at - apart, at + apart].map(|t| cloth.relaxed(between(from, to, t)));
                         let what = format!("{cloth:?} {angle} {apart}");
                         for i in 0..3 {
-                            // A strain of 0.6 x 2 apart times the stiffness.
+                            // A strain difference of 0.6 x 2 times the stiffness.
                             assert!(
                                 (a.s[i] - b.s[i]).abs() < 3.0 * apart * cloth.warp.max(cloth.weft) + 1e-14,
                                 "{what}: {:?} {:?}",
@@ -397,7 +401,7 @@ mod tests {
                                 b.s
                             );
                         }
-                        // Never pushes, however close to the border.
+                        // The sheet never pushes, however close to the border.
                         assert!(principal(b.s)[1] > -1e-13, "{what}: {:?} {:e}", b.s, principal(b.s)[1]);
                     }
                     for apart in [1e-6, 1e-5, 1e-4, 1e-3] {
@@ -413,7 +417,8 @@ mod tests {
 
     #[test]
     fn known_stresses_of_woven_cloth() {
-        // Pulled along the warp with free sides, S = Y1 E, and along the weft S = Y2 E; sheared, S12 = 2 G E12.
+        // Pulled along the warp with free sides, S = Y1 E, and along the weft S = Y2 E; in shear, S12 = 2 G
+        // E12.
         let pulled = WOVEN.relaxed([0.1, -0.2, 0.0]);
         assert!((pulled.s[0] - 0.4).abs() < 1e-15 && (pulled.w - 0.02).abs() < 1e-16, "{pulled:?}");
         assert!((pulled.d[0][0] - 4.0).abs() < 1e-13 && pulled.d[1][1].abs() < 1e-13, "{pulled:?}");
@@ -428,7 +433,7 @@ mod tests {
         let (s, c) = 0.6_f64.sin_cos();
         let y = 1.0 / (c.powi(4) / 4.0 + s.powi(4) / 2.5 + s * s * c * c * (1.0 / 0.4 - 2.0 * 0.35 / 4.0));
         let stress = [c * c * 0.1, s * s * 0.1, s * c * 0.1];
-        // The strain under that stress, contracted further across it: wrinkles take that up.
+        // The strain under that stress, contracted further across it: wrinkles absorb the rest.
         let free =
             [(stress[0] - 0.35 * stress[1]) / 4.0, stress[1] / 2.5 - 0.35 * stress[0] / 4.0, stress[2] / 0.4];
         for more in [1e-6, 1e-3, 0.1, 1.0] {

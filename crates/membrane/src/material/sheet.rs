@@ -1,14 +1,14 @@
-//! A sheet: its law, whether it wrinkles, and stress and tangent at any state of strain.
+//! A sheet: its law, whether it wrinkles, and its stress and tangent at any state of strain.
 
 use super::law::{Energy, Law};
 use super::orthotropic::Orthotropic;
 use super::tension_field::{Principal, Tension, relaxed};
 use serde::Serialize;
 
-/// What the sheet is made of.
+/// The material law of a sheet.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub enum Cloth {
-    /// The same in every direction.
+    /// Isotropic.
     Isotropic(Law),
     /// Woven: stiff along warp and weft.
     Orthotropic(Orthotropic),
@@ -17,16 +17,16 @@ pub enum Cloth {
 /// A membrane's material.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Sheet {
-    /// What it is made of.
+    /// Its law.
     pub cloth: Cloth,
-    /// Whether it gives way to compression by wrinkling (cloth, thin rubber), or carries it.
+    /// Whether it wrinkles under compression (cloth, thin rubber) or carries it.
     pub wrinkles: bool,
-    /// The part of the unrelaxed stiffness that a wrinkled or slack sheet keeps, so that its nodes know where to stay: 1e-6 of it moves
-    /// forces by less than 1e-6.
+    /// Fraction of the unrelaxed stiffness that a wrinkled or slack sheet keeps, so that the positions of its
+    /// nodes are determined. A fraction of 1e-6 changes forces by less than 1e-6.
     pub residual: f64,
 }
 
-/// Energy per unit area with stress and tangent over Green's strain in the order 11, 22, 2 x 12.
+/// Energy per unit area, with stress and tangent with respect to Green's strain in the order 11, 22, 2 x 12.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Plane {
     pub(crate) w: f64,
@@ -36,7 +36,7 @@ pub(crate) struct Plane {
 }
 
 impl Sheet {
-    /// At the right Cauchy-Green tensor C = (C11, C22, C12).
+    /// Evaluates the right Cauchy-Green tensor C = (C11, C22, C12).
     #[inline]
     pub(crate) fn plane(&self, c: [f64; 3]) -> Plane {
         match &self.cloth {
@@ -52,7 +52,7 @@ impl Sheet {
         }
     }
 
-    /// At squared stretches along the sheet's own axes, where there is no shear: a membrane of revolution.
+    /// Evaluates squared stretches along the sheet's own axes, without shear, as in a membrane of revolution.
     #[inline]
     pub(crate) fn principal(&self, c1: f64, c2: f64) -> Principal {
         match &self.cloth {
@@ -73,8 +73,8 @@ impl Sheet {
         }
     }
 
-    /// The part of the width that is folded away at these stretches: none where it is taut, though pulled cloth is narrower than it was cut; where
-    /// it is wrinkled, what is missing to the width that it would have by itself.
+    /// The fraction of the width that is folded away at these stretches. A taut sheet has none, although
+    /// pulled cloth is narrower than it was cut; in a wrinkled one it is the difference to its natural width.
     pub(crate) fn folded(&self, stretch: [f64; 2], tension: Tension) -> f64 {
         let [narrow, wide] = [stretch[0].min(stretch[1]), stretch[0].max(stretch[1])];
         let width = match (tension, &self.cloth) {
@@ -123,7 +123,7 @@ fn mixed(mut relaxed: Plane, full: &Plane, residual: f64) -> Plane {
     relaxed
 }
 
-/// An isotropic energy w(c1, c2) at a tensor C with eigenvalues c1 >= c2 and their directions:
+/// An isotropic energy w(c1, c2) for a tensor C with eigenvalues c1 >= c2 and their directions:
 ///
 /// ```text
 /// S_i = 2 w_i     dS_i/dE_j = 4 w_ij     dS_12/d(2 E_12) = (S_1 - S_2)/(c1 - c2), or 2 (w_11 - w_12) where c1 = c2
@@ -137,12 +137,13 @@ fn spectral(c: [f64; 3], wrinkles: bool, energy: impl Fn(f64, f64) -> Principal)
     let (cos2, sin2) = if radius > 1e-14 * mean.abs() { (half / radius, off / radius) } else { (1.0, 0.0) };
     let Principal { energy: e, tension } = energy(c1, c2);
     let (s1, s2) = (2.0 * e.w1, 2.0 * e.w2);
-    // The limit of equal stretches is that of a sheet that is smooth there, which one with wrinkles at small strains isn't.
+    // The limit of equal stretches requires an energy that is smooth there, which that of a wrinkling sheet
+    // at small strains isn't.
     let is_smooth = !wrinkles || tension == Tension::Taut;
     let shear = if radius > if is_smooth { 1e-6 } else { 1e-14 } * mean {
         (s1 - s2) / (2.0 * radius)
     } else {
-        // The mean of the two sides' derivatives, where they are the same up to O(radius).
+        // The mean of both sides' derivatives, which agree up to O(radius).
         e.w11 + e.w22 - 2.0 * e.w12
     };
     // Dyads of the directions: n1 n1 = (a, b, m), n2 n2 = (b, a, -m), the mixed one (-2 m, 2 m, cos2)/2 ... in the order 11, 22, 12.
@@ -180,8 +181,8 @@ mod tests {
         [c1 * cos * cos + c2 * sin * sin, c1 * sin * sin + c2 * cos * cos, (c1 - c2) * sin * cos]
     }
 
-    /// Newton's method converges by the square only if the tangent is right at any strain: also where it is smaller than 1e-6, and the principal
-    /// directions turn fast.
+    /// Newton's method only converges quadratically if the tangent is exact at any strain, also below 1e-6,
+    /// where the principal directions rotate fast.
     #[test]
     fn the_tangent_is_right_at_tiny_strains() {
         for law in LAWS {
@@ -212,7 +213,8 @@ mod tests {
         }
     }
 
-    /// Half of the natural width is half folded away: 1/sqrt(l) of rubber that is pulled to l.
+    /// Half of the natural width means that half is folded away; rubber pulled to l has the natural width
+    /// 1/sqrt(l).
     #[test]
     fn folds_are_what_is_missing_to_the_natural_width() {
         let rubber = isotropic(Law::NeoHooke { shear: 1.3 }, true, 0.0);
@@ -225,8 +227,8 @@ mod tests {
         assert!((folded(0.9, 0.7) - 0.3).abs() < 1e-12);
     }
 
-    /// Stress and tangent against differences of fourth order in each component of C. With E = (C - 1)/2 over (11, 22, 2 x 12), a step of
-    /// C11 is half as large a step of E11, one of C12 as large a one of 2 E12.
+    /// Stress and tangent against fourth-order differences in each component of C. With E = (C - 1)/2 over
+    /// (11, 22, 2 x 12), a step of C11 is half as large in E11, and a step of C12 equals one of 2 E12.
     fn check(sheet: &Sheet, c: [f64; 3], what: &str) {
         let now = sheet.plane(c);
         let h = 1e-4;
@@ -287,7 +289,8 @@ mod tests {
                 }
             }
         }
-        // Without load too, where the sheet doesn't wrinkle: D = Y/(1 - nu^2) [[1, nu, 0], [nu, 1, 0], [0, 0, (1 - nu)/2]].
+        // Also without load, if the sheet doesn't wrinkle: D = Y/(1 - nu^2) [[1, nu, 0], [nu, 1, 0], [0, 0,
+        // (1 - nu)/2]].
         let law = Law::SaintVenantKirchhoff { stiffness: 3.0, poisson: 0.4 };
         let y = 3.0 / 0.84;
         for apart in [0.0, 1e-9, 1e-5] {
@@ -316,7 +319,7 @@ mod tests {
         }
         let plane = at(Law::MooneyRivlin { c1: 0.6, c2: 0.2 });
         assert!((plane.w - 0.8 * 2.25).abs() < 1e-14);
-        // 2 c1 (1 - 1/(c1^2 c2)) + 2 c2 (c2 - 1/c1^2), and with 1 and 2 changed.
+        // 2 c1 (1 - 1/(c1^2 c2)) + 2 c2 (c2 - 1/c1^2), and with 1 and 2 exchanged.
         assert!((plane.s[0] - (1.2 + 0.4) * (1.0 - 1.0 / 16.0)).abs() < 1e-14);
         assert!((plane.s[1] - (1.2 * 0.75 + 0.4 * 3.0)).abs() < 1e-14);
         let plane = at(Law::Gent { shear: 1.3, limit: 30.0 });
@@ -353,7 +356,7 @@ mod tests {
                         assert!((mixed.d[i][j] - mix(relaxed.d[i][j], full.d[i][j])).abs() < 1e-13, "{what}");
                     }
                 }
-                // It is seen where the sheet gives way, and only there.
+                // The residual stiffness only shows where the sheet is wrinkled or slack.
                 let is_taut = relaxed.tension == Tension::Taut;
                 assert_eq!((relaxed.w - full.w).abs() < 1e-14, is_taut, "{what}");
             }
@@ -362,7 +365,7 @@ mod tests {
 
     #[test]
     fn along_the_axes_of_a_sheet() {
-        // What a membrane of revolution asks for is the energy of the same sheet.
+        // The energy for a membrane of revolution is that of the same sheet.
         let h = 1e-4;
         let cloths = LAWS.map(Cloth::Isotropic).into_iter().chain([Cloth::Orthotropic(WOVEN)]);
         for cloth in cloths {

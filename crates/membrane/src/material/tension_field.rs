@@ -1,7 +1,7 @@
-//! Tension fields: a sheet that can't be compressed, because it wrinkles first.
+//! Tension fields: a sheet that can't carry compression, because it wrinkles first.
 //!
-//! The relaxed energy of Pipkin and Steigmann: the least that the sheet can reach by fine wrinkles. With l1 >= l2, and the natural width
-//! n(l1) at which a strip pulled to l1 has no stress across,
+//! The relaxed energy of Pipkin and Steigmann is the least that the sheet can reach by fine wrinkles. With l1
+//! >= l2, and the natural width n(l1) at which a strip pulled to l1 has no transverse stress,
 //!
 //! ```text
 //! slack     l1 <= 1                W = 0
@@ -9,16 +9,17 @@
 //! taut      otherwise              W = W(l1, l2)
 //! ```
 //!
-//! It has continuous first derivatives. Sources: A. C. Pipkin, IMA J. Appl. Math. 36 (1986) 85; D. J. Steigmann, Proc. R. Soc. Lond. A 429 (1990) 141.
+//! Its first derivatives are continuous. Sources: A. C. Pipkin, IMA J. Appl. Math. 36 (1986) 85; D. J.
+//! Steigmann, Proc. R. Soc. Lond. A 429 (1990) 141.
 
 use super::law::{Energy, Law};
 use serde::Serialize;
 
-/// What a piece of membrane carries.
+/// State of tension of a piece of membrane.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Tension {
-    /// Nothing.
+    /// No tension.
     Slack,
     /// Tension in one direction.
     Wrinkled,
@@ -26,7 +27,7 @@ pub enum Tension {
     Taut,
 }
 
-/// Energy at squared principal stretches, and what it says of wrinkles.
+/// Energy at squared principal stretches, with the state of tension.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Principal {
     pub(crate) energy: Energy,
@@ -63,7 +64,7 @@ mod tests {
     use super::super::law::tests::LAWS;
     use super::*;
 
-    /// Slack, wrinkled, taut, and either side of each border.
+    /// Slack, wrinkled, taut, and both sides of each border.
     fn places(law: &Law) -> Vec<(f64, f64)> {
         let n = law.natural_width(1.4);
         vec![

@@ -1,7 +1,7 @@
 //! Threads: fibres and cables that carry tension only.
 //!
-//! Energy per unit unstretched length at the stretch l, with a tension T0 at l = 1 (zero for an elastic thread; for an inextensible one the
-//! multiplier of an augmented Lagrangian, updated until l = 1):
+//! Energy per unit unstretched length at the stretch l, with a tension T0 at l = 1. T0 is zero for an elastic
+//! thread; for an inextensible one it is the multiplier of an augmented Lagrangian, updated until l = 1:
 //!
 //! ```text
 //! T(l) = max(0, T0 + EA (l - 1)),   phi = (T^2 - T0^2)/(2 EA)
@@ -9,7 +9,7 @@
 
 use serde::Serialize;
 
-/// A thread, or many of them taken together.
+/// A thread, or several combined.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub enum Thread {
     /// EA in N.
@@ -21,7 +21,7 @@ pub enum Thread {
     Inextensible,
 }
 
-/// Energy per unit length with its derivatives by the stretch.
+/// Energy per unit length, with its derivatives by the stretch.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Pull {
     pub(crate) energy: f64,
@@ -29,14 +29,14 @@ pub(crate) struct Pull {
     pub(crate) stiffness: f64,
 }
 
-/// The pull of a thread of stiffness EA with multiplier T0.
+/// The tension of a thread of stiffness EA with multiplier T0.
 #[inline]
 pub(crate) fn pull(stiffness: f64, t0: f64, stretch: f64) -> Pull {
     let tension = t0 + stiffness * (stretch - 1.0);
     if tension <= 0.0 {
         return Pull { energy: -0.5 * t0 * t0 / stiffness, tension: 0.0, stiffness: 0.0 };
     }
-    // (T^2 - T0^2)/(2 EA) without its cancellation.
+    // (T^2 - T0^2)/(2 EA) without cancellation.
     let energy = 0.5 * (tension + t0) * (stretch - 1.0);
     Pull { energy, tension, stiffness }
 }

@@ -1,13 +1,13 @@
-//! Which format a file has, by its first bytes.
+//! Detects the format of a file by its first bytes.
 
 use super::{Mesh, MeshError};
 
 impl Mesh {
-    /// Reads a mesh in any format that is known: MSH of Gmsh, or VTU of VTK. `origin` is the file's name, for messages.
+    /// Reads a mesh in any known format: MSH of Gmsh, or VTU of VTK. `origin` is the file's name in messages.
     ///
     /// # Errors
     ///
-    /// Those of [`Self::from_msh`] and [`Self::from_vtu`]; a file of another format.
+    /// Those of [`Self::from_msh`] and [`Self::from_vtu`], or an unknown format.
     pub fn from_bytes(bytes: &[u8], origin: &str) -> Result<Self, MeshError> {
         let start = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start();
         match start.first() {

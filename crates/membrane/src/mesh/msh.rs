@@ -12,7 +12,7 @@ use super::{Mesh, MeshError};
 use assembly::Assembly;
 use cursor::{CUT, Cursor, DAMAGED, Encoding};
 
-/// What to do about a version that isn't read.
+/// Remedy for an unsupported version.
 const SAVE_AS: &str = "save it again as MSH 4.1 or 2.2 (`gmsh old.msh -save -format msh41 -o new.msh`)";
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -22,17 +22,21 @@ enum Version {
 }
 
 impl Mesh {
-    /// Reads a mesh of Gmsh: MSH 4.1 or 2.2, text or binary of either byte order. `origin` is the file's name, for messages.
+    /// Reads a mesh of Gmsh: MSH 4.1 or 2.2, text or binary of either byte order. `origin` is the file's name
+    /// in messages.
     ///
-    /// A block is a physical group's points, lines or triangles of one order, in the order in which they come in the file; groups of one
-    /// dimension and one name are one. A group without a name is called by its number, such as `7`. An element in several groups is in the
-    /// block of each; in a group to which its surface or curve belongs with a minus sign it is turned around, as Gmsh itself does
-    /// when it saves as version 2. Elements without a physical group are kept, in blocks without a name, only where the file has no
-    /// groups of their dimension: with `Save all elements` Gmsh also writes what was only drawn to build on. Nodes are kept, used or not.
+    /// A block contains the points, lines or triangles of one order in a physical group, in the order of the
+    /// file. Groups with the same dimension and name are merged. A group without a name is named by its
+    /// number, such as `7`. An element in several groups occurs in the block of each. If its surface or curve
+    /// belongs to a group with a minus sign, it is reversed there, as Gmsh does when it saves as version 2.
+    /// Elements without a physical group are only kept if the file has no groups of their dimension, in
+    /// blocks without a name, because with `Save all elements` Gmsh also writes auxiliary geometry. All nodes
+    /// are kept, used or not.
     ///
     /// # Errors
     ///
-    /// What can't be read or isn't a mesh of points, lines and triangles of order 1 or 2, with the line (text) or the byte (binary).
+    /// If the file can't be read or isn't a mesh of points, lines and triangles of order 1 or 2. The error
+    /// has the line (text) or the byte (binary).
     pub fn from_msh(bytes: &[u8], origin: &str) -> Result<Self, MeshError> {
         let mut cursor = Cursor::new(origin, bytes);
         let version = header(&mut cursor)?;
@@ -46,7 +50,7 @@ impl Mesh {
                     cursor.error(format_args!("the section ${name} stands in the file twice"), DAMAGED)
                 );
             }
-            // Elements are put together while they are read.
+            // Elements are added to the mesh while they are read.
             if is_needed && sections.contains(&"Elements")
                 || name == "Elements" && !sections.contains(&"Nodes")
             {
@@ -139,11 +143,11 @@ fn header(cursor: &mut Cursor) -> Result<Version, MeshError> {
     Ok(version)
 }
 
-/// Names of the physical groups: text in every file.
+/// Names of the physical groups, which are text in every file.
 fn names(cursor: &mut Cursor, assembly: &mut Assembly) -> Result<(), MeshError> {
     for _ in 0..cursor.counted_line("the number of names", (7, 7))? {
         let line = cursor.line();
-        // The name ends at the line's last quotation mark: Gmsh writes those within a name as they are.
+        // The name ends at the line's last quotation mark, because Gmsh doesn't escape those within a name.
         let parsed = std::str::from_utf8(line).ok().and_then(|line| {
             let (numbers, name) = line.split_once('"')?;
             let name = name.strip_suffix('"')?;

@@ -10,18 +10,21 @@ use roxmltree::{Document, Node};
 use std::collections::HashMap;
 
 impl Mesh {
-    /// Reads an unstructured grid of VTK (.vtu) with vertices, lines and triangles of order 1 or 2: as text, inline or appended, plain or
-    /// compressed by zlib, of either byte order. `origin` is the file's name, for messages.
+    /// Reads an unstructured grid of VTK (.vtu) with vertices, lines and triangles of order 1 or 2: as text,
+    /// inline or appended, uncompressed or zlib-compressed, of either byte order. `origin` is the file's name
+    /// in messages.
     ///
-    /// The group of a cell is its integer in the cell data `group`; if the field data have strings `groups`, it is the name at that
-    /// index, counted from 0, else the integer itself, such as `7`. Without `group` the physical groups that meshio writes
-    /// (`gmsh:physical`) are taken, where 0 is no group; without these too no block has a name. Blocks come in the order of their first cells.
-    /// Point data `pattern` of two components (a third is ignored) give the places in the flat pattern of the cloth. Several pieces are put
-    /// one after another, nodes on their common boundary are not joined. Nodes and cells are numbered from 0, as ParaView shows them.
+    /// The group of a cell is its integer in the cell data `group`. If the field data have strings `groups`,
+    /// it is the name at that index, counted from 0; otherwise the integer itself, such as `7`. Without
+    /// `group`, the physical groups that meshio writes (`gmsh:physical`) are taken, where 0 is no group;
+    /// without these as well, no block has a name. Blocks come in the order of their first cells. Point data
+    /// `pattern` with two components (a third is ignored) give the positions in the flat pattern of the
+    /// cloth. Several pieces are concatenated; nodes on their common boundary are not joined. Nodes and cells
+    /// are numbered from 0, as ParaView shows them.
     ///
     /// # Errors
     ///
-    /// What can't be read or isn't such a grid, with the line of the XML element.
+    /// If the file can't be read or isn't such a grid. The error has the line of the XML element.
     pub fn from_vtu(bytes: &[u8], origin: &str) -> Result<Self, MeshError> {
         let parts = document::parts(bytes, origin)?;
         let document = Document::parse(&parts.xml).map_err(|error| MeshError {
@@ -64,7 +67,7 @@ impl Mesh {
     }
 }
 
-/// The element of the grid, if the file is of this kind.
+/// The XML element of the grid, if the file is of this kind.
 fn grid<'a, 'xml>(arrays: &Arrays, root: Node<'a, 'xml>) -> Result<Node<'a, 'xml>, MeshError> {
     if !root.has_tag_name("VTKFile") {
         let what = format!("the file is XML of <{}>, not of <VTKFile>", brief(root.tag_name().name()));
@@ -97,13 +100,13 @@ fn grid<'a, 'xml>(arrays: &Arrays, root: Node<'a, 'xml>) -> Result<Node<'a, 'xml
 enum Group {
     #[default]
     None,
-    /// Of the array `group`: perhaps the index of a name.
+    /// From the array `group`: possibly the index of a name.
     Index(i64),
-    /// Of the array `gmsh:physical`.
+    /// From the array `gmsh:physical`.
     Physical(i64),
 }
 
-/// What has been read up to now.
+/// The data read so far.
 struct Assembly {
     /// Names of groups by their index.
     names: Vec<String>,
@@ -112,9 +115,9 @@ struct Assembly {
     blocks: HashMap<(Group, CellKind), usize>,
     /// Blocks by the name of their group and their kind.
     named_blocks: HashMap<(String, CellKind), usize>,
-    /// Number of cells.
+    /// Number of cells so far.
     cells: usize,
-    /// Whether the pieces that have cells have a pattern.
+    /// Whether the pieces with cells have a pattern.
     has_pattern: Option<bool>,
 }
 
@@ -178,7 +181,7 @@ impl Assembly {
         Ok(())
     }
 
-    /// The group of each cell; empty where the piece has none.
+    /// The group of each cell; empty if the piece has none.
     fn groups(&self, arrays: &Arrays, piece: Node, cells: usize) -> Result<Vec<Group>, MeshError> {
         let Some(data) = child(piece, "CellData") else {
             return Ok(Vec::new());
@@ -226,7 +229,7 @@ impl Assembly {
         block
     }
 
-    /// Adds a cell to a block; its nodes are counted from the first one of the piece.
+    /// Adds a cell to a block; its node numbers are relative to the first node of the piece.
     fn add_cell(
         &mut self,
         block: usize,
@@ -257,7 +260,7 @@ impl Assembly {
     }
 }
 
-/// The place of each point in the flat pattern.
+/// The position of each point in the flat pattern.
 fn pattern(arrays: &Arrays, piece: Node, points: usize) -> Result<Option<Vec<[f64; 2]>>, MeshError> {
     let Some(array) = child(piece, "PointData").and_then(|data| array_named(data, "pattern")) else {
         return Ok(None);
@@ -275,7 +278,7 @@ fn pattern(arrays: &Arrays, piece: Node, points: usize) -> Result<Option<Vec<[f6
     Ok(Some(values.chunks_exact(components).filter_map(place).collect()))
 }
 
-/// What VTK's cell type is here.
+/// The cell kind of VTK's cell type.
 fn kind(arrays: &Arrays, data: Node, cell_type: i64, number: usize) -> Result<CellKind, MeshError> {
     let triangles = "mesh with triangles (in ParaView: `Triangulate`)";
     let volume = "save only the surface (in ParaView: `Extract Surface`, then `Append Datasets`)";

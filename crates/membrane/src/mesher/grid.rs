@@ -1,20 +1,20 @@
-//! Any surface over the unit square, in triangles.
+//! Meshes any surface over the unit square with triangles.
 
 use crate::mesh::{Block, CellKind, Mesh};
 
 /// A surface over (u, v), each from 0 to 1.
 pub struct Surface<'a> {
-    /// Where it starts.
+    /// Initial position.
     pub place: &'a dyn Fn(f64, f64) -> [f64; 3],
-    /// Where it lies in the flat stress-free pattern; `None`: the places are free of stress.
+    /// Position in the flat stress-free pattern; `None`: the initial positions are stress-free.
     pub pattern: Option<&'a dyn Fn(f64, f64) -> [f64; 2]>,
     /// Cells along u and v.
     pub cells: [usize; 2],
-    /// Triangles with six nodes.
+    /// Whether triangles have six nodes.
     pub is_quadratic: bool,
 }
 
-/// Two triangles to each cell, their diagonals by turns; the normal is that of u x v.
+/// Two triangles per cell, with alternating diagonals; the normal is that of u x v.
 ///
 /// Groups: `cloth`, the triangles; `u0`, `u1`, `v0`, `v1`, the lines of the four edges.
 #[must_use]

@@ -4,35 +4,39 @@ use super::grid::{Surface, grid};
 use crate::mesh::Mesh;
 use core::f64::consts::PI;
 
-/// A pleated muscle: n fibres on a circle at each end fitting, and between neighbours a strip of cloth, folded outwards into one pleat.
+/// A pleated muscle: n fibres on a circle at each end fitting, and between neighbours a strip of cloth,
+/// folded outwards into one pleat.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pleated {
-    /// Fibres.
+    /// Number of fibres.
     pub fibres: usize,
     /// Radius of the fibres at the fittings, m.
     pub radius: f64,
     /// Unpressurised length between the fittings, m.
     pub length: f64,
-    /// Circumference of the cloth spread out flat, m.
+    /// Circumference of the cloth when spread out flat, m.
     pub circumference: f64,
-    /// How far the tops of the pleats stand out beyond the fibres at the fittings, m.
+    /// Height of the pleats above the fibres at the fittings, m.
     pub depth: f64,
-    /// Cells round (of the sector) and along (of half the length).
+    /// Cells around (of the sector) and along (of half the length).
     pub cells: [usize; 2],
-    /// Triangles with six nodes.
+    /// Whether triangles have six nodes.
     pub is_quadratic: bool,
 }
 
 impl Pleated {
-    /// Half a lobe, from a fibre to the top of a pleat, over half the length: the middle of the muscle at z = 0. It is one of 4 n.
+    /// Half a lobe, from a fibre to the top of a pleat, over half the length; the middle of the muscle is at
+    /// z = 0. The muscle consists of 4 n of them.
     ///
-    /// Groups: `cloth`; `fibre`, in the plane y = 0; `top`, in the plane at pi/n to it; `middle`, z = 0; `end`, on the fitting.
+    /// Groups: `cloth`; `fibre`, in the plane y = 0; `top`, in the plane at an angle of pi/n to it; `middle`,
+    /// z = 0; `end`, on the fitting.
     #[must_use]
     pub fn half_lobe(&self) -> Mesh {
         self.sector(0.5)
     }
 
-    /// A whole lobe between two fibres over half the length: one of 2 n. Group `top` is then the next fibre's edge, 2 pi/n from `fibre`.
+    /// A whole lobe between two fibres over half the length; the muscle consists of 2 n of them. Group `top`
+    /// is then the next fibre's edge, 2 pi/n from `fibre`.
     #[must_use]
     pub fn lobe(&self) -> Mesh {
         self.sector(1.0)
@@ -43,7 +47,7 @@ impl Pleated {
         let angle = 2.0 * PI / n * share;
         let strip = self.circumference / n * share;
         let place = |u: f64, v: f64| {
-            // The pleat stands out most in the middle of a lobe.
+            // The pleat is highest in the middle of a lobe.
             let out = 1.0 - (2.0 * share * u - 1.0).abs();
             let (r, theta) = (self.radius + self.depth * out, angle * u);
             [r * theta.cos(), r * theta.sin(), 0.5 * self.length * v]

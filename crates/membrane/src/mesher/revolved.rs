@@ -1,20 +1,20 @@
-//! Any meridian as a line in the half-plane y = 0.
+//! Meshes any meridian as a line in the half-plane y = 0.
 
 use crate::mesh::{Block, CellKind, Mesh};
 
-/// How the elements share a line.
+/// Distribution of the elements along a line.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Grading {
-    /// All alike.
+    /// Uniform.
     Even,
-    /// Finer towards both ends: the first element is this many times shorter than it would be.
+    /// Finer towards both ends: the first element is this many times shorter than in a uniform mesh.
     Ends(f64),
-    /// Finer towards the end.
+    /// Finer towards the end, in the same way.
     End(f64),
 }
 
 impl Grading {
-    /// From \[0, 1\] to itself: t + g (t - 1)t(...) with a slope 1/ratio at the fine ends.
+    /// Maps \[0, 1\] to itself with a slope of 1/ratio at the fine ends.
     pub(crate) fn at(self, t: f64) -> f64 {
         match self {
             Self::Even => t,
@@ -32,9 +32,11 @@ impl Grading {
     }
 }
 
-/// The line t -> (r, z), 0 <= t <= 1, in `elements` elements with two nodes, or three if `is_quadratic` (each middle at half its parameter).
+/// The line t -> (r, z), 0 <= t <= 1, in `elements` elements with two nodes, or three if `is_quadratic` (the
+/// middle node is halfway between the ends in the parameter).
 ///
-/// Groups: `wall`, the line; `first` and `last`, its end nodes. For a volume above zero z grows along the line.
+/// Groups: `wall`, the line; `first` and `last`, its end nodes. The volume is positive if z grows along the
+/// line.
 #[must_use]
 pub fn revolved(
     line: impl Fn(f64) -> [f64; 2],
@@ -45,7 +47,7 @@ pub fn revolved(
     let each = if is_quadratic { 2 } else { 1 };
     let nodes: Vec<[f64; 3]> = (0..=each * elements)
         .map(|i| {
-            // Middles halfway between their ends, also where the line is graded.
+            // Middle nodes are halfway between the ends in a graded line too.
             let end = |j: usize| grading.at(j as f64 / elements as f64);
             let t = if i % each == 0 { end(i / each) } else { 0.5 * (end(i / 2) + end(i / 2 + 1)) };
             let [r, z] = line(t);

@@ -1,4 +1,4 @@
-//! From the supports of groups to the degrees of freedom of nodes.
+//! Converts supports of groups into degrees of freedom of nodes.
 
 use super::{Fitting, Support};
 use crate::dofs::{Clash, ClashKind, Dofs, Supports};
@@ -6,7 +6,8 @@ use crate::error::MembraneError;
 use crate::mesh::Mesh;
 use core::f64::consts::TAU;
 
-/// Degrees of freedom and their values at the mesh's own places. `is_used`: nodes of elements; `is_flat`: those of membranes of revolution.
+/// Degrees of freedom, with their values at the positions of the mesh. `is_used` marks nodes of elements,
+/// `is_flat` those of membranes of revolution.
 pub(super) fn dofs(
     mesh: &Mesh,
     supports: &[(String, Support)],
@@ -45,7 +46,7 @@ pub(super) fn dofs(
     held.dofs(&mesh.nodes).map_err(|clash| named(mesh, supports, clash))
 }
 
-/// The nodes of a group that belong to elements: others don't move, whatever they are said to do.
+/// The nodes of a group that belong to elements; others don't move, whatever their supports say.
 fn used(mesh: &Mesh, group: &str, is_used: &[bool]) -> Result<Vec<usize>, MembraneError> {
     let mut nodes = mesh.nodes_of(group).ok_or_else(|| MembraneError::unknown_group(group, mesh))?;
     nodes.retain(|node| is_used[*node]);
@@ -94,7 +95,7 @@ fn hold(
     Ok(())
 }
 
-/// A clash with the numbers and names of the mesh.
+/// The error of a clash, with numbers and names from the mesh.
 fn named(mesh: &Mesh, supports: &[(String, Support)], clash: Clash) -> MembraneError {
     let node = mesh.number(clash.node);
     let groups = clash.by.map(|by| supports.get(by).map_or_else(String::new, |(name, _)| name.clone()));

@@ -1,8 +1,10 @@
-//! Whether the supports hold every part of a structure: motions without strain, along and about the axes, that they leave free.
+//! Checks whether the supports hold every part of a structure; otherwise finds the free rigid motions, along
+//! and about the axes.
 //!
-//! Of each connected piece the small rigid motions u(x) = t + w x (x - c)/s, and the places f of the fittings that aren't prescribed, are the
-//! unknowns. Each direction in which a node is held is an equation; a node on a fitting has u_z = f, and one that follows a partner moves as
-//! that does. What the equations leave is free. A line of revolution has one rigid motion only: along z.
+//! The unknowns are the small rigid motions u(x) = t + w x (x - c)/s of each connected piece, and the
+//! positions f of the fittings that aren't prescribed. Each direction in which a node is held gives an
+//! equation; a node on a fitting has u_z = f, and a node that follows a partner moves like it. The motions
+//! that satisfy all equations are free. A line of revolution has a single rigid motion, along z.
 
 use super::Group;
 use crate::dofs::{Dofs, NONE, NodeDofs, complement};
@@ -10,41 +12,41 @@ use crate::element::{Vector, add, cross, dot, norm, scaled, sub};
 use crate::error::MembraneError;
 use crate::mesh::Mesh;
 
-/// Six numbers of a rigid motion: t and w.
+/// The six components of a rigid motion: t and w.
 type Motion = [f64; 6];
 
-/// Held nodes move less than this of the piece's largest motion.
+/// A node is held if it moves less than this fraction of the piece's largest motion.
 const HELD: f64 = 1e-6;
-/// Free ones move more.
+/// A node is free if it moves more than this fraction.
 const FREE: f64 = 1e-3;
 
-/// A linear equation: of a piece's motion, and of the fittings' places.
+/// A linear equation in a piece's motion and the fittings' positions.
 #[derive(Debug, Clone)]
 struct Row {
     motion: Motion,
     fittings: Vec<f64>,
 }
 
-/// Nodes that elements join.
+/// Nodes connected by elements.
 struct Piece {
     middle: Vector,
     size: f64,
     is_flat: bool,
-    /// Orthonormal in their motions.
+    /// Equations, orthonormal in their motions.
     rows: Vec<Row>,
 }
 
 struct Pieces<'a> {
     mesh: &'a Mesh,
     dofs: &'a Dofs,
-    /// The piece of each node; `NONE` for nodes without element.
+    /// The piece of each node; `NONE` for nodes without an element.
     of: Vec<u32>,
     all: Vec<Piece>,
-    /// What is left of equations that hold a piece already: of the fittings' places only.
+    /// The remainders of equations whose motion is held already: they only concern the fittings' positions.
     fittings: Vec<Vec<f64>>,
 }
 
-/// That every piece is held.
+/// Checks that every piece is held.
 pub(super) fn check(
     mesh: &Mesh,
     groups: &[(String, Group)],
@@ -73,7 +75,7 @@ pub(super) fn check(
     Ok(())
 }
 
-/// The first node with each degree of freedom.
+/// The first node of each degree of freedom.
 fn owners(dofs: &Dofs) -> Vec<u32> {
     let mut owners = vec![NONE; dofs.all];
     for (i, node) in (0_u32..).zip(&dofs.nodes) {
@@ -123,7 +125,7 @@ impl<'a> Pieces<'a> {
         Self { mesh, dofs, of, all: pieces, fittings: Vec::new() }
     }
 
-    /// Takes up what holds a node.
+    /// Adds the equations of a node's supports.
     fn hold(&mut self, node: usize, owners: &[u32]) {
         let Some(piece) = self.all.get(self.of[node] as usize) else { return };
         let held: &NodeDofs = &self.dofs.nodes[node];
@@ -139,7 +141,7 @@ impl<'a> Pieces<'a> {
             let mut row = Row { motion: piece.displacement(place, *axis), fittings: none.clone() };
             let owner = owners[*dof as usize] as usize;
             if let Some(fitting) = self.dofs.fittings.iter().position(|own| own == dof) {
-                // Those that are prescribed don't move.
+                // Prescribed fittings don't move.
                 if let Some(number) = self.number_of(fitting) {
                     row.fittings[number] = -1.0;
                 }
@@ -168,19 +170,19 @@ impl<'a> Pieces<'a> {
         }
     }
 
-    /// Fittings whose places are solved for.
+    /// Number of fittings whose positions are solved for.
     fn loaded(&self) -> usize {
         self.dofs.fittings.iter().filter(|dof| (**dof as usize) < self.dofs.free).count()
     }
 
-    /// The place of such a fitting among them.
+    /// The index of such a fitting among them.
     fn number_of(&self, fitting: usize) -> Option<usize> {
         let is_loaded = |dof: &u32| (*dof as usize) < self.dofs.free;
         let fittings = &self.dofs.fittings;
         is_loaded(&fittings[fitting]).then(|| fittings[..fitting].iter().filter(|dof| is_loaded(dof)).count())
     }
 
-    /// A node of a piece that can move while all fittings stand, and how.
+    /// A node of a piece that can move while all fittings stand still, and its motion.
     fn free(&self) -> Option<(usize, String)> {
         let mut most: Option<(usize, f64, Motion)> = None;
         for (node, place) in self.mesh.nodes.iter().enumerate() {
@@ -191,7 +193,7 @@ impl<'a> Pieces<'a> {
             for axis in [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]] {
                 let left = piece.left(piece.displacement(*place, axis));
                 let size = size(&left);
-                // The first of equals.
+                // Take the first one among equals.
                 if size > FREE && most.is_none_or(|(_, most, _)| size > 1.5 * most) {
                     most = Some((node, size, left));
                 }
@@ -202,7 +204,7 @@ impl<'a> Pieces<'a> {
         Some((node, piece.described(self.mesh.nodes[node], motion.map(|x| x / size))))
     }
 
-    /// A node on a fitting that nothing holds along z.
+    /// A node on a fitting that isn't held along z.
     fn free_fitting(&self) -> Option<usize> {
         if self.fittings.len() == self.loaded() {
             return None;
@@ -228,7 +230,7 @@ impl Default for Piece {
 }
 
 impl Piece {
-    /// The displacement of a place along a direction, by the motion.
+    /// The displacement of a position along a direction, as a linear form of the motion.
     fn displacement(&self, place: Vector, along: Vector) -> Motion {
         if self.is_flat {
             return [0.0, 0.0, along[2], 0.0, 0.0, 0.0];
@@ -239,7 +241,7 @@ impl Piece {
         [x, y, z, a, b, c]
     }
 
-    /// What the rows leave of a motion.
+    /// The remainder of a motion orthogonal to the rows.
     fn left(&self, mut motion: Motion) -> Motion {
         for row in &self.rows {
             subtract(&mut motion, &row.motion);
@@ -247,7 +249,7 @@ impl Piece {
         motion
     }
 
-    /// Takes up an equation. What it says of the fittings, if it says nothing new of the motion.
+    /// Adds an equation. Returns its fitting part if it contains nothing new about the motion.
     fn take(&mut self, mut row: Row) -> Option<Vec<f64>> {
         for known in &self.rows {
             let share = subtract(&mut row.motion, &known.motion);
@@ -263,7 +265,7 @@ impl Piece {
         None
     }
 
-    /// Whether a motion is free, and moves the place.
+    /// Whether a motion is free and moves this position.
     fn frees(&self, motion: Motion, place: Vector) -> bool {
         let size = size(&motion);
         let is_held = self.rows.iter().any(|row| inner(&row.motion, &motion).abs() > 1e-5 * size);
@@ -302,7 +304,7 @@ impl Piece {
     }
 }
 
-/// Three numbers, none of them -0.
+/// Three numbers as text, without -0.
 fn written(v: Vector, digits: i32) -> String {
     let unit = 10.0_f64.powi(digits);
     let [x, y, z] = v.map(|x| (x * unit).round() / unit + 0.0);
@@ -317,14 +319,14 @@ fn size(motion: &Motion) -> f64 {
     inner(motion, motion).sqrt()
 }
 
-/// Takes the share along a unit vector away.
+/// Subtracts the projection on a unit vector.
 fn subtract(from: &mut [f64], unit: &[f64]) -> f64 {
     let share = inner(from, unit);
     from.iter_mut().zip(unit).for_each(|(x, unit)| *x -= share * unit);
     share
 }
 
-/// Which nodes hang together.
+/// Connectivity of nodes (disjoint sets).
 struct Links {
     parent: Vec<u32>,
     is_used: Vec<bool>,
@@ -355,7 +357,7 @@ impl Links {
         self.parent[a.max(b) as usize] = a.min(b);
     }
 
-    /// The piece of each node, and how many there are.
+    /// The piece of each node, and the number of pieces.
     fn numbered(mut self) -> (Vec<u32>, usize) {
         let mut of = vec![NONE; self.parent.len()];
         let mut count = 0;

@@ -1,18 +1,18 @@
-//! What closes the volume where membranes end: the supports that hold both ends of an open edge.
+//! Closure of the volume at the open edges of membranes: the supports that hold both ends of an edge.
 
 use crate::element::{Vector, dot, norm, scaled, sub};
 use crate::error::MembraneError;
 use crate::mesh::Mesh;
 use crate::structure::Support;
 
-/// How far a node may lie off a plane, over the size of the mesh.
+/// Largest distance of a node from a plane, relative to the size of the mesh.
 const CLOSE: f64 = 1e-6;
 
 /// The supports of a mesh by the nodes that they hold.
 pub(crate) struct Rims<'a> {
     mesh: &'a Mesh,
     supports: &'a [(String, Support)],
-    /// (node, closure), in order.
+    /// (node, closure), sorted.
     at: Vec<(usize, usize)>,
     size: f64,
 }
@@ -33,7 +33,7 @@ impl<'a> Rims<'a> {
         Ok(Self { mesh, supports, at, size: mesh.size() })
     }
 
-    /// What closes the volume at a node: twice the number of a support, and 1 more at the partners of a cyclic edge.
+    /// The closures at a node: twice the number of a support, plus 1 at the partners of a cyclic edge.
     fn at(&self, node: usize) -> &[(usize, usize)] {
         let from = self.at.partition_point(|(other, _)| *other < node);
         let many = self.at[from..].partition_point(|(other, _)| *other == node);
@@ -51,7 +51,8 @@ impl<'a> Rims<'a> {
         both.map(|(_, closure)| &self.supports[closure / 2])
     }
 
-    /// Whether anything closes the volume at an open edge; an error if it is only a plane from which the volume isn't measured.
+    /// Whether anything closes the volume at an open edge. An error if it is only a plane from which the
+    /// volume isn't measured.
     pub(super) fn closes(&self, nodes: [usize; 2]) -> Result<bool, MembraneError> {
         let mut refused = None;
         for (name, support) in self.common(nodes) {
@@ -88,7 +89,7 @@ impl<'a> Rims<'a> {
     }
 }
 
-/// The first support that closes the volume just as this one: two groups that are fixed, or ride on one fitting, are one rim.
+/// The first support with the same closure: two fixed groups, or two groups on one fitting, form one rim.
 fn first_alike(supports: &[(String, Support)], i: usize) -> usize {
     let own = &supports[i].1;
     let is_rigid = matches!(own, Support::Fixed | Support::Fitting { .. });

@@ -1,4 +1,4 @@
-//! The part of a full turn about z that a mesh is, where its supports fix it.
+//! The fraction of a full turn about z that a mesh covers, if its supports determine it.
 
 use super::rims::Rims;
 use super::sides;
@@ -7,10 +7,11 @@ use crate::mesh::{CellKind, Mesh};
 use crate::structure::{Part, Support};
 use core::f64::consts::TAU;
 
-/// Angles nearer than this are the same, rad.
+/// Angles closer than this are equal, rad.
 const CLOSE: f64 = 1e-5;
 
-/// The angle of the sector, rad: between the edges of a cyclic one, or between two planes of symmetry. `None` where nothing fixes it.
+/// The angle of the sector, rad: between the edges of a cyclic one, or between two planes of symmetry. `None`
+/// if nothing determines it.
 pub(crate) fn sector(
     mesh: &Mesh,
     parts: &[(String, Part)],
@@ -63,7 +64,7 @@ fn is_near(angle: f64) -> bool {
     angle.min(TAU - angle) < CLOSE
 }
 
-/// From one of two rays to the other, across the mesh.
+/// The angle from one of two rays to the other, across the mesh.
 fn between(mesh: &Mesh, rays: &[f64], blocks: &[usize]) -> Option<f64> {
     let [from, to] = rays[..] else { return None };
     let turn = (to - from).rem_euclid(TAU);

@@ -1,5 +1,6 @@
-//! What happens at the ends: which way a contraction and a force count, loads that turn the membrane inside out, limit points that are seen
-//! before they are claimed, and what is left of a state that wasn't reached.
+//! The ends of a muscle: signs of contraction and force, loads that turn the membrane inside out, limit
+//! points that are detected before they are reported, and the last equilibrium before a state that wasn't
+//! reached.
 
 #![expect(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on has failed")]
 #![expect(clippy::float_cmp, reason = "what is prescribed, and zero, come back to the bit")]
@@ -92,9 +93,9 @@ fn the_order_of_the_supports_is_no_matter() {
         assert!((a.volume / b.volume - 1.0).abs() < 1e-9);
     }
     assert!((up[1].contraction.unwrap() - 0.04).abs() < 1e-12);
-    // Pressure presses the ends apart, the more the more it is contracted.
+    // Pressure pushes the ends apart, more strongly the more it is contracted.
     assert!(up[0].force.unwrap() < 0.0 && up[1].force.unwrap() < up[0].force.unwrap());
-    // Raising the lower end is the same contraction, also where the other one has been moved.
+    // Raising the lower end is the same contraction, also if the other one has been moved.
     let moved = run(
         &[bottom, top],
         "[[step]]\npressure = \"10 kPa\"\nplaces = { bottom = \"3 mm\" }\n[[step]]\ncontraction = \"4 %\"\n",
@@ -102,7 +103,7 @@ fn the_order_of_the_supports_is_no_matter() {
     assert!((moved[0].contraction.unwrap() - 0.05).abs() < 1e-12);
     assert!((moved[1].contraction.unwrap() - 0.04).abs() < 1e-12);
     assert!((moved[1].force.unwrap() / up[1].force.unwrap() - 1.0).abs() < 1e-6);
-    // A lone fitting below a plane that stays.
+    // A single fitting below a plane that doesn't move.
     let plane = "[[support]]\ngroup = \"last\"\nkind = \"plane\"\nnormal = [0, 0, 1]\n";
     std::fs::write(
         folder.join("tube.msh"),
@@ -135,7 +136,7 @@ fn ends_do_not_pass_each_other() {
         let error = Case::from_toml(&text, "case.toml", None).unwrap_err().to_string();
         assert!(error.contains(distance), "{error}");
     }
-    // A force that no tube bears doesn't turn it inside out.
+    // A force that no tube can bear doesn't turn it inside out.
     let support =
         "[[support]]\ngroup = \"last\"\nkind = \"fitting\"\nfitting = \"top\"\nmotion = \"loaded\"\n";
     for force in ["-5 N", "-500 N"] {
@@ -148,7 +149,8 @@ fn ends_do_not_pass_each_other() {
     }
 }
 
-/// The largest pressure of the clamped tube, to the digits that a search by steps finds; the state there is kept.
+/// The largest pressure of the clamped tube, to the digits that the step search finds; the state there is
+/// kept.
 #[test]
 fn a_limit_point_is_seen_before_it_is_claimed() {
     let (found, error, rescued) = rows(&format!("{TUBE}{RUBBER}[[step]]\npressure = \"50 kPa\"\n"), None);
@@ -161,7 +163,7 @@ fn a_limit_point_is_seen_before_it_is_claimed() {
     }
     let rescued = rescued.unwrap();
     assert!((rescued.pressure / 34342.062 - 1.0).abs() < 1e-3 && rescued.state == 1, "{rescued:?}");
-    // A bag of linear foil has none, however far the next pressure is.
+    // A bag of linear foil has no limit point, however far the next pressure is.
     let (found, error, _) =
         rows(&format!("{BAG}[[step]]\npressure = \"5 kPa\"\n[[step]]\npressure = \"1e6 bar\"\n"), None);
     assert!(error.is_none() && found[1].pressure == 1e11, "{error:?}");
@@ -187,7 +189,7 @@ fn gas_needs_a_volume() {
     assert!(matches!(source(error), MembraneError::NoGas { .. }));
 }
 
-/// Fibres drawn longer than they are.
+/// Fibres extended beyond their length.
 #[test]
 fn threads_without_stretch_end_where_they_are_straight() {
     let threads = "[[part]]\ngroup = \"wall\"\nkind = \"threads\"\nangle = \"25 deg\"\n";
@@ -202,7 +204,7 @@ fn threads_without_stretch_end_where_they_are_straight() {
     );
 }
 
-/// Cloth that is pulled gets narrower without a fold.
+/// Pulled cloth gets narrower without a fold.
 #[test]
 fn taut_cloth_has_no_folds() {
     let case = format!("{TUBE}{RUBBER}[[step]]\npressure = \"1 kPa\"\ncontraction = \"-30 %\"\n");

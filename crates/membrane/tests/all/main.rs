@@ -1,4 +1,5 @@
-//! Membranes against closed forms and other solvers, and the readers of meshes: one program of tests, one module for each part.
+//! Membranes against closed forms and other solvers, and the mesh readers: one test program, one module for
+//! each part.
 
 mod ends;
 mod readers;

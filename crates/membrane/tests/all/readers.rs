@@ -1,4 +1,5 @@
-//! The readers of meshes: files that other programs wrote, every variant of the formats, every defect with its message, and damage of all kinds.
+//! The mesh readers: files from other programs, every variant of the formats, every defect with its message,
+//! and damage of all kinds.
 
 #![expect(
     clippy::unwrap_used,
@@ -14,7 +15,7 @@ use base64::engine::general_purpose::STANDARD;
 use bulge_membrane::{Block, CellKind, Mesh};
 use std::io::Write as _;
 
-/// Files of Gmsh, VTK and meshio; `data/README.md` says how they came to be.
+/// Files of Gmsh, VTK and meshio; `data/README.md` describes their origin.
 const GMSH: [(&str, &[u8]); 4] = [
     ("gmsh-4.1-text.msh", include_bytes!("../data/gmsh-4.1-text.msh")),
     ("gmsh-4.1-binary.msh", include_bytes!("../data/gmsh-4.1-binary.msh")),
@@ -28,7 +29,7 @@ const VTK: [(&str, &[u8]); 4] = [
     ("meshio.vtu", include_bytes!("../data/meshio.vtu")),
 ];
 
-/// The places in those files: corners, then middles of edges.
+/// The positions in those files: corners, then midpoints of edges.
 const PLACES: [[f64; 3]; 9] = [
     [0.0, 0.0, 0.0],
     [1.0, 0.0, 0.0],
@@ -46,7 +47,7 @@ fn reads(bytes: impl AsRef<[u8]>) -> Mesh {
     Mesh::from_bytes(bytes.as_ref(), "m").unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// That the message has these parts, and names the line.
+/// Requires a message with these parts that names the line.
 #[track_caller]
 fn refuses(bytes: impl AsRef<[u8]>, place: &str, parts: &[&str]) {
     let error = Mesh::from_bytes(bytes.as_ref(), "m").expect_err(&format!("{parts:?}"));
@@ -143,22 +144,22 @@ fn groups() {
     let groups =
         |mesh: Mesh| mesh.blocks.into_iter().map(|block| (block.group, block.numbers)).collect::<Vec<_>>();
     let named = |name: &str, numbers: &[u64]| (name.to_owned(), numbers.to_vec());
-    // Without a name, and with odd ones.
+    // Without a name, and with unusual ones.
     let legacy = |from, to| groups(reads(LEGACY.replace(from, to)));
     assert_eq!(legacy("2 1 \"cloth\"", "2 9 \"cloth\"")[0], named("1", &[1]));
     assert_eq!(legacy("\"cloth\"", "\"\"")[0], named("1", &[1]));
     assert_eq!(legacy("\"cloth\"", "\" a \\\"b\\\" c\" ")[0], named(" a \\\"b\\\" c", &[1]));
-    // Names hold for one dimension.
+    // Names apply to one dimension.
     assert_eq!(legacy("2 1 \"cloth\"", "1 1 \"cloth\"")[0], named("1", &[1]));
-    // Elements without a group are dropped where others have one, dimension by dimension.
+    // Elements without a group are dropped if others have one, dimension by dimension.
     assert_eq!(legacy("2 1 2 2 1 10 20", "2 1 2 0 1 10 20")[1..], [named("edge", &[3])]);
     assert_eq!(legacy("1 2 2 1 1 10", "1 2 0 10")[0], named("", &[1]));
-    // Two groups of one name are one; an element is in it once.
+    // Two groups with the same name are merged; an element occurs once.
     let two = MODERN
         .replace("2\n1 2 \"edge\"", "3\n2 5 \"cloth\"\n1 2 \"edge\"")
         .replace("1 1 0 1 1 1 1", "1 1 0 2 1 5 1 1");
     assert_eq!(groups(reads(&two))[0], named("cloth", &[1]));
-    // In both groups; turned around in the second.
+    // In both groups; reversed in the second.
     let both = reads(MODERN.replace("1 1 0 1 1 1 1", "1 1 0 2 1 -8 1 1"));
     assert_eq!(
         both.blocks[..2],
@@ -269,7 +270,7 @@ fn every_defect_of_text_has_its_message() {
     refuses("solid cube\n", "m", &["no mesh that can be read"]);
 }
 
-/// Numbers of any byte order, written independently of the readers.
+/// Numbers in either byte order, written independently of the readers.
 struct Binary {
     out: Vec<u8>,
     is_big: bool,
@@ -280,7 +281,7 @@ impl Binary {
         let mut new = Self { out: Vec::new(), is_big };
         new.text(&format!("$MeshFormat\n{version} 1 8\n")).ints(&[1]).text("\n$EndMeshFormat\n");
         new.text("$PhysicalNames\n1\n2 1 \"cloth\"\n$EndPhysicalNames\n");
-        // A section that nobody knows, with bytes that look like others.
+        // An unknown section, with bytes that look like other sections.
         new.text("$Strange\n\0\u{1}$Nodes\n$EndStrangest$End\0\n$EndStrange\n");
         new
     }
@@ -312,7 +313,7 @@ impl Binary {
     }
 }
 
-/// A triangle whose groups are its cloth, and 8 turned around.
+/// A triangle in the groups `cloth` and, reversed, 8.
 fn binary_modern(is_big: bool) -> Vec<u8> {
     let mut file = Binary::new("4.1", is_big);
     file.text("$Entities\n").sizes(&[0, 0, 1, 0]);
@@ -338,7 +339,7 @@ fn binary_modern(is_big: bool) -> Vec<u8> {
     file.out
 }
 
-/// The same triangle, and its edges in one block with a tag more.
+/// The same triangle, and its edges in one block with an additional tag.
 fn binary_legacy(is_big: bool) -> Vec<u8> {
     let mut file = Binary::new("2.2", is_big);
     file.text("$Nodes\n3\n").ints(&[7]).doubles(&[0.0; 3]).ints(&[9]).doubles(&[1.0, 0.0, 0.0]);
@@ -412,7 +413,8 @@ fn what_is_written_is_read_again() {
     assert_eq!(again.blocks[2].numbers, [4, 5]);
     assert_eq!(again.blocks[3].numbers, [6]);
     assert!(again.blocks.iter().zip(&modern.blocks).all(|(a, b)| a.cells == b.cells && a.group == b.group));
-    // Numbers of VTK begin at 0, which Gmsh doesn't have; a line break can't be in a name; nor may a mesh be wrong.
+    // VTK numbers from 0, which Gmsh doesn't allow; a name can't contain a line break; an inconsistent mesh
+    // mustn't be written wrongly.
     let mut mesh = reads(VTK[3].1);
     mesh.blocks[0].group = "two\nlines".to_owned();
     let again = reads(mesh.to_msh());
@@ -427,7 +429,7 @@ fn what_is_written_is_read_again() {
     assert!(Mesh::from_msh(Mesh::default().to_msh().as_bytes(), "m").is_err());
 }
 
-/// How a grid of VTK is written.
+/// Storage style of a VTK grid.
 #[derive(Debug, Clone, Copy, Default)]
 struct Style {
     is_inline: bool,
@@ -435,7 +437,7 @@ struct Style {
     is_packed: bool,
     is_wide: bool,
     is_big: bool,
-    /// Header and data of what isn't packed as two units of base64.
+    /// Whether header and data of uncompressed arrays are two units of base64.
     is_split: bool,
 }
 
@@ -702,14 +704,14 @@ fn every_defect_of_a_grid_has_its_message() {
     refuses("<VTKFile><AppendedData encoding='raw'>_abc", "m", &["inside the appended data"]);
     refuses("<VTKFile><AppendedData>abc</AppendedData></VTKFile>", "m", &["underscore"]);
     refuses("<VTKFile><AppendedData encoding='hex'>_abc</AppendedData></VTKFile>", "m:1", &["`hex`"]);
-    // As deep as the stack isn't.
+    // Deeper than the stack.
     refuses("<a>".repeat(100_000), "m:1", &["XML"]);
     refuses("<a>".repeat(100_000) + &"</a>".repeat(100_000), "m:1", &["XML"]);
 }
 
 #[test]
 fn files_made_to_fill_the_memory() {
-    // 400 blocks of a mebibyte of nothing, each in a kibibyte.
+    // 400 blocks of a mebibyte of zeros, each in a kibibyte.
     let block = deflated(&vec![0; 1 << 20]);
     let with = |blocks: u32, size: u32| {
         let mut header: Vec<u8> = [blocks, size, 0].map(u32::to_le_bytes).concat();
@@ -737,7 +739,7 @@ fn files_made_to_fill_the_memory() {
             .concat();
     let error = Mesh::from_vtu(&many, "m").expect_err("too much");
     assert!(error.what.contains("far more"), "{error}");
-    // More in it than it says.
+    // It contains more than it declares.
     refuses(with(400, 1 << 10), "m:13", &["block 0 is damaged"]);
     let long = GRID.replace("Name='group' format='ascii'>0 1<", "Name='group' format='binary'>/////wAAAAA=<");
     refuses(long, "m:13", &["array `group` is shorter than its header says"]);
@@ -783,7 +785,7 @@ fn damaged_bytes_never_panic() {
             let byte = sample[at];
             let mut others = [0, 0xff, b'9', b' ', b'-', b'$', byte ^ 1, byte ^ 0x80];
             others.rotate_left(at % 8);
-            // XML takes its time: one of them in turn.
+            // XML is slow, so only one of them in turn.
             let tries = if sample.starts_with(b"<") { 1 } else { 8 };
             for other in others.into_iter().take(tries) {
                 sample[at] = other;
@@ -798,7 +800,7 @@ fn damaged_bytes_never_panic() {
 
 #[test]
 fn swapped_and_repeated_words_never_panic() {
-    // Numbers of Knuth's MMIX, so that a failure comes again.
+    // Knuth's MMIX sequence, so that failures are reproducible.
     let mut state = 1_u64;
     let mut below = |bound: usize| {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
@@ -844,7 +846,7 @@ struct Vandal {
 
 impl Vandal {
     fn below(&mut self, bound: usize) -> usize {
-        // Numbers of Knuth's MMIX, so that a failure comes again.
+        // Knuth's MMIX sequence, so that failures are reproducible.
         self.state =
             self.state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         usize::try_from(self.state >> 33).unwrap() % bound.max(1)
@@ -878,7 +880,8 @@ impl Vandal {
     }
 }
 
-/// What is wrong, where, and what to write instead; and never the size that a damaged count claims.
+/// The error says what is wrong, where, and what to write instead; and the memory never reaches the size that
+/// a damaged count claims.
 #[track_caller]
 fn is_clear(answer: Result<Mesh, bulge_membrane::MeshError>, size: usize) {
     match answer {
@@ -891,7 +894,7 @@ fn is_clear(answer: Result<Mesh, bulge_membrane::MeshError>, size: usize) {
             let place = error.file.strip_prefix("bad").expect("the name of the file");
             let has_line =
                 place.strip_prefix(':').is_some_and(|line| line.parse::<u64>().is_ok_and(|n| n > 0));
-            // Binary data have no lines, and what is missing from a file is nowhere.
+            // Binary data have no lines, and missing data have no position.
             let names = |word: &str| error.what.contains(word);
             let has_what =
                 ["file", "byte", "section", "node", "element", "cell", "array", "mesh", "data", "text", "$"];
@@ -920,6 +923,6 @@ fn vandalised_files_have_clear_messages() {
             is_clear(answer, damaged.len());
         }
     }
-    // Most of it does harm.
+    // Most changes damage the file.
     assert!(refused > 2400, "{refused} of 4800");
 }

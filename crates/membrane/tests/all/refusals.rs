@@ -1,5 +1,6 @@
-//! What is refused before anything is solved: supports that contradict each other, planes beside the axis, parts that nothing holds, sectors that
-//! don't go round, cables that miss nodes. And what looks alike, but is right.
+//! Input that is refused before anything is solved: supports that contradict each other, planes beside the
+//! axis, parts that aren't held, sectors that don't make a full turn, cables that miss nodes. Similar but
+//! valid input is accepted.
 
 #![expect(clippy::unwrap_used, clippy::panic, reason = "a test that cannot be set up fails")]
 
@@ -35,7 +36,7 @@ fn follow(partner: &str, angle: f64) -> Support {
     Support::Cyclic { partner: partner.to_owned(), angle }
 }
 
-/// A number in its file that is no index.
+/// Node numbers in the file that differ from the indices.
 fn numbered(mut mesh: Mesh) -> Mesh {
     mesh.numbers.iter_mut().for_each(|number| *number += 1000);
     for (i, block) in mesh.blocks.iter_mut().enumerate() {
@@ -154,12 +155,12 @@ fn planes_of_symmetry_beside_the_axis() {
     ] {
         refused(build(&pillow(x, y), ("cloth", membrane()), &of_pillow(), &[]), &parts);
     }
-    // As near as a mesher comes.
+    // As accurate as a mesher is.
     assert!(build(&pillow(1e-10, 1e-9), ("cloth", membrane()), &of_pillow(), &[]).is_ok());
     let mut supports = of_pillow();
     supports[0].1 = plane([1.0, 0.0, 0.3]);
     refused(build(&pillow(0.0, 0.0), ("cloth", membrane()), &supports, &[]), &["`u0` is oblique"]);
-    // A level plane whose nodes aren't level.
+    // A level plane whose nodes aren't at one height.
     let place = |u: f64, v: f64| [0.4 * u, 0.4 * v, 0.1 * u * v];
     let mesh = grid(&Surface { place: &place, pattern: None, cells: [4, 4], is_quadratic: false });
     refused(
@@ -170,7 +171,7 @@ fn planes_of_symmetry_beside_the_axis() {
 
 #[test]
 fn an_open_edge_between_two_supports_is_a_hole() {
-    // The corner between two planes is cut away: both ends of the edge are held, but each in a plane of its own.
+    // The corner between two planes is cut off: both ends of the edge are held, but each in another plane.
     let mut mesh = pillow(0.0, 0.0);
     mesh.blocks[0].cells.drain(..6);
     mesh.blocks[0].numbers.drain(..2);
@@ -186,7 +187,7 @@ fn supports_that_contradict_a_fitting() {
     let with = |more: (&'static str, Support)| [ends.to_vec(), vec![more]].concat();
     let both = [Fitting::Placed, Fitting::Placed];
     assert!(build(&line(), ("wall", tube()), &ends, &both).is_ok());
-    // What a fitting does anyway.
+    // Supports that a fitting implies anyway.
     for more in [("last", Support::Slide), ("last", plane([1.0, 0.0, 0.0])), ("last", ride(1))] {
         assert!(build(&line(), ("wall", tube()), &with(more), &both).is_ok());
     }
@@ -195,7 +196,7 @@ fn supports_that_contradict_a_fitting() {
         let parts =
             ["node 1011 rides on a fitting, by `last`", "held along z, by `last`", "keep one of the two"];
         refused(build(&line(), ("wall", tube()), &with(more.clone()), &both), &parts);
-        // The other way round, too.
+        // Also in the reverse order.
         let mut turned = with(more);
         turned.reverse();
         refused(build(&line(), ("wall", tube()), &turned, &both), &parts);
@@ -245,7 +246,7 @@ fn supports_that_contradict_a_cyclic_edge() {
         with(&[("right", follow("left", FRAC_PI_2)), ("left", follow("right", -FRAC_PI_2))]),
         &["is the partner of a node of `left` and follows another itself, by `right`", "node 1005"],
     );
-    // The far edge on a fitting that moves, its partner fixed.
+    // The far edge on a moving fitting, with its partner fixed.
     refused(
         with(&[("right", follow("left", FRAC_PI_2)), ("left", Support::Fixed)]),
         &["rides on a fitting, by `first`, and is held along z, by `left`"],
@@ -272,7 +273,7 @@ fn supports_that_contradict_a_cyclic_edge() {
 
 #[test]
 fn nodes_of_a_fitting_without_elements_may_be_held_twice() {
-    // The middle of the end disc, of which no element is made.
+    // The middle of the end disc, which has no elements.
     let mut mesh = whole_tube(0.0, 0.0);
     mesh.nodes.push([0.0, 0.0, 4.0]);
     mesh.numbers.push(99);
@@ -285,7 +286,7 @@ fn nodes_of_a_fitting_without_elements_may_be_held_twice() {
 
 #[test]
 fn parts_that_nothing_holds() {
-    // A closed cube: held at one corner, at two, and at three.
+    // A closed cube, held at one corner, at two, and at three.
     let mut cube = cubes(1);
     refused(
         build(&cube, ("skin", membrane()), &[], &[]),
@@ -309,7 +310,7 @@ fn parts_that_nothing_holds() {
         point(&mut two, group, node);
     }
     refused(build(&two, ("skin", membrane()), &supports, &[]), &["node 1009 of `skin`", "move along x"]);
-    // A tube with both ends on planes turns and slides.
+    // A tube with both ends on planes can rotate and slide.
     let level = plane([0.0, 0.0, 1.0]);
     let levels = [("low", level.clone()), ("high", level)];
     let tube_at = |x, y, supports: &[(&str, Support)], fittings: &[Fitting]| {
@@ -317,7 +318,7 @@ fn parts_that_nothing_holds() {
     };
     refused(tube_at(0.0, 0.0, &levels, &[]), &["it can move along x, move along y, turn about z;"]);
     assert!(tube_at(0.0, 0.0, &[("low", Support::Fixed), ("high", Support::Slide)], &[]).is_ok());
-    // One fitting that is loaded is held by the other end; two aren't.
+    // One loaded fitting is held by the other end; two aren't.
     let ends = [("low", ride(0)), ("high", ride(1))];
     assert!(tube_at(0.0, 0.0, &ends, &[Fitting::Placed, Fitting::Loaded]).is_ok());
     let free = tube_at(0.0, 0.0, &ends, &[Fitting::Loaded, Fitting::Loaded]);
@@ -376,7 +377,7 @@ fn cables_that_miss_the_middles_of_edges() {
         let (kind, cells) = if is_quadratic {
             (CellKind::Line2, edge.cells.chunks(3).flat_map(|cell| [cell[0], cell[1]]).collect())
         } else {
-            // A node of its own in the middle of each.
+            // A middle node of its own for each.
             let middle = mesh.nodes.len();
             mesh.nodes.extend([[0.0, 0.1, 0.0], [0.0, 0.3, 0.0]]);
             mesh.numbers.extend([71, 72]);
@@ -470,7 +471,7 @@ fn sectors_that_do_not_go_round() {
     refused(read("around = 4", "100 deg"), &["a sector of 100 degrees", "over a whole number"]);
     refused(read("around = 4", "0 deg"), &["`angle` is no turn", "360 degrees over"]);
     refused(read("around = 4", "360 deg"), &["`angle` is no turn"]);
-    // A line is revolved all the way.
+    // A line is revolved by a full turn.
     let folder = Folder::with("line", &line());
     let ends = support("first", "kind = \"fixed\"") + &support("last", "kind = \"slide\"");
     let read = |scale: &str| folder.read(&(scaled(scale) + &part("wall", "sheet") + &ends + STEP));
@@ -506,7 +507,7 @@ fn a_fitting_has_one_motion() {
     let read = |supports: String| {
         Folder::new("motion").read(&(MADE.to_owned() + &part("wall", "sheet") + &supports + STEP))
     };
-    // Our own mesh places its fittings until the case says otherwise.
+    // The fittings of our own mesh are placed unless the case says otherwise.
     assert_eq!(read(motion("loaded")).unwrap().fittings[1].1, Fitting::Loaded);
     assert_eq!(read(motion("loaded") + &motion("loaded")).unwrap().fittings[1].1, Fitting::Loaded);
     let parts = ["the fitting `top` has another motion", "state it once"];
@@ -541,7 +542,7 @@ fn a_mesh_that_is_no_file() {
     for mesh in ["/dev/zero", "/dev/null", "."] {
         refused(read(mesh), &["is no file", ":1:8", ".msh"]);
     }
-    // A pipe into which nothing is ever written.
+    // A pipe to which nothing is ever written.
     let folder = Folder::new("pipe");
     let pipe = folder.0.join("pipe.msh");
     assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());

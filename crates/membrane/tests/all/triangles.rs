@@ -39,7 +39,8 @@ fn follow(solver: &mut Solver, from: &State, pressure: f64, fittings: Vec<f64>) 
     solver.follow(&before, from, &load, |_, _| ()).unwrap()
 }
 
-/// N fibres without stretch, flat facets without stiffness: the pleated muscle times sin(2 pi/N)/(2 pi/N). Forces from elliptic integrals.
+/// N inextensible fibres, flat facets without stiffness: the pleated muscle times sin(2 pi/N)/(2 pi/N).
+/// Forces from elliptic integrals.
 #[test]
 fn fibres_and_facets() {
     for (n, force) in [(6_u32, 1_355.269_34), (12, 1_564.930_24), (24, 1_620.135_00)] {
@@ -137,7 +138,7 @@ fn sectors_of_cloth() {
     }
 }
 
-/// What a wrinkle keeps of its stiffness doesn't show.
+/// The stiffness that a wrinkle keeps doesn't affect the results.
 #[test]
 fn the_residual_stiffness_does_not_show() {
     let [weak, strong] = [1e-6, 1e-4].map(|residual| sector(12, 0.2, residual).forces[0]);

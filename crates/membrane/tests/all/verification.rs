@@ -64,7 +64,7 @@ fn to_volume(solver: &mut Solver, from: &State, volume: f64) -> State {
     solver.follow(&before, from, &under(Inflation::Volume(volume), &from.fittings), |_, _| ()).unwrap()
 }
 
-/// A line of the table: the relative error, which is asserted.
+/// A line of the table: the relative error, which is checked.
 #[track_caller]
 fn line(case: &str, value: f64, exact: f64, tolerance: f64) {
     let error = value / exact - 1.0;
@@ -72,7 +72,7 @@ fn line(case: &str, value: f64, exact: f64, tolerance: f64) {
     assert!(error.abs() <= tolerance, "{case}: {value} instead of {exact}: {error:.2e} of {tolerance:.0e}");
 }
 
-/// The order at which the error falls over meshes each twice as fine as the one before, and the value it goes to.
+/// The order of convergence over meshes that are refined by two, and the extrapolated value.
 #[track_caller]
 fn order(case: &str, values: [f64; 3], exact: f64, range: core::ops::Range<f64>) {
     let errors = values.map(|value| value / exact - 1.0);
@@ -81,19 +81,20 @@ fn order(case: &str, values: [f64; 3], exact: f64, range: core::ops::Range<f64>)
     assert!(range.contains(&orders[1]), "{case}: {orders:?} {errors:?}");
 }
 
-/// From two meshes, one twice as fine, to none.
+/// Extrapolates from two meshes, one twice as fine, to zero element size.
 fn extrapolated(coarse: f64, fine: f64, order: i32) -> f64 {
     fine + (fine - coarse) / (2.0_f64.powi(order) - 1.0)
 }
 
-/// Where f is largest (`sign` 1) or smallest (-1) between a and b: its slope, by differences of fourth order, is brought to zero.
+/// The maximum (`sign` 1) or minimum (-1) of f between a and b: the root of its slope, from fourth-order
+/// differences.
 fn extreme(mut f: impl FnMut(f64) -> f64, a: f64, b: f64) -> (f64, f64) {
     let h = 2e-3 * (a + b);
     let mut slope = |x: f64| (8.0 * (f(x + h) - f(x - h)) - (f(x + 2.0 * h) - f(x - 2.0 * h))) / (12.0 * h);
     let (mut a, mut b) = (a, b);
     let (mut fa, mut fb) = (slope(a), slope(b));
     assert!(fa * fb < 0.0, "no extreme between {a} and {b}");
-    // The method of Illinois.
+    // The Illinois method.
     let mut last = 0;
     let mut x = a;
     for _ in 0..40 {
@@ -118,7 +119,7 @@ fn extreme(mut f: impl FnMut(f64) -> f64, a: f64, b: f64) -> (f64, f64) {
     (x, f(x))
 }
 
-/// The root of f from two guesses, by secants.
+/// The root of f from two guesses, by the secant method.
 fn root(mut f: impl FnMut(f64) -> f64, mut a: f64, mut b: f64) -> f64 {
     let mut fa = f(a);
     for _ in 0..30 {
@@ -329,7 +330,7 @@ fn stability_of_a_sphere_past_its_limit_point() {
     let rest = solver.at_rest();
     let past = to_volume(&mut solver, &rest, SPHERE * 8.0);
     assert_eq!(past.unstable, 0, "at a given volume it can't run away");
-    // Under the same pressure it can; a small, closed amount of gas holds it.
+    // It can at constant pressure; a small, closed amount of gas prevents it.
     let under_pressure = solver.solve(&under(Inflation::Pressure(past.pressure), &[]), &past);
     println!(
         "sphere past its limit point under pressure: {:?}",
@@ -339,7 +340,7 @@ fn stability_of_a_sphere_past_its_limit_point() {
     let held = solver.solve(&under(Inflation::Gas(gas), &[]), &past).unwrap();
     assert_eq!(held.unstable, 0);
     line("sphere past its limit point, held by gas: V", held.volume, past.volume, 1e-9);
-    // Beyond what it can hold there is an error that says so.
+    // Beyond the limit there is an error that says so.
     let load = under(Inflation::Pressure(1.3), &[]);
     let error = solver.follow(&under(Inflation::Pressure(0.0), &[]), &rest, &load, |_, _| ()).unwrap_err();
     println!("{error}");
@@ -363,7 +364,7 @@ fn a_cylinder_of_neo_hooke() {
         (1.3, 0.9, exact(1.3, 0.9)),
     ] {
         let mut mesh = revolved(|t| [1.0, 2.0 * lz * t], 4, true, Grading::Even);
-        // Without stress it is 2 long: r and z of the nodes of each cell.
+        // The stress-free length is 2: r and z of the nodes of each cell.
         let wall = &mut mesh.blocks[0];
         wall.pattern = Some(wall.cells.iter().map(|node| [1.0, mesh.nodes[*node][2] / lz]).collect());
         let parts = [("wall", Part::Revolved { layers: vec![rubber(Law::NeoHooke { shear: 1.0 })] })];
@@ -377,8 +378,9 @@ fn a_cylinder_of_neo_hooke() {
 
 #[test]
 fn a_closed_cylinder_of_neo_hooke() {
-    // V = pi integral of r^2 dz counts nothing on the end discs, but grows by pi r^2 dz as an end moves: the pressure on the disc is in it,
-    // and a closed end is a fitting that carries no force from outside. In the middle of a long tube the clamp isn't felt.
+    // V = pi integral of r^2 dz vanishes on the end discs, but grows by pi r^2 dz as an end moves. The
+    // pressure on the disc is therefore included, and a closed end is a fitting without external force. The
+    // middle of a long tube isn't affected by the clamp.
     let mesh = revolved(|t| [1.0, 24.0 * t], 120, true, Grading::End(3.0));
     let parts = [("wall", Part::Revolved { layers: vec![rubber(Law::NeoHooke { shear: 1.0 })] })];
     let supports = [("first", plane(0.0, 0.0, 1.0)), ("last", Support::Fitting { fitting: 0 })];
@@ -468,7 +470,7 @@ fn a_clamped_tube_of_rubber_converges() {
     }
 }
 
-/// Of each element of revolution: place of its middle, cosine of its slope to the axis.
+/// For each element of revolution: position of its middle, cosine of its slope to the axis.
 fn middles(fields: &Fields) -> Vec<([f64; 2], f64)> {
     let group = &fields.groups[0];
     group
@@ -503,7 +505,8 @@ fn what_a_meridian_keeps() {
     let (low, high) = keeps.iter().fold((f64::MAX, f64::MIN), |(low, high), k| (low.min(*k), high.max(*k)));
     println!("tube: W - l1 W1 from {low} to {high}");
     assert!((high - low).abs() < 1e-3 * low.abs());
-    // In the middle at p = 0.03: stretch along and Cauchy stress around (force over the present thickness 1/(l1 l2)), by shooting.
+    // In the middle at p = 0.03: axial stretch and hoop Cauchy stress (force over the current thickness 1/(l1
+    // l2)), by shooting.
     let sheet = fields.groups[0].sheets[0][199];
     line("tube middle: l1", sheet.stretch[0], 1.029_147_347, 1e-5);
     line(
@@ -577,7 +580,7 @@ fn a_disc_of_rubber() {
         let rest = solver.at_rest();
         let mut state = to_pressure(&mut solver, &rest, 0.1, &[]);
         for [stretch, pressure, height] in *table {
-            // The volume at which the pole is that high.
+            // The volume at which the pole reaches that height.
             let guess = state.volume * height / solver.fields(&state).places[160][2];
             let volume = root(
                 |v| {
@@ -610,7 +613,7 @@ fn a_mylar_balloon() {
     // Two discs of radius a joined at their rims: V/a^3 and thickness/a from elliptic integrals.
     let values = [20, 40, 80].map(|elements| {
         let mesh = revolved(|t| [1.0 - t, 0.0], elements, true, Grading::Even);
-        // A weak film between the threads: it can't stretch along them, and gives way around.
+        // A weak film between the threads: it can't stretch along them, and yields around.
         let law = Law::SaintVenantKirchhoff { stiffness: 1.0, poisson: 0.3 };
         let sheet = Sheet { cloth: Cloth::Isotropic(law), wrinkles: true, residual: 1e-6 };
         let layers = vec![net(0.0), RingLayer::Sheet { sheet, fullness: 1.0 }];
@@ -628,7 +631,8 @@ fn a_mylar_balloon() {
     line("mylar balloon: thickness/a", values[2].1, 0.913_893_162_088_927_2, 1e-5);
 }
 
-/// At each contraction of a muscle between two fittings the force, from the meshes with 40 and 80 elements: fine, and extrapolated.
+/// The force at each contraction of a muscle between two fittings, from the meshes with 40 and 80 elements:
+/// fine, and extrapolated.
 fn forces(
     make: impl Fn(usize) -> Solver,
     length: f64,
@@ -762,7 +766,7 @@ fn braids(
             let name = format!("{name} l = {length}, {} %", 100.0 * contractions[i]);
             let [force, volume] = table[i];
             println!("{name} of 80: {:.1e} {:.1e}", fine[0] / force - 1.0, fine[1] / volume - 1.0);
-            // Over the largest force: it goes through zero.
+            // Relative to the largest force, because it changes sign.
             let found = extrapolated(coarse[0], fine[0], 4);
             line(&format!("{name}: F"), found - force + table[0][0], table[0][0], tolerance);
             line(&format!("{name}: V"), extrapolated(coarse[1], fine[1], 4), volume, tolerance);
@@ -822,7 +826,8 @@ fn a_clamped_net_with_rubber() {
 
 #[test]
 fn what_a_braid_keeps() {
-    // n T cos b cos psi + 2 pi r N1 cos psi - pi r^2 p = F on every section: b is the angle of the threads now.
+    // n T cos b cos psi + 2 pi r N1 cos psi - pi r^2 p = F on every section, with the current angle b of the
+    // threads.
     for has_rubber in [false, true] {
         let mut solver = braid(60.0, 200, has_rubber);
         let rest = solver.at_rest();
@@ -850,7 +855,7 @@ fn what_a_braid_keeps() {
 
 #[test]
 fn force_is_the_slope_of_the_energy() {
-    // F = d (W - p V)/dl under constant pressure, by central differences.
+    // F = d (W - p V)/dl at constant pressure, by central differences.
     for (name, mut solver, p, place) in [
         ("tube", tube(40, true), 0.03, 0.0),
         ("braid", braid(60.0, 40, false), 0.3, -12.0),
@@ -896,7 +901,7 @@ fn a_fitting_with_the_force_found_stands_where_it_was_placed() {
 
 #[test]
 fn a_muscle_closed_with_its_gas() {
-    // (p + ambient) V^gamma stays while the fitting moves.
+    // (p + ambient) V^gamma is conserved while the fitting moves.
     for gamma in [1.0, 1.4] {
         let mut solver = braid(60.0, 40, true);
         let rest = solver.at_rest();
@@ -907,7 +912,7 @@ fn a_muscle_closed_with_its_gas() {
             solver.follow(&before, &start, &under(Inflation::Gas(gas), &[0.0, -12.0]), |_, _| ()).unwrap();
         let constant = (state.pressure + 0.1) * state.volume.powf(gamma);
         line(&format!("braid of gas, gamma = {gamma}: p V^gamma"), constant, gas.constant, 1e-12);
-        // The same force as under the pressure found.
+        // The same force as at the pressure found.
         let again = to_pressure(&mut solver, &start, state.pressure, &[0.0, -12.0]);
         line(&format!("braid of gas, gamma = {gamma}: F"), state.forces[1], again.forces[1], 1e-8);
         assert_eq!(state.unstable, 0);
@@ -923,14 +928,15 @@ fn panel(cells: [usize; 2], is_quadratic: bool, place: &dyn Fn(f64, f64) -> [f64
 
 #[test]
 fn a_wrinkled_panel_in_bending() {
-    // Stein and Hedgepeth: with the band of the height b slack, M/(P h) = (b/h + 1/2)/3 and the largest stress over P/(t h) is
-    // 2/(1 - b/h). Its ends stay plane: z = (1 + e (x)) there, e = k (x - b), which the mesh has from the start, the pattern not.
+    // Stein and Hedgepeth: with a slack band of height b, M/(P h) = (b/h + 1/2)/3, and the largest stress
+    // over P/(t h) is 2/(1 - b/h). Its ends stay plane: z = (1 + e (x)) there, e = k (x - b), which the mesh
+    // has from the start, but the pattern doesn't.
     let (strain, cells) = (1e-3, 40);
     for (band, moment, largest) in
         [(0.1, 0.2, 2.222_222_222), (0.4, 0.3, 3.333_333_333), (0.7, 0.4, 6.666_666_667)]
     {
         let mut mesh = panel([cells, 4], false, &|u, v| [u, 0.0, v * (1.0 + strain * (u - band))]);
-        // One corner stays where it is; all else is free to move across as the panel bends.
+        // One corner stays fixed; everything else is free to move across as the panel bends.
         mesh.blocks.push(Block {
             group: "corner".to_owned(),
             kind: CellKind::Point,
@@ -961,7 +967,7 @@ fn a_wrinkled_panel_in_bending() {
         for (cell, (sheet, area)) in group.cells.chunks_exact(3).zip(group.sheets[0].iter().zip(&group.areas))
         {
             let x = cell.iter().map(|node| mesh.nodes[*node as usize][0]).sum::<f64>() / 3.0;
-            // Per length of the pattern across, of which wrinkles take some away.
+            // Per length of the pattern across, part of which wrinkles absorb.
             let pull = sheet.force[0] * sheet.stretch[1];
             force += pull * area;
             bend += pull * area * (x - 0.5);
@@ -970,7 +976,7 @@ fn a_wrinkled_panel_in_bending() {
             }
         }
         line(&format!("panel b/h = {band}: M/(P h)"), bend / force, moment, 1e-2);
-        // From the middle of the outermost cells to the edge, in proportion.
+        // Extrapolated linearly from the middle of the outermost cells to the edge.
         let edge = top * (1.0 - band) / (1.0 - band - 0.5 / cells as f64);
         line(&format!("panel b/h = {band}: largest stress"), edge / force, largest, 1e-2);
     }
@@ -978,7 +984,8 @@ fn a_wrinkled_panel_in_bending() {
 
 #[test]
 fn a_patch_of_triangles_spreads_evenly() {
-    // The boundary of a patch is moved to an even strain: so is its inside, from wherever it starts, taut or wrinkled.
+    // If the boundary of a patch is moved to a uniform strain, its interior follows, from any start, taut or
+    // wrinkled.
     for is_quadratic in [false, true] {
         for (l1, l2, tension) in [(1.2, 1.1, Tension::Taut), (1.2, 0.96, Tension::Taut)] {
             let place = |u: f64, v: f64| {
@@ -1011,7 +1018,7 @@ fn a_patch_of_triangles_spreads_evenly() {
 
 #[test]
 fn results_of_an_earlier_state() {
-    // What a state carries doesn't depend on what has been solved since.
+    // The fields of a state don't depend on later solutions.
     let mut solver = braid(60.0, 20, false);
     let rest = solver.at_rest();
     let first = to_pressure(&mut solver, &rest, 0.3, &[0.0, -3.0]);
@@ -1024,7 +1031,8 @@ fn results_of_an_earlier_state() {
 
 #[test]
 fn threads_under_a_volume_from_rest() {
-    // Threads without stretch leave the volume little choice: its last digits are the middle ones of the pressure.
+    // Inextensible threads hardly allow the volume to change: its last digits correspond to the middle ones
+    // of the pressure.
     let mut solver = braid(60.0, 20, true);
     let rest = solver.at_rest();
     let state = to_pressure(&mut solver, &rest, 0.3, &[0.0, -3.0]);

@@ -1,7 +1,8 @@
-//! Bending a step along a curved valley, where the straight step fails.
+//! Bends a step along a curved valley after the straight step has failed.
 //!
-//! The geodesic acceleration of M. K. Transtrum, J. P. Sethna (arXiv:1201.5885), with the second derivative from the residuals of
-//! the failed step: it costs one evaluation of the Jacobian, and only where a step failed.
+//! Uses the geodesic acceleration of M. K. Transtrum, J. P. Sethna (arXiv:1201.5885), with the second
+//! derivative from the residuals of the failed step. It costs one evaluation of the Jacobian, and only after
+//! a failed step.
 
 use super::linear::{decrease, turned};
 use super::residuals::Residuals;
@@ -9,11 +10,13 @@ use super::search::{Search, Trial};
 use super::step::damped;
 use super::triangle::norm;
 
-/// Longest bend relative to the step (the paper's value): beyond, the second derivative doesn't describe the residuals.
+/// Longest bend relative to the step (the paper's value). If it is longer, the second derivative doesn't
+/// describe the residuals.
 const LONGEST: f64 = 0.75;
-/// Part of the predicted decrease that a bent step must achieve.
+/// Fraction of the predicted decrease that a bent step must achieve.
 const ENOUGH: f64 = 0.1;
-/// Growth of the trust region after a bent step that achieves three quarters of it.
+/// Growth of the trust region after a bent step that achieves at least three quarters of the predicted
+/// decrease.
 const GROWTH: f64 = 1.5;
 
 impl<P: Residuals> Search<'_, P> {
@@ -31,7 +34,7 @@ impl<P: Residuals> Search<'_, P> {
         let c: Vec<f64> = (0..step.len()).map(|i| turned[i] - self.linear.q[i] - linear[i]).collect();
         let (a, c) = self.scaled_by(scale, &c);
         let bend = damped(&a, &c, damping, &self.limits(scale, &trial.theta));
-        // Both lengths in the scale of the trust region.
+        // Both lengths are in the scale of the trust region.
         let stretch = |j: usize| if scale[j] > 0.0 { bend.z[j] * (self.scale[j] / scale[j]) } else { 0.0 };
         if norm(&(0..step.len()).map(stretch).collect::<Vec<_>>()) > LONGEST * trial.length {
             return false;

@@ -1,4 +1,5 @@
-//! Whether a stationary point is a minimum: second derivatives by differences, and a look along negative curvature.
+//! Tests whether a stationary point is a minimum, by second derivatives from differences and a search along
+//! negative curvature.
 //!
 //! The Jacobian alone can't tell: `r = x^2 - 1` is stationary at its maximum of squares, `x = 0`.
 
@@ -9,22 +10,23 @@ use super::search::{Search, product};
 use super::singular::symmetric_eigen;
 use super::triangle::norm;
 
-/// Difference of gradients, relative to the parameter: truncation and rounding are each some 1e-5 of the curvature.
+/// Step of the differences of gradients, relative to the parameter: truncation and rounding errors are each
+/// about 1e-5 of the curvature.
 const DIFFERENCE: f64 = 1e-5;
-/// Curvature below minus this part of the largest is examined.
+/// Curvature is examined if it is below minus this fraction of the largest one.
 const NEGATIVE: f64 = 1e-6;
 /// Lengths tried along a direction, each a quarter of the one before.
 const LENGTHS: i32 = 14;
 
-/// What lies around a stationary point.
+/// The result of examining a stationary point.
 pub(super) enum Probe {
-    /// Nothing lower was found; the least curvature, if it could be computed.
+    /// Nothing lower was found; the smallest curvature, if it could be computed.
     Minimum(Option<f64>),
-    /// A lower point, its distance in the scale of the search, and the negative curvature on the way there.
+    /// A lower point, its distance in the scale of the search, and the negative curvature in its direction.
     Lower { theta: Vec<f64>, length: f64, curvature: f64 },
 }
 
-/// Examines the point of a search.
+/// Examines the current point of a search.
 pub(super) fn probe<P: Residuals>(search: &mut Search<'_, P>) -> Probe {
     let held = held_at(search.bounds, &search.theta, &search.newton());
     let free: Vec<usize> = (0..held.len()).filter(|j| held[*j].is_none()).collect();
@@ -47,8 +49,8 @@ pub(super) fn probe<P: Residuals>(search: &mut Search<'_, P>) -> Probe {
     }
 }
 
-/// Scales of the parameters: norms of their columns, now or before; of parameters that never had influence, what makes a step as
-/// long as the residuals.
+/// Scales of the parameters: norms of their columns, now or before. For parameters that never had any
+/// influence, the scale that makes a step as long as the residuals.
 fn scales<P: Residuals>(search: &Search<'_, P>) -> Vec<f64> {
     let length = search.linear.cost.sqrt();
     let scale = |j: usize| {
@@ -67,7 +69,7 @@ fn hessian<P: Residuals>(search: &mut Search<'_, P>, free: &[usize], scale: &[f6
     for j in free {
         let (at, lower, upper) = (search.theta[*j], search.bounds.lower[*j], search.bounds.upper[*j]);
         let wish = DIFFERENCE * if at == 0.0 { size / scale[*j] } else { at.abs() };
-        // Inwards where a bound is near.
+        // One-sided, inwards, near a bound.
         let ends = [(at + wish).min(upper), (at - wish).max(lower)];
         let end = if ends[0] - at >= at - ends[1] { ends[0] } else { ends[1] };
         let mut theta = search.theta.clone();
@@ -85,7 +87,8 @@ fn hessian<P: Residuals>(search: &mut Search<'_, P>, free: &[usize], scale: &[f6
     Some((0..n).map(|i| (0..n).map(|j| symmetric(i, j)).collect()).collect())
 }
 
-/// A point along `step` or against it that is lower by a good part of what the curvature promises, and its scaled distance.
+/// A point along `step` or against it that is lower by a large part of the decrease that the curvature
+/// predicts, and its scaled distance.
 fn lower_point<P: Residuals>(
     search: &mut Search<'_, P>,
     step: &[f64],

@@ -1,10 +1,10 @@
-//! What can't be minimised at all.
+//! Errors for problems that can't be minimised at all.
 
 use super::Reason;
 
-/// A problem, a start or a request that has no answer. Parameters and rows are counted from 0.
+/// An invalid problem, start or request. Parameters and rows are counted from 0.
 ///
-/// A search that ends without a minimum is no error: its [`super::Certificate`] says so.
+/// A search that ends without a minimum isn't an error; its [`super::Certificate`] says so.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum LeastSquaresError<E> {
     /// The residuals can't be evaluated at the start.
@@ -30,7 +30,7 @@ pub enum LeastSquaresError<E> {
         /// The derivative.
         value: f64,
     },
-    /// Squares overflow.
+    /// The sum of squares overflows.
     #[error(
         "the sum of squares of the residuals, or of their derivatives by one parameter, overflows at the start; scale them to below 1e150"
     )]
@@ -38,7 +38,7 @@ pub enum LeastSquaresError<E> {
     /// A list doesn't have an entry for each parameter.
     #[error("{what} has {found} entries; the problem has {parameters} parameters")]
     Length {
-        /// Which list.
+        /// The name of the list.
         what: &'static str,
         /// Its length.
         found: usize,
@@ -57,7 +57,7 @@ pub enum LeastSquaresError<E> {
         /// Its upper bound.
         upper: f64,
     },
-    /// Bounds that no value meets.
+    /// The bounds are contradictory.
     #[error(
         "the bounds of parameter {parameter} are [{lower}, {upper}]; the first must be at most the second, and neither NaN"
     )]
@@ -69,20 +69,20 @@ pub enum LeastSquaresError<E> {
         /// Its upper bound.
         upper: f64,
     },
-    /// An option out of its range.
+    /// An option is out of its range.
     #[error("the option {name} is {value}; it must be {range}")]
     Option {
         /// Name of the field.
         name: &'static str,
         /// Its value.
         value: f64,
-        /// Values that it may have.
+        /// Allowed values.
         range: &'static str,
     },
-    /// No starts.
+    /// No starts are given.
     #[error("no start was given; give at least one")]
     NoStart,
-    /// A parameter that isn't there, or is fixed, can't be profiled.
+    /// The parameter doesn't exist or is fixed, so it can't be profiled.
     #[error(
         "parameter {parameter} cannot be profiled: the problem has {parameters} parameters, and this one must not be fixed"
     )]
@@ -99,19 +99,19 @@ pub enum LeastSquaresError<E> {
     ProfileUnsolved {
         /// The parameter.
         parameter: usize,
-        /// Where it was held.
+        /// The value at which it was held.
         value: f64,
         /// Why the search ended.
         reason: Reason,
     },
-    /// The profile passed through a lower sum of squares than the minimum it started from.
+    /// The profile reached a lower sum of squares than the minimum from which it started.
     #[error(
         "with parameter {parameter} at {value} the sum of squares is {cost}, below that of the given minimum, {minimum}; minimise again from there"
     )]
     LowerCost {
         /// The parameter.
         parameter: usize,
-        /// Where it was held.
+        /// The value at which it was held.
         value: f64,
         /// Sum of squares there.
         cost: f64,

@@ -7,7 +7,7 @@ use super::singular::right_singular;
 use super::triangle::{Triangle, dot, norm};
 use std::ops::Range;
 
-/// Why a point has no value.
+/// Why the residuals have no value at a point.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Failure<E> {
     Evaluation(E),
@@ -21,7 +21,7 @@ pub(super) enum Failure<E> {
 pub(super) struct Linear {
     /// Triangular factor of the Jacobian, `k x k`.
     pub(super) r: Triangle,
-    /// The residuals turned by the same reflections: the first `k` entries.
+    /// The residuals transformed by the same reflections: the first `k` entries.
     pub(super) q: Vec<f64>,
     /// Sum of squares.
     pub(super) cost: f64,
@@ -31,11 +31,11 @@ pub(super) struct Linear {
     singular: Vec<(f64, Vec<f64>)>,
 }
 
-/// Weight of the rows that pin flat directions: far above rounding, and small enough not to disturb a step along a bound, which may
-/// need part of a flat direction.
+/// Weight of the rows that pin flat directions: far above rounding errors, but small enough not to disturb a
+/// step along a bound, which may need a component in a flat direction.
 const PIN: f64 = 1e-5;
 
-/// Rows of a block that are made triangular at once; what that needs stays near the processor.
+/// Rows of a block that are triangularised at once, so that the workspace fits into the cache.
 const ROWS: usize = 4096;
 
 impl Linear {
@@ -44,8 +44,9 @@ impl Linear {
         self.r.transposed_times(&self.q)
     }
 
-    /// The triangle with columns divided by their norms and a right-hand side for it, for steps without part in flat directions:
-    /// those are taken out of both, for in them rounding has decided what the triangle says, and pinned.
+    /// The triangle with columns divided by their norms, and a right-hand side for it, for steps without a
+    /// component in flat directions. Those directions are removed from both and pinned, because rounding
+    /// errors dominate the triangle there.
     pub(super) fn regular(&self, rhs: &[f64], tolerance: f64) -> (Triangle, Vec<f64>) {
         let k = self.norms.len();
         let inverse: Vec<f64> = self.norms.iter().map(|n| if *n > 0.0 { 1.0 / n } else { 0.0 }).collect();
@@ -69,7 +70,7 @@ impl Linear {
     }
 }
 
-/// Evaluates blocks of rows and merges what they give, in a tree that depends on the numbers of rows alone.
+/// Evaluates blocks of rows and merges their results in a tree that only depends on the numbers of rows.
 fn in_blocks<T: Send, E: Send>(
     residuals: &mut [f64],
     first: usize,
@@ -112,7 +113,7 @@ pub(super) fn values<P: Residuals>(
     if cost.is_finite() { Ok(cost) } else { Err(Failure::Overflow) }
 }
 
-/// `Q^T w` for the reflections `Q` that make the Jacobian at `theta` triangular: the first `k` entries.
+/// `Q^T w` for the reflections `Q` that triangularise the Jacobian at `theta`: the first `k` entries.
 pub(super) fn turned<P: Residuals>(
     problem: &P,
     theta: &[f64],
@@ -162,7 +163,8 @@ pub(super) fn linearise<P: Residuals>(
     Ok(Linear { r, q, cost, norms, singular })
 }
 
-/// The triangle of the Jacobian with one more column, the residuals or else `last`; and the sum of squares of the residuals.
+/// The triangle of the Jacobian with one more column, which is the residuals or `last`; and the sum of
+/// squares of the residuals.
 fn triangle<P: Residuals>(
     problem: &P,
     theta: &[f64],
@@ -179,7 +181,8 @@ fn triangle<P: Residuals>(
     in_blocks(residuals, 0, problem.block().max(1), &leaf, &merge)
 }
 
-/// The triangle of a block's Jacobian with one more column. A block of many rows is split, in a tree that depends on their number alone.
+/// The triangle of a block's Jacobian with one more column. A block of many rows is split in a tree that only
+/// depends on their number.
 fn factored(jacobian: &[f64], last: &[f64], k: usize) -> Triangle {
     let m = last.len();
     if m > ROWS {
@@ -219,8 +222,8 @@ pub(super) fn gradient<P: Residuals>(problem: &P, theta: &[f64]) -> Result<Vec<f
     if norm(&sum).is_finite() { Ok(sum) } else { Err(Failure::Overflow) }
 }
 
-/// Decrease of the sum of squares from `old` to `new` residuals, `sum (r - r')(r + r')`: near a minimum far more exact than the
-/// difference of two sums.
+/// Decrease of the sum of squares from `old` to `new` residuals, `sum (r - r')(r + r')`. Near a minimum this
+/// is far more accurate than the difference of two sums.
 pub(super) fn decrease(old: &[f64], new: &[f64]) -> f64 {
     let mut parts = Vec::with_capacity(old.len().div_ceil(4096));
     for (old, new) in old.chunks(4096).zip(new.chunks(4096)) {

@@ -1,4 +1,4 @@
-//! Searches from several starts: the best end, what became of each start, and the distinct minima.
+//! Searches from several starts: the best result, the result of each start, and the distinct minima.
 
 use super::linear::values;
 use super::minimum::{Minimum, Reason};
@@ -8,12 +8,13 @@ use super::triangle::norm;
 use super::{LeastSquaresError, Options};
 use rayon::prelude::*;
 
-/// Two ends are one minimum if the residuals differ, to first order, by this part of their norm...
+/// Two results are the same minimum if their residuals differ, to first order, by at most this fraction of
+/// their norm,
 const SAME: f64 = 1e-5;
-/// ...or by this part of the scaled parameters, where residuals vanish.
+/// or their scaled parameters by at most this fraction if the residuals vanish.
 const SAME_PARAMETERS: f64 = 1e-8;
 
-/// Where the search from one start ended.
+/// The end of the search from one start.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StartEnd {
     /// The parameters.
@@ -29,29 +30,30 @@ pub struct StartEnd {
 /// A minimum that some of the starts lead to.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DistinctMinimum {
-    /// The parameters, from the start that went lowest.
+    /// The parameters, from the start with the lowest end.
     pub theta: Vec<f64>,
     /// The sum of squares.
     pub cost: f64,
-    /// Numbers of the starts (from 0) that lead here.
+    /// Indices of the starts (from 0) that lead here.
     pub starts: Vec<usize>,
 }
 
-/// What became of several starts.
+/// The results of several starts.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ManyStarts<E> {
-    /// The end with the least sum of squares; of equal ones (to nine digits) one that converged, then the one of the first start.
+    /// The end with the least sum of squares. Among equal ones (to nine digits) a converged one is preferred,
+    /// then the first.
     pub best: Minimum,
     /// The ends in the order of the starts.
     pub ends: Vec<Result<StartEnd, LeastSquaresError<E>>>,
-    /// The different minima among the searches that converged, lowest first.
+    /// The distinct minima among the converged searches, lowest first.
     pub minima: Vec<DistinctMinimum>,
 }
 
-/// Searches from every start, in parallel; the result doesn't depend on the number of threads.
+/// Searches from every start, in parallel. The result doesn't depend on the number of threads.
 ///
 /// # Errors
-/// [`LeastSquaresError::NoStart`], or if no start can be used the error of the first one.
+/// [`LeastSquaresError::NoStart`], or the error of the first start if none can be used.
 pub fn minimise_from_many<P: Residuals>(
     problem: &P,
     starts: &[Vec<f64>],
@@ -62,7 +64,8 @@ pub fn minimise_from_many<P: Residuals>(
         .par_iter()
         .map(|start| {
             let mut minimum = minimise(problem, start, bounds, options)?;
-            // Many long lists of residuals would fill the memory; the best one's are computed again.
+            // Many long residual vectors would need too much memory; those of the best result are computed
+            // again.
             minimum.residuals = Vec::new();
             Ok(minimum)
         })
@@ -112,7 +115,8 @@ fn distinct(ends: &[(usize, &Minimum)]) -> Vec<DistinctMinimum> {
     groups.into_iter().map(finished).collect()
 }
 
-/// Whether an end is the minimum `first`, which is at least as low. Differences along flat directions don't count.
+/// Whether an end is the minimum `first`, which is at least as low. Differences along flat directions are
+/// ignored.
 fn is_same(first: &Minimum, other: &Minimum) -> bool {
     let k = first.theta.len();
     let changes = |x: &[f64]| {

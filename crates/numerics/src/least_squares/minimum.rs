@@ -1,4 +1,5 @@
-//! What a search returns: the parameters, why the search ended there, and how well the residuals determine them.
+//! The result of a search: the parameters, why the search ended there, and how well the residuals determine
+//! them.
 
 use super::linear::Linear;
 use super::residuals::{Bounds, Side};
@@ -6,31 +7,36 @@ use super::singular::right_singular;
 use super::step::Step;
 use super::triangle::norm;
 
-/// A parameter whose part of a flat direction (a unit vector) exceeds this isn't determined by the residuals.
+/// A parameter isn't determined by the residuals if its component of a flat direction (a unit vector) exceeds
+/// this.
 const PART_OF_FLAT: f64 = 1e-6;
 
 /// Why a search ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Reason {
-    /// The residuals are orthogonal to what the free parameters can change, within [`super::Options::tolerance`].
+    /// The residuals are orthogonal to the tangent space of the free parameters, within
+    /// [`super::Options::tolerance`].
     Orthogonal,
-    /// The step to the linearised minimum changes the residuals by less than rounding the parameters does: residuals near zero.
+    /// The step to the linearised minimum changes the residuals by less than rounding the parameters does;
+    /// the residuals are near zero.
     StepBelowRounding,
-    /// The linearised minimum is lower by less than the rounding of the sum of squares or [`super::Options::least_decrease`], and the step to it was rejected.
+    /// The linearised minimum is lower by less than the rounding error of the sum of squares or
+    /// [`super::Options::least_decrease`], and the step to it was rejected.
     DecreaseTooSmall,
     /// All residuals are zero.
     ExactFit,
     /// Nothing to vary: no parameters, or all of them fixed.
     NothingFree,
-    /// [`super::Options::max_evaluations`] were made. Not converged.
+    /// [`super::Options::max_evaluations`] was reached. Not converged.
     Budget,
-    /// No step down to one that promises [`super::Options::least_decrease`] lowers the sum of squares: the least value is at a kink of the residuals, where no
-    /// derivative vanishes. Not a stationary point, so not converged.
+    /// Steps were shortened until they promised less than [`super::Options::least_decrease`], and none
+    /// lowered the sum of squares. The minimum is at a kink of the residuals, where no derivative vanishes.
+    /// It isn't a stationary point, so the search hasn't converged.
     Kink,
-    /// No step, however short, lowers the sum of squares although the derivatives promise it: they are wrong or too inexact, or
-    /// the residuals jump or can't be evaluated beyond. Not converged.
+    /// No step, however short, lowers the sum of squares although the derivatives promise it. They are wrong
+    /// or too inaccurate, or the residuals jump or can't be evaluated beyond. Not converged.
     Stagnated,
-    /// A stationary point with a direction of descent that the search didn't get away from. Not converged.
+    /// A stationary point with a direction of descent that the search couldn't leave. Not converged.
     Saddle,
 }
 
@@ -42,7 +48,8 @@ impl Reason {
     }
 }
 
-/// What is known of the end of a search. "Scaled" parameters are multiplied by the norms of their columns of the Jacobian.
+/// Properties of the end of a search. "Scaled" parameters are multiplied by the norms of their columns of the
+/// Jacobian.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Certificate {
     /// Whether this is a minimum; without [`super::Options::check_curvature`] a stationary point.
@@ -58,23 +65,24 @@ pub struct Certificate {
     pub relative_decrease: f64,
     /// Number of directions among the free parameters that aren't flat.
     pub rank: usize,
-    /// Ratio of the largest to the smallest singular value of the scaled Jacobian of the free parameters; infinite if that is 0, and 1
-    /// without free parameters.
+    /// Ratio of the largest to the smallest singular value of the scaled Jacobian of the free parameters;
+    /// infinite if the smallest is 0, and 1 without free parameters.
     pub condition: f64,
-    /// Least second derivative of half the sum of squares along a unit direction of the scaled free parameters (1 would be that
-    /// of a linear problem with orthogonal columns), from differences of gradients; `None` if it wasn't asked for or could not be
-    /// computed.
+    /// Least second derivative of half the sum of squares along a unit direction of the scaled free
+    /// parameters, from differences of gradients (1 for a linear problem with orthogonal columns). `None` if
+    /// it wasn't requested or couldn't be computed.
     pub least_curvature: Option<f64>,
-    /// The bound that holds each parameter: it is at this bound, and the sum of squares doesn't fall inwards. Fixed parameters
-    /// are at their lower bound.
+    /// The bound that holds each parameter: the parameter is at this bound, and the sum of squares doesn't
+    /// decrease inwards. Fixed parameters are at their lower bound.
     pub at_bound: Vec<Option<Side>>,
-    /// Flat directions (unit vectors of scaled parameters; a parameter without any influence counts as it is): the residuals do not
-    /// determine the parameters along them.
+    /// Flat directions as unit vectors of scaled parameters: the residuals don't determine the parameters
+    /// along them. A parameter without any influence isn't scaled.
     pub flat: Vec<Vec<f64>>,
 }
 
 impl Certificate {
-    /// Whether the residuals determine a parameter: it isn't held by a bound and has no part in a flat direction.
+    /// Whether the residuals determine a parameter: it isn't held by a bound and has no component in a flat
+    /// direction.
     ///
     /// # Panics
     /// If there is no such parameter.
@@ -84,7 +92,7 @@ impl Certificate {
     }
 }
 
-/// The end of a search.
+/// The result of a search.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Minimum {
     /// The parameters; those at a bound equal it exactly.
@@ -93,7 +101,7 @@ pub struct Minimum {
     pub residuals: Vec<f64>,
     /// Their sum of squares.
     pub cost: f64,
-    /// Steps made.
+    /// Number of accepted steps.
     pub iterations: usize,
     /// Evaluations of all residuals without derivatives.
     pub evaluations: usize,
@@ -103,7 +111,7 @@ pub struct Minimum {
     pub r: Vec<f64>,
     /// `J^T r`: half the gradient of the sum of squares; the multiplier of a bound that holds a parameter.
     pub gradient: Vec<f64>,
-    /// What is known of this point.
+    /// Properties of this point.
     pub certificate: Certificate,
     /// `(J^T J)^-1` of the determined parameters.
     unit_covariance: Vec<f64>,
@@ -113,8 +121,8 @@ impl Minimum {
     /// Covariance of the parameters for residuals of a given variance, `variance (J^T J)^-1` in linear approximation; row-major,
     /// `k x k`.
     ///
-    /// Rows and columns of parameters that are not [determined](Certificate::is_determined) are zero: those held by a bound count
-    /// as known, and those in a flat direction have no variance that could be stated.
+    /// Rows and columns of parameters that are not [determined](Certificate::is_determined) are zero: those
+    /// held by a bound count as known, and those in a flat direction have no finite variance.
     #[must_use]
     pub fn covariance(&self, variance: f64) -> Vec<f64> {
         self.unit_covariance.iter().map(|c| c * variance).collect()
@@ -131,7 +139,8 @@ impl Minimum {
             .collect()
     }
 
-    /// Correlations of the parameters, row-major, `k x k`: 1 on the diagonal, 0 between parameters of which one isn't determined.
+    /// Correlations of the parameters, row-major, `k x k`: 1 on the diagonal, 0 between parameters of which
+    /// at least one isn't determined.
     #[must_use]
     pub fn correlation(&self) -> Vec<f64> {
         let k = self.theta.len();
@@ -148,7 +157,8 @@ impl Minimum {
         (0..k * k).map(|ij| entry(ij / k, ij % k)).collect()
     }
 
-    /// Residual variance `cost/(rows - rank)`; `None` if there are no more residuals than directions that they determine.
+    /// Residual variance `cost/(rows - rank)`; `None` if there are no more residuals than determined
+    /// directions.
     #[must_use]
     pub fn residual_variance(&self) -> Option<f64> {
         let freedom = self.residuals.len().checked_sub(self.certificate.rank).filter(|f| *f > 0)?;
@@ -156,7 +166,7 @@ impl Minimum {
     }
 }
 
-/// State of a search at its end.
+/// Final state of a search.
 pub(super) struct End<'a> {
     pub(super) bounds: &'a Bounds,
     pub(super) reason: Reason,
@@ -181,13 +191,13 @@ pub(super) fn held_at(bounds: &Bounds, theta: &[f64], newton: &Step) -> Vec<Opti
         .collect()
 }
 
-/// Ratio of two numbers that are not negative, 0 for 0/0.
+/// Ratio of two nonnegative numbers, 0 for 0/0.
 fn part(x: f64, of: f64) -> f64 {
     if x == 0.0 { 0.0 } else { x / of }
 }
 
 impl End<'_> {
-    /// Collects what the caller gets.
+    /// Assembles the result for the caller.
     pub(super) fn minimum(self, theta: Vec<f64>, residuals: Vec<f64>, linear: &Linear) -> Minimum {
         let k = theta.len();
         let at_bound = held_at(self.bounds, &theta, self.newton);

@@ -5,25 +5,28 @@ use super::LeastSquaresError;
 /// Settings of a search.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Options {
-    /// The search has converged when the linearised residuals can be lowered by no more than this part of their norm (the cosine
-    /// between the residuals and the space of residual changes that the free parameters can make; D. M. Bates, D. G. Watts,
-    /// *Technometrics* 23 (1981) 179). The parameters are then off by about this part of `sqrt(rows - parameters)` standard
-    /// deviations. In (0, 1); default 1e-10. If the derivatives are inexact, choose ten times their relative error.
+    /// The search has converged if the linearised residuals can be lowered by at most this fraction of their
+    /// norm. This is the cosine between the residuals and the tangent space of the free parameters (D. M.
+    /// Bates, D. G. Watts, *Technometrics* 23 (1981) 179). The parameters then have an error of about this
+    /// fraction of `sqrt(rows - parameters)` standard deviations. In (0, 1); default 1e-10. If the
+    /// derivatives are inexact, choose ten times their relative error.
     pub tolerance: f64,
-    /// Directions in which residuals change by less than this part of the largest change, parameters scaled by the norms of their
-    /// columns, are flat: no step is made along them and they are reported. In \[1e-14, 1); default 1e-10.
+    /// Directions in which the residuals change by less than this fraction of the largest change are flat,
+    /// with parameters scaled by the norms of their columns. No step is made along them, and they are
+    /// reported. In \[1e-14, 1); default 1e-10.
     pub rank_tolerance: f64,
-    /// Radius of the first trust region in parts of the norm of the start, parameters scaled by the norms of their columns.
-    /// Positive; default 1.
+    /// Radius of the first trust region relative to the norm of the start, with parameters scaled by the
+    /// norms of their columns. Positive; default 1.
     pub first_radius: f64,
-    /// Most evaluations of all residuals, with or without derivatives, before the search is given up; the examination of
-    /// curvature is not stopped by it. At least 1; default 2000.
+    /// Most evaluations of all residuals, with or without derivatives, before the search is given up. The
+    /// examination of curvature doesn't count. At least 1; default 2000.
     pub max_evaluations: usize,
-    /// A fall of the sum of squares that isn't worth a shorter trial: a search whose rejected step promised less than this ends there, as at a kink of the
-    /// residuals, where every step but a tiny one is rejected. At least 0; default 0.
+    /// A decrease of the sum of squares that isn't worth a shorter trial. The search ends if a rejected step
+    /// promised less, as at a kink of the residuals, where every step but a tiny one is rejected. At least 0;
+    /// default 0.
     pub least_decrease: f64,
-    /// Whether a stationary point is examined for directions of negative curvature (at the cost of one gradient per free
-    /// parameter), along which a saddle is left. Default true.
+    /// Whether a stationary point is examined for directions of negative curvature, along which the search
+    /// leaves a saddle. Costs one gradient per free parameter. Default true.
     pub check_curvature: bool,
 }
 

@@ -10,19 +10,21 @@ use super::search::{check_start, minimise};
 use super::{LeastSquaresError, Options};
 use crate::root::{RootError, newton_bracketed};
 
-/// Steps outwards before a side counts as open, each up to four times as far as the one before.
+/// Number of outward steps after which a side counts as open; each goes up to four times as far as the one
+/// before.
 const STEPS: usize = 30;
-/// Halvings of a step beyond which the residuals can't be evaluated.
+/// Halvings of a step after which its direction counts as undefined.
 const HALVINGS: usize = 20;
-/// A decrease below the given minimum up to this part of the rise is rounding or slack of that minimum.
+/// A decrease below the given minimum by up to this fraction of the rise is rounding, or inaccuracy of that
+/// minimum.
 const SLACK: f64 = 1e-6;
-/// Relative length of the last Newton step towards an end; its result is far more exact.
+/// Relative length of the last Newton step towards an end; the end itself is far more accurate.
 const ROOT: f64 = 1e-8;
 
 /// One end of a profile interval.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ProfileEnd {
-    /// Here the sum of squares has risen by the amount.
+    /// The sum of squares has risen by the given amount at this value.
     Crossed(f64),
     /// The interval is open: at the parameter's bound the sum of squares has risen by less.
     AtBound {

@@ -1,11 +1,13 @@
-//! The problem of nonlinear least squares: residuals with derivatives, evaluated in blocks of rows, and bounds of the parameters.
+//! A nonlinear least-squares problem: residuals with derivatives, evaluated in blocks of rows, and bounds of
+//! the parameters.
 
 use std::ops::Range;
 
 /// Residuals `r_i(theta)` with their derivatives, `i` in `0..rows`.
 ///
-/// The minimiser asks for one block of rows after the other, from several threads at once, and keeps of a block's derivatives only a
-/// triangular factor: whatever the number of rows, a thread's memory is one block.
+/// The minimiser requests one block of rows after the other, from several threads at once. It only keeps a
+/// triangular factor of a block's derivatives, so that a thread needs memory for one block, whatever the
+/// number of rows.
 pub trait Residuals: Sync {
     /// Why the residuals can't be evaluated at some parameters.
     type Error: Send;
@@ -16,29 +18,29 @@ pub trait Residuals: Sync {
     /// Number of parameters.
     fn parameters(&self) -> usize;
 
-    /// Rows that are evaluated together; every block but the last has this many.
+    /// Number of rows that are evaluated together; only the last block may have fewer.
     ///
-    /// The default makes a block of some 256 KiB. Return [`Residuals::rows`] to be asked for all rows at once, or a multiple of
-    /// the rows that share work. Results don't depend on the number of threads, but in the last bits on this number. 0 counts as
-    /// 1.
+    /// The default makes a block of about 256 KiB. Return [`Residuals::rows`] for all rows at once, or a
+    /// multiple of the rows that share work. Results don't depend on the number of threads, but their last
+    /// bits depend on this number. 0 counts as 1.
     fn block(&self) -> usize {
         let width = self.parameters() + 1;
         (32_768 / width).max(4 * width)
     }
 
-    /// Whether the derivatives cost little beside the residuals. The search then asks for both at every trial: most trials are kept, and the
-    /// residuals of a point that is kept aren't evaluated twice.
+    /// Whether the derivatives cost little compared with the residuals. The search then requests both at
+    /// every trial: most trials are accepted, and the residuals of an accepted point aren't evaluated twice.
     fn joint(&self) -> bool {
         false
     }
 
-    /// Writes the residuals of `rows` into `residuals` and, if asked for, the derivatives `dr_i/dtheta_j` into `jacobian`, one
-    /// row of [`Residuals::parameters`] numbers after the other. But for rounding, residuals must not depend on whether
-    /// derivatives are asked for.
+    /// Writes the residuals of `rows` into `residuals` and, if requested, the derivatives `dr_i/dtheta_j`
+    /// into `jacobian`, one row of [`Residuals::parameters`] numbers after the other. Apart from rounding
+    /// errors, residuals must not depend on whether derivatives are requested.
     ///
     /// # Errors
-    /// Parameters at which the residuals have no value. Within the search such a point (as one with a number that isn't finite)
-    /// only shortens the step.
+    /// If the residuals have no value at these parameters. During a search, such a point only shortens the
+    /// step, as does one with a value that isn't finite.
     fn evaluate(
         &self,
         theta: &[f64],
@@ -57,7 +59,8 @@ pub enum Side {
     Upper,
 }
 
-/// Ranges of the parameters: `lower[j] <= theta[j] <= upper[j]`, either of which may be infinite; equal ends fix the parameter.
+/// Ranges of the parameters: `lower[j] <= theta[j] <= upper[j]`. Either end may be infinite; equal ends fix
+/// the parameter.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Bounds {
     /// Least values.
@@ -73,7 +76,7 @@ impl Bounds {
         Self { lower: vec![f64::NEG_INFINITY; parameters], upper: vec![f64::INFINITY; parameters] }
     }
 
-    /// With parameter number `index` (from 0) held at `value`.
+    /// The bounds with parameter number `index` (from 0) held at `value`.
     ///
     /// # Panics
     /// If there is no such parameter.

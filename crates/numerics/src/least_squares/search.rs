@@ -12,14 +12,14 @@ use super::step::{Step, StepBox, damped, of_length};
 use super::triangle::{Triangle, norm};
 use super::{LeastSquaresError, Options};
 
-/// A step is kept if it achieves this part of the predicted decrease (Moré's value).
+/// A step is accepted if it achieves this fraction of the predicted decrease (Moré's value).
 const ENOUGH: f64 = 1e-4;
-/// Below this cosine between residuals and tangent space a step may be judged by the gradient: the decrease that it predicts is
-/// 1e-8 of the sum of squares.
+/// Below this cosine between residuals and tangent space, a step may be judged by the gradient: the decrease
+/// that it predicts is 1e-8 of the sum of squares.
 const POLISH: f64 = 1e-4;
-/// Trials of one iteration, each at most half as long as the one before.
+/// Most trials of one iteration, each at most half as long as the one before.
 const TRIALS: usize = 100;
-/// Times that a saddle is left.
+/// Most times that the search leaves a saddle.
 const ESCAPES: usize = 10;
 
 /// Least sum of squares of the residuals within the bounds, from a start.
@@ -77,7 +77,7 @@ pub fn minimise<P: Residuals>(
     Ok(Search::new(problem, bounds, options, start.to_vec(), residuals, linear).run())
 }
 
-/// The error of a start without value.
+/// The error of a start at which the residuals have no value.
 pub(super) fn failed_start<E>(failure: Failure<E>) -> LeastSquaresError<E> {
     match failure {
         Failure::Evaluation(error) => LeastSquaresError::Start(error),
@@ -144,7 +144,7 @@ pub(super) struct Trial {
 pub(super) struct Point {
     pub(super) theta: Vec<f64>,
     pub(super) residuals: Vec<f64>,
-    /// What came along with the residuals.
+    /// The linearisation, if it was computed together with the residuals.
     linear: Option<Linear>,
 }
 
@@ -152,7 +152,7 @@ pub(super) struct Point {
 enum Progress {
     Moved,
     Stuck,
-    /// Trials are too short to be worth it.
+    /// Further trials would be too short to be worthwhile.
     Kink,
     Budget,
 }
@@ -168,7 +168,7 @@ impl<'a, P: Residuals> Search<'a, P> {
     ) -> Self {
         let scale = linear.norms.clone();
         let size = norm(&product(&scale, &theta));
-        // From the origin, the residuals are the only measure of a step.
+        // At the origin, the residuals are the only measure of a step.
         let radius = options.first_radius * if size > 0.0 { size } else { linear.cost.sqrt() };
         Self {
             problem,
@@ -226,7 +226,7 @@ impl<'a, P: Residuals> Search<'a, P> {
         end.minimum(self.theta, self.residuals, &self.linear)
     }
 
-    /// Steps until one of the reasons to end holds.
+    /// Iterates until one of the stopping criteria holds.
     fn descend(&mut self) -> Reason {
         if (0..self.theta.len()).all(|j| self.bounds.is_fixed(j)) {
             return Reason::NothingFree;
@@ -250,14 +250,15 @@ impl<'a, P: Residuals> Search<'a, P> {
         }
     }
 
-    /// The step to the linearised minimum within the bounds, scaled by the current norms, without part in flat directions.
+    /// The step to the linearised minimum within the bounds, scaled by the current norms, without a component
+    /// in flat directions.
     pub(super) fn newton(&self) -> Step {
         let norms = &self.linear.norms;
         let (a, b) = self.scaled_by(norms, &self.linear.q);
         damped(&a, &b, self.least_damping(), &self.limits(norms, &self.theta))
     }
 
-    /// A damping that keeps the triangle regular where norms are zero, and is too small to be felt.
+    /// A damping that keeps the triangle regular if norms are zero, but is too small to have an effect.
     pub(super) fn least_damping(&self) -> f64 {
         (1e-2 * self.options.rank_tolerance).powi(2)
     }
@@ -273,12 +274,12 @@ impl<'a, P: Residuals> Search<'a, P> {
         (newton.predicted.sqrt() <= self.rounding_of_parameters()).then_some(Reason::StepBelowRounding)
     }
 
-    /// Change of the residuals when the parameters are rounded.
+    /// Change of the residuals from rounding the parameters.
     fn rounding_of_parameters(&self) -> f64 {
         f64::EPSILON * norm(&product(&self.linear.norms, &self.theta))
     }
 
-    /// Change of the sum of squares by rounding of the residuals and of the sum.
+    /// Change of the sum of squares from rounding the residuals and the sum.
     fn rounding(&self) -> f64 {
         let (length, change) = (self.linear.cost.sqrt(), 8.0 * self.rounding_of_parameters());
         8.0 * f64::EPSILON * self.linear.cost + 2.0 * length * change + change * change
@@ -292,7 +293,7 @@ impl<'a, P: Residuals> Search<'a, P> {
         (a.scaled(&ratios), b)
     }
 
-    /// The box of steps from a point times a scale. Parameters without influence stay.
+    /// The box of scaled steps from a point. Parameters without influence don't move.
     pub(super) fn limits(&self, scale: &[f64], from: &[f64]) -> StepBox {
         let reach = |ends: &[f64]| -> Vec<f64> {
             (0..scale.len())
@@ -302,7 +303,7 @@ impl<'a, P: Residuals> Search<'a, P> {
         StepBox { lower: reach(&self.bounds.lower), upper: reach(&self.bounds.upper) }
     }
 
-    /// The point reached by a scaled step; at a bound exactly where the step is.
+    /// The point after a scaled step; it lies exactly on the bounds that hold the step.
     pub(super) fn point(&self, from: &[f64], step: &Step, scale: &[f64]) -> Vec<f64> {
         let moved = |j: usize| match step.held[j] {
             _ if scale[j] == 0.0 || step.z[j] == 0.0 => from[j],
@@ -327,7 +328,7 @@ impl<'a, P: Residuals> Search<'a, P> {
         Trial { theta, length: norm(&step.z), predicted: step.predicted, full: false }
     }
 
-    /// One iteration: shorter and shorter trials until one is kept.
+    /// One iteration: shorter and shorter trials until one is accepted.
     fn advance(&mut self, newton: &Step) -> Progress {
         let in_region = |j: usize| {
             let norm = self.linear.norms[j];
@@ -342,6 +343,7 @@ impl<'a, P: Residuals> Search<'a, P> {
             if trial.theta == self.theta {
                 return Progress::Stuck;
             }
+            // If the model can't be evaluated there, a shorter step may still succeed.
             let Some(point) = self.at(trial.theta.clone()) else {
                 if trial.predicted < self.options.least_decrease {
                     return Progress::Kink;
@@ -388,7 +390,7 @@ impl<'a, P: Residuals> Search<'a, P> {
     /// The radius after a trial, by the ratio of actual to predicted decrease.
     fn resize(&mut self, ratio: f64, actual: f64, slope: f64, length: f64, full: bool) {
         if ratio <= 0.25 {
-            // Minimum of the parabola through both sums of squares with the slope at the first.
+            // Minimum of the parabola through both sums of squares with the slope at the first point.
             let part = slope / (2.0 * (slope + actual));
             let part = if actual < 0.0 && part.is_finite() { part.clamp(0.1, 0.5) } else { 0.5 };
             self.radius = part * length;
@@ -397,7 +399,8 @@ impl<'a, P: Residuals> Search<'a, P> {
         }
     }
 
-    /// The residuals at parameters, with their linearisation where that costs little; none if they can't be evaluated there.
+    /// The residuals at a point, with their linearisation if that costs little; none if they can't be
+    /// evaluated there.
     pub(super) fn at(&mut self, theta: Vec<f64>) -> Option<Point> {
         let mut residuals = vec![0.0; self.residuals.len()];
         let linear = if self.problem.joint() {
@@ -411,13 +414,13 @@ impl<'a, P: Residuals> Search<'a, P> {
         Some(Point { theta, residuals, linear })
     }
 
-    /// Linearises at parameters and stays there; false, and back, if that fails.
+    /// Linearises at a point and moves there; if that fails, returns false and stays.
     pub(super) fn move_to(&mut self, theta: Vec<f64>) -> bool {
         let residuals = vec![0.0; self.residuals.len()];
         self.stay(Point { theta, residuals, linear: None })
     }
 
-    /// Linearises at a point unless that has been done, and stays there; false, and back, if that fails.
+    /// Linearises at a point if necessary, and moves there; if that fails, returns false and stays.
     pub(super) fn stay(&mut self, point: Point) -> bool {
         let Point { theta, mut residuals, linear } = point;
         let linear = if let Some(linear) = linear {
@@ -436,7 +439,8 @@ impl<'a, P: Residuals> Search<'a, P> {
         true
     }
 
-    /// Keeps a full step that shortens the distance to the linearised minimum although rounding hides the decrease of the sum of squares.
+    /// Accepts a full step that reduces the distance to the linearised minimum although rounding hides the
+    /// decrease of the sum of squares.
     fn polish(&mut self, trial: &Trial, point: Point) -> bool {
         let before = (self.theta.clone(), self.residuals.clone(), self.linear.clone(), self.scale.clone());
         if self.stay(point)
@@ -451,7 +455,7 @@ impl<'a, P: Residuals> Search<'a, P> {
     }
 }
 
-/// Products entry by entry.
+/// Elementwise products.
 pub(super) fn product(a: &[f64], b: &[f64]) -> Vec<f64> {
     a.iter().zip(b).map(|(a, b)| a * b).collect()
 }

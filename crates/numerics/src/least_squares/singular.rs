@@ -7,7 +7,7 @@
 
 use super::triangle::{dot, norm};
 
-/// Sweeps over all pairs; a dozen is far more than matrices of some 40 columns need.
+/// Most sweeps over all pairs; a dozen is far more than matrices of some 40 columns need.
 const SWEEPS: usize = 60;
 
 /// Singular values in descending order, each with its right singular vector.

@@ -7,8 +7,8 @@
 use super::NotABox;
 use super::residuals::Bounds;
 
-/// `count` points inside a finite box, each of which splits what the ones before left open; the same points in every call. Fixed
-/// parameters keep their value.
+/// `count` points inside a finite box, each of which fills the largest gaps between earlier ones; the points
+/// are the same in every call. Fixed parameters keep their value.
 ///
 /// # Errors
 /// [`NotABox`] for infinite or crossed bounds.
@@ -22,7 +22,7 @@ pub fn starts_in_box(count: usize, bounds: &Bounds) -> Result<Vec<Vec<f64>>, Not
     let bases = primes(sides.len());
     let place = |index: usize, j: usize| {
         let ((lower, upper), part) = (sides[j], radical_inverse(index, bases[j]));
-        // Not `lower + part (upper - lower)`, which overflows in a box as wide as the numbers.
+        // `lower + part (upper - lower)` would overflow in a box as wide as the number range.
         (lower * (1.0 - part) + upper * part).clamp(lower, upper)
     };
     Ok((1..=count).map(|index| (0..sides.len()).map(|j| place(index, j)).collect()).collect())
@@ -41,7 +41,7 @@ fn primes(count: usize) -> Vec<usize> {
     primes
 }
 
-/// The digits of `index`, multiplied and mirrored at the point: in (0, 1) for a positive index.
+/// The digits of `index`, multiplied and mirrored at the radix point: in (0, 1) for a positive index.
 fn radical_inverse(mut index: usize, base: usize) -> f64 {
     let multiplier = multiplier(base);
     let (mut sum, mut weight) = (0.0, 1.0);
@@ -53,9 +53,9 @@ fn radical_inverse(mut index: usize, base: usize) -> f64 {
     sum
 }
 
-/// The whole part of `b (sqrt(b) - floor(sqrt(b)))`, at least 1.
+/// The integer part of `b (sqrt(b) - floor(sqrt(b)))`, at least 1.
 fn multiplier(base: usize) -> usize {
-    // floor(sqrt(b^3)) - b floor(sqrt(b)), in whole numbers.
+    // floor(sqrt(b^3)) - b floor(sqrt(b)), in integers.
     (base.pow(3).isqrt() - base * base.isqrt()).max(1)
 }
 

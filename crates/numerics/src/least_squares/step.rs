@@ -7,9 +7,9 @@
 use super::residuals::Side;
 use super::triangle::{Triangle, dot, norm};
 
-/// The length of a damped step may differ from the radius by this part (Moré's value).
+/// Allowed relative difference between the length of a damped step and the radius (Moré's value).
 const RADIUS_SLACK: f64 = 0.1;
-/// A multiplier counts as zero below this part of `|A_j| |b|`.
+/// A multiplier below this fraction of `|A_j| |b|` counts as zero.
 const MULTIPLIER: f64 = 16.0 * f64::EPSILON;
 
 /// The box of scaled steps; it contains 0.
@@ -23,7 +23,7 @@ pub(super) struct StepBox {
 #[derive(Debug, Clone)]
 pub(super) struct Step {
     pub(super) z: Vec<f64>,
-    /// The bound that a variable is held at.
+    /// The bound at which a variable is held.
     pub(super) held: Vec<Option<Side>>,
     /// Decrease of `|A z + b|^2` from `z = 0`; never negative.
     pub(super) predicted: f64,
@@ -31,7 +31,7 @@ pub(super) struct Step {
     slope: f64,
 }
 
-/// Variables that take part, and where each of them is.
+/// State of the active-set iteration: the variables, and the bounds that hold them.
 struct ActiveSet<'a> {
     a: &'a Triangle,
     b: &'a [f64],
@@ -39,7 +39,7 @@ struct ActiveSet<'a> {
     limits: &'a StepBox,
     z: Vec<f64>,
     held: Vec<Option<Side>>,
-    /// Variables whose release rounding would undo.
+    /// Variables that a bound holds again after their release, because of rounding.
     refused: Vec<bool>,
     slope: f64,
 }
@@ -73,7 +73,8 @@ impl ActiveSet<'_> {
         let tolerance: Vec<f64> =
             self.a.column_norms().iter().map(|c| MULTIPLIER * c * norm(self.b)).collect();
         let mut released = None;
-        // Each round either ends or lowers the objective, up to rounding: the limit guards against the latter.
+        // Each round either ends or lowers the objective, up to rounding errors, which the limit guards
+        // against.
         for _ in 0..4 * self.z.len() + 8 {
             self.minimise_free(released);
             let w = self.multipliers();
@@ -89,7 +90,7 @@ impl ActiveSet<'_> {
             let Some(j) = candidate else { break };
             released = self.held[j].take().map(|side| (j, side));
         }
-        // -2 b.Az - |Az|^2 with b eliminated by the multipliers: a sum of terms that are not negative.
+        // -2 b.Az - |Az|^2 with b eliminated by the multipliers: a sum of nonnegative terms.
         let w = self.multipliers();
         let az = self.a.times(&self.z);
         let predicted = dot(&az, &az) + 2.0 * (self.damping * dot(&self.z, &self.z) - dot(&self.z, &w));
@@ -107,11 +108,12 @@ impl ActiveSet<'_> {
         w
     }
 
-    /// Moves to the minimum over the free variables, holding those that reach a bound on the way.
+    /// Moves to the minimum over the free variables, and holds those that reach a bound on the way.
     fn minimise_free(&mut self, released: Option<(usize, Side)>) {
         loop {
             let free: Vec<usize> = (0..self.z.len()).filter(|j| self.held[*j].is_none()).collect();
             let target = self.free_minimum(&free);
+            // A released variable whose minimum lies outside again would cycle: it is held for good.
             if let Some((j, side)) = released
                 && let Some(place) = free.iter().position(|f| *f == j)
             {
@@ -125,6 +127,7 @@ impl ActiveSet<'_> {
                     continue;
                 }
             }
+            // Fraction of the way to its target at which a variable reaches its bound.
             let part = |j: usize, target: f64| {
                 let limit = if target < self.z[j] { self.limits.lower[j] } else { self.limits.upper[j] };
                 if target >= self.limits.lower[j] && target <= self.limits.upper[j] {
@@ -143,6 +146,7 @@ impl ActiveSet<'_> {
                 }
                 return;
             }
+            // All variables stop at the first bound on the way; those that reach it are held there.
             for (i, j) in free.iter().enumerate() {
                 if blocked[i] && parts[i] <= least {
                     let side = if target[i] < self.z[*j] { Side::Lower } else { Side::Upper };
@@ -166,7 +170,8 @@ impl ActiveSet<'_> {
         }
     }
 
-    /// The minimum over the free variables without regard to their bounds, by the triangle of `[A_F, A_B z_B + b; sqrt(lambda), 0]`.
+    /// The minimum over the free variables without regard to their bounds, from the triangle of `[A_F, A_B
+    /// z_B + b; sqrt(lambda), 0]`.
     fn free_minimum(&mut self, free: &[usize]) -> Vec<f64> {
         let (n, f) = (self.z.len(), free.len());
         let mut fixed = self.z.clone();
@@ -197,7 +202,7 @@ impl ActiveSet<'_> {
 pub(super) fn of_length(a: &Triangle, b: &[f64], radius: f64, guess: f64, limits: &StepBox) -> (Step, f64) {
     let gradient = a.transposed_times(b);
     let mut low = 0.0;
-    // |z(lambda)| <= |A^T b|/lambda, as 0 is in the box.
+    // |z(lambda)| <= |A^T b|/lambda, because 0 is in the box.
     let mut high = norm(&gradient) / radius;
     let inside = |lambda: f64, low: f64, high: f64| {
         if lambda > low && lambda < high { lambda } else { (low * high).sqrt().max(1e-3 * high) }

@@ -1,8 +1,9 @@
-//! Triangular factors by Householder reflections: of a block of columns, and of two triangles one above the other.
+//! Triangular factors by Householder reflections: of a block of columns, and of two stacked triangles.
 //!
-//! G. H. Golub, C. F. Van Loan, *Matrix Computations*, 4th ed., Johns Hopkins 2013, section 5.2; the tree of blocks is TSQR
-//! (J. Demmel, L. Grigori, M. Hoemmen, J. Langou, *SIAM J. Sci. Comput.* 34 (2012) A206). Nothing is pivoted and nothing compared with an
-//! absolute number: a column times a power of two gives that column of the triangle times that power, bit for bit.
+//! G. H. Golub, C. F. Van Loan, *Matrix Computations*, 4th ed., Johns Hopkins 2013, section 5.2; the tree of
+//! blocks is TSQR (J. Demmel, L. Grigori, M. Hoemmen, J. Langou, *SIAM J. Sci. Comput.* 34 (2012) A206).
+//! There is no pivoting and no absolute threshold: scaling a column by a power of two scales that column of
+//! the triangle by the same factor, bit for bit.
 
 /// An upper triangle of `n` columns, stored by columns with its zeros.
 #[derive(Debug, Clone, PartialEq)]
@@ -12,8 +13,8 @@ pub(super) struct Triangle {
 }
 
 impl Triangle {
-    /// The triangle of a matrix, stored by columns of `rows` entries, which is overwritten. It has as many columns as the matrix; rows that
-    /// the matrix lacks are zero.
+    /// The triangle of a matrix, stored by columns of `rows` entries, which is overwritten. It has as many
+    /// columns as the matrix; missing rows are zero.
     pub(super) fn of_columns(data: &mut [f64], rows: usize, n: usize) -> Self {
         debug_assert_eq!(data.len(), rows * n);
         for j in 0..n.min(rows) {
@@ -34,7 +35,7 @@ impl Triangle {
         triangle
     }
 
-    /// The triangle of two triangles of equal size, one above the other.
+    /// The triangle of two stacked triangles of equal size.
     pub(super) fn above(mut self, mut below: Self) -> Self {
         let n = self.n;
         for j in 0..n {
@@ -72,7 +73,7 @@ impl Triangle {
         part
     }
 
-    /// With column `j` times `factors[j]`.
+    /// The triangle with column `j` multiplied by `factors[j]`.
     pub(super) fn scaled(&self, factors: &[f64]) -> Self {
         let mut part = self.clone();
         for (column, factor) in part.data.chunks_exact_mut(self.n.max(1)).zip(factors) {
@@ -83,7 +84,7 @@ impl Triangle {
         part
     }
 
-    /// Solves `R x = b` in place for the first `x.len()` columns; the diagonal there must not be zero.
+    /// Solves `R x = b` in place for the first `x.len()` columns, whose diagonal entries must be nonzero.
     pub(super) fn solve(&self, x: &mut [f64]) {
         for j in (0..x.len()).rev() {
             x[j] /= self.at(j, j);
@@ -94,7 +95,7 @@ impl Triangle {
         }
     }
 
-    /// Solves `R^T x = b` in place for the first `x.len()` columns; the diagonal there must not be zero.
+    /// Solves `R^T x = b` in place for the first `x.len()` columns, whose diagonal entries must be nonzero.
     pub(super) fn solve_transposed(&self, x: &mut [f64]) {
         for j in 0..x.len() {
             let (above, rest) = x.split_at_mut(j);
@@ -132,7 +133,7 @@ fn reflector(head: &mut f64, tail: &mut [f64]) -> Option<f64> {
         return None;
     }
     let length = (*head * *head + below).sqrt();
-    // The sign that adds up: no cancellation.
+    // This sign adds magnitudes, so there is no cancellation.
     let image = if *head > 0.0 { -length } else { length };
     let pivot = *head - image;
     let tau = -pivot / image;
@@ -153,7 +154,8 @@ fn reflect(tau: f64, v: &[f64], top: &mut f64, below: &mut [f64]) {
     }
 }
 
-/// Scalar product, summed in eight interleaved parts (which a vector unit adds at once) in an order that depends on the length alone.
+/// Scalar product, summed in eight interleaved parts (for vector instructions) in an order that only depends
+/// on the length.
 pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
     let mut parts = [0.0; 8];
     let (mut a, mut b) = (a.chunks_exact(8), b.chunks_exact(8));
@@ -175,7 +177,7 @@ pub(super) fn norm(x: &[f64]) -> f64 {
 mod tests {
     use super::*;
 
-    /// A full matrix of small whole numbers, by columns.
+    /// A full matrix of small integers, by columns.
     fn matrix(rows: usize, n: usize) -> Vec<f64> {
         (0..rows * n).map(|i| ((i * i * 7 + 3 * i) % 23) as f64 - 11.0 + 0.125 * (i % 3) as f64).collect()
     }

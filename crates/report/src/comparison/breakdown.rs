@@ -1,4 +1,5 @@
-//! Where the error lies: mean and RMS error by pressure, contraction, direction, rate, time, sweep, specimen, before and after.
+//! Breakdown of the error: mean and RMS error by pressure, contraction, direction, rate, time, sweep and
+//! specimen, before and after.
 
 use bulge_inference::{Bin, Breakdown, Comparison};
 use plotters::style::RGBColor;
@@ -13,20 +14,20 @@ use crate::comparison::wording::{has_effects, named, names, negligible_n, pulls,
 use crate::comparison::{Plot, WIDTH};
 use crate::palette::{ALERT, FIRST, GRID, INK, LAST};
 
-/// Rows of a plot of names.
+/// Most rows of a plot of named groups.
 const MOST_ROWS: usize = 40;
 
-/// A variable as the page speaks of it.
+/// Wording of the page for a variable.
 struct Variable {
-    /// As the comparison calls it.
+    /// Name of the variable in the comparison.
     name: &'static str,
     /// File name of its plot.
     plot: &'static str,
     /// Heading.
     title: &'static str,
-    /// No group of it.
+    /// Wording if no group deviates.
     nowhere: &'static str,
-    /// What an error that depends on it points to.
+    /// What a dependence of the error on the variable points to.
     hint: &'static str,
 }
 
@@ -92,12 +93,12 @@ const VARIABLES: [Variable; 8] = [
 /// One plot for each variable that varies.
 ///
 /// # Errors
-/// If the errors span more than an axis.
+/// The range of the errors overflows.
 pub(super) fn plots(comparison: &Comparison) -> Result<Vec<Plot>, PlotError> {
     known(comparison).map(|(variable, by)| plot(comparison, variable, by)).collect()
 }
 
-/// The plots with the sentence above each.
+/// The plots, each with the sentence above it.
 ///
 /// # Errors
 /// As [`plots`].
@@ -148,7 +149,7 @@ fn plot(comparison: &Comparison, variable: &Variable, by: &Breakdown) -> Result<
 enum Kind {
     /// Mean error of all rungs that are drawn.
     Mean,
-    /// Mean error of the last rung, which the base would dwarf.
+    /// Mean error of the last rung in its own panel, since the error of the base would dwarf it.
     MeanLeft,
     /// RMS error of all rungs that are drawn.
     Rms,
@@ -179,7 +180,7 @@ impl Kind {
         }
     }
 
-    /// Where the noise floor is drawn.
+    /// Values at which the noise floor is drawn.
     fn floors(self, comparison: &Comparison) -> Vec<f64> {
         let Some(sd) = comparison.noise_floor.as_ref().map(|floor| floor.sd_n) else { return Vec::new() };
         match self {
@@ -189,7 +190,7 @@ impl Kind {
         }
     }
 
-    /// Axis of the errors, with zero on it.
+    /// Axis of the errors, which includes zero.
     fn axis(self, comparison: &Comparison, by: &Breakdown) -> Result<Axis, PlotError> {
         let errors = || by.bins.iter().flat_map(|bin| self.errors(bin, has_effects(comparison)));
         let values = || errors().map(|(error, _)| error).chain([0.0]).chain(self.floors(comparison));
@@ -206,7 +207,7 @@ fn entries(comparison: &Comparison) -> Vec<(Mark, String)> {
     entries
 }
 
-/// Upright bars over a variable that has an order.
+/// Vertical bars over an ordered variable.
 fn bars(comparison: &Comparison, variable: &Variable, by: &Breakdown) -> Result<String, PlotError> {
     let kinds = Kind::of(has_effects(comparison));
     let mut svg = Svg::new(variable.plot, WIDTH, 36.0 + 200.0 + BELOW);
@@ -238,7 +239,7 @@ fn bars(comparison: &Comparison, variable: &Variable, by: &Breakdown) -> Result<
     Ok(svg.finish(variable.title))
 }
 
-/// What stands under the bars: the middle of a group where there is a unit, its name where there is none.
+/// Labels under the bars: the middle of a group if the variable has a unit, else the group's name.
 fn bar_labels(by: &Breakdown, slot: f64) -> Vec<String> {
     if by.unit.is_empty() {
         return by.bins.iter().map(|bin| name_fitted(&bin.label, TEXT, slot.max(60.0))).collect();
@@ -248,7 +249,7 @@ fn bar_labels(by: &Breakdown, slot: f64) -> Vec<String> {
     if by.variable == "pressure" { middles.into_iter().map(level).collect() } else { ticks(&middles) }
 }
 
-/// Lying bars of groups with names, which may be long.
+/// Horizontal bars of groups with names, which may be long.
 fn rows(comparison: &Comparison, variable: &Variable, by: &Breakdown) -> Result<String, PlotError> {
     let kinds = Kind::of(has_effects(comparison));
     let shown = &by.bins[..by.bins.len().min(MOST_ROWS)];
@@ -322,7 +323,7 @@ fn says(comparison: &Comparison, variable: &Variable, by: &Breakdown) -> String 
     )
 }
 
-/// What the mean errors of the last rung mean.
+/// Interpretation of the mean errors of the last rung.
 fn meaning(comparison: &Comparison, variable: &Variable, by: &Breakdown) -> String {
     let negligible = negligible_n(comparison);
     let (low, high) = crate::axis::range(by.bins.iter().map(|bin| bin.bias_n[1])).unwrap_or((0.0, 0.0));

@@ -1,10 +1,11 @@
-//! Whether a comparison can be drawn: finite numbers, and lists that belong together of the same length.
+//! Checks that a comparison can be drawn: numbers are finite, and corresponding lists have the same length.
 
 use bulge_inference::Comparison;
 
 use crate::PlotError;
 
-/// Refuses what would end as a gap or a `NaN` in a drawing. Intervals and plausible ranges may be open.
+/// Rejects values that would appear as a gap or a `NaN` in a drawing. Intervals and plausible ranges may be
+/// unbounded.
 ///
 /// # Errors
 /// [`PlotError::Value`] and [`PlotError::Lengths`].
@@ -85,7 +86,7 @@ fn series(comparison: &Comparison) -> Result<(), PlotError> {
     finite("a predicted force", comparison.scatter.iter().flatten().copied())
 }
 
-/// Refuses a value that is infinite or not a number.
+/// Rejects a value that is infinite or not a number.
 pub(crate) fn finite(what: &str, mut values: impl Iterator<Item = f64>) -> Result<(), PlotError> {
     match values.find(|value| !value.is_finite()) {
         Some(value) => Err(PlotError::Value { quantity: what.to_owned(), value }),
@@ -93,7 +94,7 @@ pub(crate) fn finite(what: &str, mut values: impl Iterator<Item = f64>) -> Resul
     }
 }
 
-/// Refuses lists that are not as long as they should be.
+/// Rejects lists of another length than expected.
 pub(crate) fn lengths(what: &'static str, expected: usize, found: &[usize]) -> Result<(), PlotError> {
     match found.iter().find(|found| **found != expected) {
         Some(found) => Err(PlotError::Lengths { what, expected, found: *found }),

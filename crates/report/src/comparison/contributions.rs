@@ -1,4 +1,4 @@
-//! What each effect contributes to the force: areas stacked on zero against what the base misses.
+//! Contribution of each effect to the force: areas stacked on zero, against the misfit of the base.
 
 use bulge_inference::{Comparison, Stack};
 use plotters::style::RGBColor;
@@ -14,24 +14,24 @@ use crate::comparison::wording::effect_title;
 use crate::comparison::{Plot, WIDTH};
 use crate::palette::{CATEGORIES, INK};
 
-/// Pressure levels, side by side.
+/// Most pressure levels, drawn side by side.
 const LEVELS: usize = 3;
 const HEAD: f64 = 30.0;
 const HEIGHT: f64 = 280.0;
-/// The rest of the effects together.
+/// Colour of the remaining effects together.
 const REST: RGBColor = RGBColor(200, 200, 200);
 
-/// An effect, or the rest of them, with its size over all levels.
+/// An effect, or the sum of the remaining ones, with its size over all levels.
 struct Share {
     name: String,
     colour: RGBColor,
     effects: Vec<String>,
 }
 
-/// The plot; none without effects.
+/// The plot; `None` without effects.
 ///
 /// # Errors
-/// If the forces span more than an axis.
+/// The range of the forces overflows.
 pub(crate) fn plot(comparison: &Comparison) -> Result<Option<Plot>, PlotError> {
     let stacks: Vec<&Stack> = usable(comparison).collect();
     let shares = shares(&stacks);
@@ -102,7 +102,7 @@ fn ranked(stacks: &[&Stack]) -> Vec<(String, f64)> {
     ranked.into_iter().map(|(size, name)| (name, size)).collect()
 }
 
-/// As many effects as there are colours, the largest first; the others together.
+/// The largest effects, as many as there are colours; the others are summed.
 fn shares(stacks: &[&Stack]) -> Vec<Share> {
     let ranked = ranked(stacks);
     let own = if ranked.len() > CATEGORIES.len() { CATEGORIES.len() - 1 } else { ranked.len() };
@@ -127,7 +127,7 @@ fn forces(stack: &Stack, share: &Share) -> Vec<f64> {
     sum
 }
 
-/// Lower and upper edge of each share: positive forces pile up from zero, negative ones down.
+/// Lower and upper edge of each share: positive forces are stacked upward from zero, negative ones downward.
 fn edges(stack: &Stack, shares: &[Share]) -> Vec<Vec<(f64, f64)>> {
     let mut piles = vec![(0.0, 0.0); stack.contraction.len()];
     shares

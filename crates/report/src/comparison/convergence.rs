@@ -1,4 +1,4 @@
-//! How the search for the fitted numbers ended.
+//! How the fit ended.
 
 use bulge_inference::Comparison;
 

@@ -1,4 +1,4 @@
-//! Pairs of fitted numbers that the data can't tell apart.
+//! Pairs of fitted parameters that the data can't separate.
 
 use bulge_inference::Comparison;
 use serde::Serialize;
@@ -9,10 +9,10 @@ use crate::comparison::wording::last_fit;
 
 /// Pairs with at least this correlation are listed.
 pub(super) const HIGH: f64 = 0.9;
-/// Pairs that are listed.
+/// Most pairs listed.
 const MOST: usize = 30;
 
-/// One pair.
+/// One correlated pair.
 #[derive(Debug, Serialize)]
 pub(super) struct Pair {
     first: String,
@@ -22,7 +22,7 @@ pub(super) struct Pair {
     size: f64,
 }
 
-/// Pairs with |r| > 0.9, the nearest first, and how many there are.
+/// Pairs with |r| > 0.9, strongest correlation first, and their total number.
 pub(super) fn pairs(comparison: &Comparison) -> (Vec<Pair>, usize) {
     let Some(fit) = last_fit(comparison) else { return (Vec::new(), 0) };
     let n = fit.parameters.len();

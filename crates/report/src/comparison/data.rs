@@ -1,4 +1,4 @@
-//! What was measured, what was left out, and what the quality gate found.
+//! What was measured, what was left out, and the findings of the quality gate.
 
 use bulge_inference::{Comparison, UNPRESSURISED};
 use bulge_measurements::{ColumnUse, Finding, LineRange, SetApart, Severity};
@@ -8,11 +8,11 @@ use crate::comparison::number::{and, bar, count, newton, percent};
 
 /// Ranges of lines that are listed before `and so on`.
 const MOST_RANGES: usize = 6;
-/// Columns and rows that are listed, and digits of a reading.
+/// Most columns and rows listed, and digits of a reading.
 const MOST_COLUMNS: usize = 40;
 const MOST_ROWS: usize = 12;
 const DIGITS: usize = 6;
-/// Specimens that are named.
+/// Most specimens named.
 const MOST_NAMES: usize = 12;
 
 /// One finding.
@@ -75,7 +75,8 @@ pub(super) fn facts(comparison: &Comparison) -> Vec<(&'static str, String)> {
     facts
 }
 
-/// What each column was taken for, where anything about them was guessed: heading, quantity, unit, first values, and what is to be said of it.
+/// The assignment of the columns, if any of them was guessed: heading, quantity, unit, first values, and a
+/// remark.
 pub(super) fn columns(comparison: &Comparison) -> Vec<[String; 5]> {
     let reading = &comparison.data.reading;
     if !reading.is_guessed() {
@@ -94,7 +95,7 @@ pub(super) fn columns(comparison: &Comparison) -> Vec<[String; 5]> {
     reading.columns.iter().take(MOST_COLUMNS).map(row).collect()
 }
 
-/// A number with six digits, as far as it has more; any other text as it is.
+/// A number rounded to six digits if it has more; any other text unchanged.
 fn shortened(text: &str) -> String {
     match text.parse::<f64>() {
         Ok(number) if text.len() > DIGITS + 3 => bulge_muscles::units::rounded(number, DIGITS).to_string(),
@@ -102,7 +103,7 @@ fn shortened(text: &str) -> String {
     }
 }
 
-/// The first rows that can't be used, but for those that are left out as unpressurised: line and reason.
+/// The first rows that can't be used, except those left out as unpressurised: line and reason.
 pub(super) fn set_apart(comparison: &Comparison) -> Vec<[String; 2]> {
     let reading = &comparison.data.reading;
     let several = comparison.data.files.len() > 1;
@@ -119,7 +120,7 @@ pub(super) fn set_apart(comparison: &Comparison) -> Vec<[String; 2]> {
     rows
 }
 
-/// What the quality gate found, the worst first.
+/// Findings of the quality gate, most severe first.
 pub(crate) fn findings(comparison: &Comparison) -> Vec<Row> {
     let mut findings: Vec<&Finding> = comparison.quality.iter().collect();
     findings.sort_by_key(|finding| std::cmp::Reverse(finding.severity));
@@ -139,7 +140,7 @@ fn row(finding: &Finding, files: &[String]) -> Row {
     }
 }
 
-/// `12, 33–40`, with the file where there are several.
+/// `12, 33–40`, with the file if there are several.
 fn lines(ranges: &[LineRange], files: &[String]) -> String {
     let shown = ranges.iter().take(MOST_RANGES).map(|range| {
         let lines = if range.first == range.last {

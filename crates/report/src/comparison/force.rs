@@ -1,4 +1,4 @@
-//! Force against contraction: measured points, the model before and after, one panel for each specimen.
+//! Force against contraction: measured points and the model before and after, one panel per specimen.
 
 use bulge_inference::{Comparison, Curve, CurvePoint};
 
@@ -13,15 +13,15 @@ use crate::comparison::svg::{BOLD, Stroke, Svg, name_fitted};
 use crate::comparison::wording::{has_effects, named, pulls, sentence};
 use crate::comparison::{Plot, WIDTH};
 
-/// Pressure levels in one panel.
+/// Most pressure levels in one panel.
 const LEVELS: usize = 8;
-/// Panels.
+/// Most panels.
 const SPECIMENS: usize = 6;
 
-/// The plot; none without curves.
+/// The plot; `None` without curves.
 ///
 /// # Errors
-/// If the forces span more than an axis.
+/// The range of the forces overflows.
 pub(crate) fn plot(comparison: &Comparison) -> Result<Option<Plot>, PlotError> {
     let curves: Vec<&Curve> = comparison.curves.iter().filter(|curve| !curve.points.is_empty()).collect();
     if curves.is_empty() {
@@ -93,12 +93,12 @@ fn draw_curve(svg: &mut Svg, panel: &Panel, curve: &Curve, shown: &Shown, has_ef
     let Some(colour) = shown.colour(curve.pressure_pa) else { return };
     let place = |p: &CurvePoint, force_n: f64| panel.at((100.0 * p.contraction, force_n));
     let dots: Vec<_> = curve.points.iter().map(|p| place(p, p.measured_n)).collect();
-    // Few dots must be seen, many must not hide the lines.
+    // A few dots must be visible, many must not hide the lines.
     let (radius, opacity, line) = if dots.len() < 60 { (2.8, 0.8, 1.8) } else { (2.6, 0.3, 1.3) };
     svg.dots(&dots, radius, colour, opacity);
     for stretch in stretches(&curve.points) {
         let mut points: Vec<_> = stretch.iter().map(|p| place(p, p.first_n)).collect();
-        // Dashes of both branches lie on one another if both begin on the left.
+        // The dashes of both branches coincide if both lines start on the left.
         if points.first() > points.last() {
             points.reverse();
         }
@@ -110,14 +110,15 @@ fn draw_curve(svg: &mut Svg, panel: &Panel, curve: &Curve, shown: &Shown, has_ef
     }
 }
 
-/// Points that follow one another in one direction: a line must not run from the end of one sweep to the start of the next.
+/// Splits points into runs in one direction: no line may run from the end of one sweep to the start of the
+/// next.
 fn stretches(points: &[CurvePoint]) -> Vec<&[CurvePoint]> {
     let steps: Vec<f64> = points.windows(2).map(|p| (p[1].contraction - p[0].contraction).abs()).collect();
     let mut sorted = steps.clone();
     sorted.sort_by(f64::total_cmp);
     let usual = sorted.get(sorted.len() / 2).copied().unwrap_or(0.0);
     let (low, high) = crate::axis::range(points.iter().map(|p| p.contraction)).unwrap_or((0.0, 0.0));
-    // The larger of both: a coarse static map has steps of a tenth of its range.
+    // The larger threshold holds, because a coarse static map has steps of a tenth of its range.
     let jump = (6.0 * usual).max(0.15 * (high - low));
     let mut found = Vec::new();
     let mut start = 0;

@@ -1,4 +1,5 @@
-//! The head of the page: error before and after, how it compares with the scatter of the readings, and whether to trust it.
+//! The head of the page: the error before and after, its ratio to the scatter of the readings, and whether to
+//! trust it.
 
 use bulge_inference::Comparison;
 use serde::Serialize;
@@ -6,7 +7,7 @@ use serde::Serialize;
 use crate::comparison::number::{count, newton, three};
 use crate::comparison::wording::{has_effects, last_fit, pulls};
 
-/// A number in large print with what it is.
+/// A number in large print with its description.
 #[derive(Debug, Serialize)]
 pub(super) struct Figure {
     value: String,
@@ -64,7 +65,7 @@ pub(super) fn says(comparison: &Comparison) -> String {
     )
 }
 
-/// Where the error lies: its mean over all readings.
+/// The bias: the mean error over all readings.
 pub(super) fn mean_says(comparison: &Comparison) -> String {
     let (Some(first), Some(last)) = (comparison.ladder.first(), comparison.ladder.last()) else {
         return "No model was compared with these data.".to_owned();
@@ -77,7 +78,7 @@ pub(super) fn mean_says(comparison: &Comparison) -> String {
     }
 }
 
-/// How far that is above the noise floor, and what that means.
+/// The ratio of the error to the noise floor, and its interpretation.
 pub(super) fn verdict(comparison: &Comparison) -> Vec<String> {
     let mut verdict = Vec::new();
     let Some(last) = comparison.ladder.last() else { return verdict };

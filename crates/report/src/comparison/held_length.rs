@@ -1,4 +1,4 @@
-//! Force against pressure at held lengths: what an isometric test shows.
+//! Force against pressure at constant lengths, for isometric tests.
 
 use bulge_inference::{Comparison, Curve, CurvePoint};
 use bulge_measurements::SweepKind;
@@ -15,22 +15,22 @@ use crate::comparison::wording::has_effects;
 use crate::comparison::{Plot, WIDTH};
 use crate::palette;
 
-/// Lengths that are drawn, and panels, one for each specimen.
+/// Most lengths that are drawn, and most panels, one per specimen.
 const LENGTHS: usize = 8;
 const SPECIMENS: usize = 6;
-/// Contractions farther apart than this share of their range are of two lengths.
+/// A larger gap between contractions, as a fraction of their range, separates two lengths.
 const APART: f64 = 0.03;
-/// The least range that is told apart: a length is held within some thousandths.
+/// Smallest range that the fraction refers to: a length is held to within some thousandths.
 const LEAST: f64 = 0.05;
 const TITLE: &str = "Force against pressure";
 
-/// Whether the length was held in all of the test.
+/// Whether all sweeps of the test are isometric.
 pub(crate) fn is_one(comparison: &Comparison) -> bool {
     let kinds = &comparison.data.sweep_kinds;
     !kinds.is_empty() && kinds.iter().all(|kind| *kind == SweepKind::Isometric)
 }
 
-/// The contractions at which the length was held, rising.
+/// The contractions at which the length was held, ascending.
 fn lengths(points: impl Iterator<Item = f64>) -> Vec<f64> {
     let mut all: Vec<f64> = points.collect();
     all.sort_by(f64::total_cmp);
@@ -39,16 +39,16 @@ fn lengths(points: impl Iterator<Item = f64>) -> Vec<f64> {
     groups.map(|group| group.iter().sum::<f64>() / group.len() as f64).collect()
 }
 
-/// The length nearest to a contraction.
+/// Index of the length nearest to a contraction.
 fn nearest(lengths: &[f64], contraction: f64) -> usize {
     let off = |place: &usize| (lengths[*place] - contraction).abs();
     (0..lengths.len()).min_by(|a, b| off(a).total_cmp(&off(b))).unwrap_or_default()
 }
 
-/// The plot of some curves, of which there is one at least.
+/// The plot of at least one curve.
 ///
 /// # Errors
-/// If pressures or forces span more than an axis.
+/// The range of the pressures or forces overflows.
 pub(crate) fn plot(comparison: &Comparison, curves: &[&Curve]) -> Result<Plot, PlotError> {
     let points = || curves.iter().flat_map(|curve| &curve.points);
     let lengths = lengths(points().map(|point| point.contraction));
@@ -106,7 +106,7 @@ pub(crate) fn plot(comparison: &Comparison, curves: &[&Curve]) -> Result<Plot, P
     })
 }
 
-/// Readings at one length, and the models on each branch in the order of the pressure.
+/// Draws the readings at one length, and the models on each branch in the order of pressure.
 fn draw(svg: &mut Svg, panel: &Panel, points: &[CurvePoint], colour: RGBColor, has_effects: bool) {
     let place = |point: &CurvePoint, force_n: f64| panel.at((1e-5 * point.pressure_pa, force_n));
     let dots: Vec<_> = points.iter().map(|p| place(p, p.measured_n)).collect();
@@ -133,7 +133,7 @@ mod tests {
         assert_eq!(found.len(), 3, "{found:?}");
         assert!((found[0] - 0.01).abs() < 1e-12 && (found[2] - 0.101).abs() < 1e-12);
         assert_eq!([0.0, 0.04, 0.09].map(|c| nearest(&found, c)), [0, 1, 2]);
-        // One length within its noise is one.
+        // Readings within the noise of one length count as one length.
         assert_eq!(lengths([0.0499, 0.05, 0.0501].into_iter()).len(), 1);
     }
 }

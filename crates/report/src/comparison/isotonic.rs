@@ -1,4 +1,4 @@
-//! Contraction against pressure under held loads, measured and modelled.
+//! Contraction against pressure under constant loads, measured and modelled.
 
 use bulge_inference::{Comparison, HeldLoad, HeldLoadPoint};
 
@@ -13,17 +13,18 @@ use crate::comparison::wording::{has_effects, last_model};
 use crate::comparison::{Plot, WIDTH};
 use crate::palette;
 
-/// Loads that are drawn.
+/// Most loads that are drawn.
 const LOADS: usize = 6;
-/// Loads that differ by less than this part of the largest are one: friction of the guide, and the cell's zero.
+/// Loads that differ by less than this fraction of the largest count as one: friction of the guide and the
+/// zero of the load cell cause that much.
 const SAME: f64 = 0.02;
 const HEIGHT: f64 = 340.0;
 const TITLE: &str = "Contraction under held loads";
 
-/// The plot; none without isotonic sweeps.
+/// The plot; `None` without isotonic sweeps.
 ///
 /// # Errors
-/// If pressures or contractions span more than an axis.
+/// The range of the pressures or contractions overflows.
 pub(crate) fn plot(comparison: &Comparison) -> Result<Option<Plot>, PlotError> {
     let all = &comparison.isotonic;
     if all.is_empty() {
@@ -76,13 +77,13 @@ pub(crate) fn plot(comparison: &Comparison) -> Result<Option<Plot>, PlotError> {
     }))
 }
 
-/// Sweeps under one load, of sweeps in the order of their loads.
+/// Groups sweeps by load; `by_load` is sorted by load.
 fn loads<'a, 'b>(by_load: &'b [&'a HeldLoad]) -> Vec<&'b [&'a HeldLoad]> {
     let largest = by_load.last().map_or(0.0, |held| held.load_n.abs());
     by_load.chunk_by(|a, b| b.load_n - a.load_n <= SAME * largest).collect()
 }
 
-/// The load of some sweeps \[N\].
+/// Mean load of some sweeps \[N\].
 fn mean(load: &[&HeldLoad]) -> f64 {
     load.iter().map(|held| held.load_n).sum::<f64>() / load.len().max(1) as f64
 }

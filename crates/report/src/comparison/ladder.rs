@@ -1,4 +1,5 @@
-//! The ladder of errors: one bar for each rung, the noise floor as a line, the error on unseen data as diamonds.
+//! The ladder of errors: one bar per rung, the noise floor as a line, and the error on unseen data as
+//! diamonds.
 
 use bulge_inference::{Comparison, Rung};
 
@@ -12,18 +13,19 @@ use crate::comparison::wording::has_effects;
 use crate::comparison::{Plot, WIDTH};
 use crate::palette::{ALERT, FIRST, GRID, INK, LAST, SOFT_INK};
 
-/// Room for the names of the rungs and for the numbers.
+/// Width for the names of the rungs and the numbers.
 const NAMES: f64 = 310.0;
-/// Room for one name with its sign.
+/// Width for one name with its sign.
 pub(crate) const NAME: f64 = NAMES - 20.0;
 const NUMBERS: f64 = 150.0;
-/// From this ratio on an error on unseen data is worse than that of an earlier rung: less may be chance.
+/// From this ratio on the error on unseen data counts as worse than that of an earlier rung: a smaller one
+/// may be chance.
 const MUCH_WORSE: f64 = 1.2;
 
-/// The plot; none without a ladder.
+/// The plot; `None` without a ladder.
 ///
 /// # Errors
-/// If the errors span more than an axis.
+/// The range of the errors overflows.
 pub(crate) fn plot(comparison: &Comparison) -> Result<Option<Plot>, PlotError> {
     let rungs = &comparison.ladder;
     if rungs.is_empty() {

@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use crate::comparison::number::{share, signed_newton, three};
 
-/// One row: forces in N.
+/// One row, with forces in N.
 #[derive(Debug, Serialize)]
 pub(super) struct Row {
     title: String,

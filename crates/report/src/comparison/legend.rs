@@ -1,11 +1,11 @@
-//! A legend as a row of marks with words, wrapped where the drawing ends.
+//! A legend as a row of marks with labels, wrapped at the edge of the drawing.
 
 use plotters::style::RGBColor;
 
 use crate::comparison::svg::{Anchor, Stroke, Style, Svg, TEXT, width};
 use crate::palette::{INK, SOFT_INK};
 
-/// What stands before the words.
+/// The mark before a label.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Mark {
     /// A line.
@@ -18,7 +18,7 @@ pub(crate) enum Mark {
     Box(RGBColor),
 }
 
-/// Readings, the base, and the last model if there are effects: what curves of a comparison are drawn with.
+/// Entries of the readings, the base and, if there are effects, the last model: the curves of a comparison.
 pub(crate) fn models(has_effects: bool) -> Vec<(Mark, String)> {
     let mut entries = vec![
         (Mark::Dot(SOFT_INK), "measured".to_owned()),
@@ -32,11 +32,11 @@ pub(crate) fn models(has_effects: bool) -> Vec<(Mark, String)> {
 
 /// Height of a row.
 const ROW: f64 = 20.0;
-/// Width of a mark with the gap to its words.
+/// Width of a mark and the gap to its label.
 const MARK: f64 = 30.0;
 const GAP: f64 = 18.0;
 
-/// Places of the entries from the origin, and the height of all rows.
+/// Positions of the entries relative to the origin, and the height of all rows.
 fn places(entries: &[(Mark, String)], room: f64) -> (Vec<(f64, f64)>, f64) {
     let (mut x, mut y) = (0.0, 0.0);
     let mut places = Vec::with_capacity(entries.len());
@@ -51,12 +51,12 @@ fn places(entries: &[(Mark, String)], room: f64) -> (Vec<(f64, f64)>, f64) {
     (places, if entries.is_empty() { 0.0 } else { y + ROW })
 }
 
-/// Height that the legend needs in `room`.
+/// Height of the legend if its width is `room`.
 pub(crate) fn height(entries: &[(Mark, String)], room: f64) -> f64 {
     places(entries, room).1
 }
 
-/// Draws the entries from the upper left corner on.
+/// Draws the entries, starting at the upper left corner.
 pub(crate) fn draw(svg: &mut Svg, (left, top): (f64, f64), room: f64, entries: &[(Mark, String)]) {
     for ((x, y), (mark, words)) in places(entries, room).0.into_iter().zip(entries) {
         let (x, y) = (left + x, top + y + 0.5 * ROW);

@@ -1,11 +1,11 @@
-//! Which pressure levels are shown, in which colour, and how specimens share a plot.
+//! Choice and colours of the pressure levels, and how specimens share a plot.
 
 use plotters::style::RGBColor;
 
 use crate::comparison::number::bar;
 use crate::palette;
 
-/// Indices of at most `most` of `count`, evenly spread, the first and the last among them.
+/// At most `most` indices of `count`, evenly spread, including the first and the last.
 pub(crate) fn spread(count: usize, most: usize) -> Vec<usize> {
     if count <= most {
         return (0..count).collect();
@@ -16,7 +16,7 @@ pub(crate) fn spread(count: usize, most: usize) -> Vec<usize> {
     chosen
 }
 
-/// The pressures that occur, rising, each once (to 0.1 %).
+/// The distinct pressures (to 0.1 %), ascending.
 pub(crate) fn distinct(pressures: impl Iterator<Item = f64>) -> Vec<f64> {
     let mut found: Vec<f64> = pressures.collect();
     found.sort_by(f64::total_cmp);
@@ -29,7 +29,7 @@ pub(crate) fn same(a: f64, b: f64) -> bool {
     (a - b).abs() <= 1e-3 * a.abs().max(b.abs())
 }
 
-/// The specimens that occur, each once, in order.
+/// The distinct specimens, in order.
 pub(crate) fn specimens<'a>(names: impl Iterator<Item = &'a String>) -> Vec<&'a str> {
     let mut found: Vec<&str> = Vec::new();
     for name in names {
@@ -40,33 +40,33 @@ pub(crate) fn specimens<'a>(names: impl Iterator<Item = &'a String>) -> Vec<&'a 
     found
 }
 
-/// The levels of a plot that are shown, with their colours.
+/// The levels shown in a plot, with their colours.
 pub(crate) struct Shown {
     levels: Vec<f64>,
-    /// How many there are in all.
+    /// Total number of levels.
     pub(crate) of: usize,
 }
 
 impl Shown {
-    /// At most `most` of the pressures.
+    /// Chooses at most `most` of the pressures.
     pub(crate) fn new(pressures: impl Iterator<Item = f64>, most: usize) -> Self {
         let all = distinct(pressures);
         let levels = spread(all.len(), most).into_iter().map(|i| all[i]).collect();
         Self { levels, of: all.len() }
     }
 
-    /// Colour of a pressure; none if it isn't shown.
+    /// Colour of a pressure; `None` if it isn't shown.
     pub(crate) fn colour(&self, pressure_pa: f64) -> Option<RGBColor> {
         let place = self.levels.iter().position(|level| same(*level, pressure_pa))?;
         Some(palette::colour(place, self.levels.len()))
     }
 
-    /// Levels with their colours and names, highest first as the curves mostly lie.
+    /// Levels with their colours and names, highest first, which is the usual order of the curves.
     pub(crate) fn named(&self) -> Vec<(RGBColor, String)> {
         self.levels.iter().rev().filter_map(|p| Some((self.colour(*p)?, bar(*p)))).collect()
     }
 
-    /// What a caption says about levels that aren't shown.
+    /// Remark of a caption about levels that aren't shown.
     pub(crate) fn caption(&self) -> String {
         if self.levels.len() < self.of {
             format!(" Shown are {} of {} pressure levels.", self.levels.len(), self.of)

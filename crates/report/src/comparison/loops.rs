@@ -1,4 +1,4 @@
-//! Loops: the mean of both branches and half of the gap between them, measured and modelled.
+//! Loops: the mean of both branches and half the gap between them, measured and modelled.
 
 use bulge_inference::{Comparison, LoopGap};
 use bulge_measurements::SweepKind;
@@ -13,17 +13,17 @@ use crate::comparison::svg::{BOLD, Stroke, Svg, name_fitted};
 use crate::comparison::wording::has_effects;
 use crate::comparison::{Plot, WIDTH};
 
-/// Pressure levels that are drawn.
+/// Most pressure levels that are drawn.
 const LEVELS: usize = 6;
-/// Specimens that are drawn, one row of panels each.
+/// Most specimens that are drawn, with one row of panels each.
 const SPECIMENS: usize = 4;
 const HEIGHT: f64 = 240.0;
 const HEAD: f64 = 30.0;
 
-/// The plot; none without loops.
+/// The plot; `None` without loops.
 ///
 /// # Errors
-/// If the forces span more than an axis.
+/// The range of the forces overflows.
 pub(crate) fn plot(comparison: &Comparison) -> Result<Option<Plot>, PlotError> {
     let loops: Vec<&LoopGap> = comparison.loops.iter().filter(|gap| !gap.contraction.is_empty()).collect();
     if loops.is_empty() {
@@ -67,7 +67,7 @@ pub(crate) fn plot(comparison: &Comparison) -> Result<Option<Plot>, PlotError> {
     }))
 }
 
-/// What friction does to the branches.
+/// The effect of friction on the branches.
 fn hint(comparison: &Comparison) -> &'static str {
     if comparison.data.sweep_kinds.contains(&SweepKind::Isometric) {
         "At equal length and pressure, friction and losses of the rubber make a muscle pull harder while it is vented than while it is filled; a pressure that is \
@@ -80,7 +80,7 @@ fn hint(comparison: &Comparison) -> &'static str {
 const HEADINGS: [&str; 2] = ["Mean of both branches", "Half of the gap between them"];
 const QUANTITIES: [&str; 2] = ["mean force [N]", "half-gap [N]"];
 
-/// Measured, first and last of the mean (0) or the half-gap (1).
+/// The measured, first and last values of the mean (kind 0) or the half-gap (kind 1).
 fn values(gap: &LoopGap, kind: usize) -> [&Vec<f64>; 3] {
     if kind == 0 {
         [&gap.mean_measured_n, &gap.mean_model_n[0], &gap.mean_model_n[1]]

@@ -1,11 +1,12 @@
-//! The report of a comparison: one page that stands for itself, and each of its plots.
+//! The report of a comparison: one self-contained page, and each of its plots.
 //!
 //! ```text
-//! html(&comparison, rows)?  -> report.html, without network or fonts of its own; with rows also plots that can be asked
+//! html(&comparison, rows)?  -> report.html, without network or fonts of its own; with rows also interactive plots
 //! plots(&comparison)?       -> NAME.svg for each plot
 //! ```
-//! Numbers come from the comparison alone: nothing is fitted or predicted here. Errors are measured - model throughout, so a positive error
-//! means that the model pulls too weakly.
+//!
+//! All numbers come from the comparison: nothing is fitted or predicted here. Errors are measured - model
+//! throughout, so a positive error means that the model pulls too weakly.
 
 mod breakdown;
 pub(crate) mod check;
@@ -44,23 +45,25 @@ pub(crate) const WIDTH: f64 = 920.0;
 /// One plot of a comparison.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Plot {
-    /// Stem of a file name.
+    /// Stem of its file name.
     pub name: &'static str,
-    /// What is seen, in a few words.
+    /// What the plot shows, in a few words.
     pub title: String,
     /// How to read it.
     pub caption: String,
-    /// The drawing, an SVG document that stands for itself.
+    /// The drawing as a self-contained SVG document.
     pub svg: String,
 }
 
 /// The page: one HTML document with all plots and tables, readable on screen and on paper.
 ///
-/// With the rows of all rungs ([`bulge_inference::compare_with_rows`]) it shows them in plots that zoom, name the line of a row in its file, and switch
-/// between the rungs. Where no script runs, drawings stand for these plots.
+/// With the rows of all rungs ([`bulge_inference::compare_with_rows`]) the page shows them in plots that
+/// zoom, give the line of a row in its file, and switch between the rungs. Without scripts static drawings
+/// take the place of these plots.
 ///
 /// # Errors
-/// A number that isn't finite, lists of different lengths that belong together, or values too far apart for an axis.
+/// A number isn't finite, lists that should have the same length don't, or the range of the values on an axis
+/// overflows.
 ///
 /// # Examples
 /// A base without effects that is off by 41 N:

@@ -1,13 +1,14 @@
-//! Numbers for people: three significant digits, a true minus sign, pressure in bar, contraction in per cent.
+//! Formatting of numbers: three significant digits, a true minus sign, pressure in bar, contraction in per
+//! cent.
 
 /// Three significant digits.
 ///
-/// Beyond 10^6 and below 10^-4 as a power of ten; an end that isn't finite is `unbounded`.
+/// Beyond 10^6 and below 10^-4 the number is a power of ten. A value that isn't finite is `unbounded`.
 pub(crate) fn three(value: f64) -> String {
     if !value.is_finite() {
         return "unbounded".to_owned();
     }
-    // Rounded first: 999.7 has its leading digit at 1000.
+    // Rounding comes first, since 999.7 becomes 1000 with another leading digit.
     let rounded: f64 = format!("{value:.2e}").parse().unwrap_or(value);
     if rounded == 0.0 {
         return "0".to_owned();
@@ -25,7 +26,7 @@ pub(crate) fn three(value: f64) -> String {
     if rounded < 0.0 { format!("−{text}") } else { text }
 }
 
-/// A share of variance: near 1, where three digits tell nothing, four decimals.
+/// A fraction of variance: four decimals near 1, where three digits say nothing.
 pub(crate) fn share(value: f64) -> String {
     if (0.99..1.0).contains(&value) { format!("{value:.4}") } else { three(value) }
 }
@@ -39,7 +40,7 @@ fn raised(exponent: &str) -> String {
             '1' => '¹',
             '2' => '²',
             '3' => '³',
-            // Digits 0 and 4 to 9 stand in a row.
+            // The superscripts of 0 and 4 to 9 have consecutive code points.
             c => c.to_digit(10).and_then(|d| char::from_u32(0x2070 + d)).unwrap_or(c),
         })
         .collect()
@@ -75,7 +76,8 @@ pub(crate) fn level(value: f64) -> String {
     power.map_or_else(|| digits.to_owned(), |power| format!("{digits} {power}"))
 }
 
-/// Labels of evenly spaced values: as few decimals as show each to a twentieth of the distance to its neighbour.
+/// Labels of evenly spaced values, with the fewest decimals that round each by at most a twentieth of the
+/// smallest spacing.
 pub(crate) fn ticks(values: &[f64]) -> Vec<String> {
     let gaps = values.windows(2).map(|pair| (pair[1] - pair[0]).abs());
     let gap = gaps.filter(|gap| *gap > 0.0).fold(f64::INFINITY, f64::min);

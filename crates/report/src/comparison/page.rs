@@ -1,4 +1,4 @@
-//! The page: texts, tables and plots put into the template.
+//! The page: fills texts, tables and plots into the template.
 
 use bulge_inference::{Comparison, LeftOut, Rows};
 use minijinja::syntax::SyntaxConfig;
@@ -14,7 +14,7 @@ use crate::explore::{Explore, policy, replaces};
 use crate::{PlotError, scripts};
 
 const TEMPLATE: &str = include_str!("report.html");
-/// What every page is made of: its look, and macros for plots and tables.
+/// Parts of every page: its style, and macros for plots and tables.
 const PIECES: [(&str, &str); 3] = [
     ("plots.css", scripts::STYLE),
     ("style.css", include_str!("style.css")),
@@ -28,21 +28,21 @@ pub(crate) struct Figure {
     name: &'static str,
     title: String,
     caption: String,
-    /// Whether the plots of rows stand for it where scripts run, as far as there are any.
+    /// Whether the interactive plots of rows replace it if scripts run and the page has such plots.
     replaced: bool,
-    /// Markup, which the template must not escape.
+    /// Markup that the template must not escape.
     svg: Value,
 }
 
 impl Figure {
-    /// A plot, and what is to be seen in it.
+    /// From a plot and the sentence about it.
     pub(crate) fn new(plot: Plot, says: String) -> Self {
         let Plot { name, title, caption, svg } = plot;
         Self { says, name, title, caption, replaced: replaces(name), svg: Value::from_safe_string(svg) }
     }
 }
 
-/// Everything that the template shows.
+/// All values of the template.
 #[derive(Serialize)]
 struct Page<'a> {
     muscle: &'a str,
@@ -91,15 +91,15 @@ struct Page<'a> {
 /// The page as HTML.
 ///
 /// # Errors
-/// If a plot can't be drawn, or the template not be filled in.
+/// A plot can't be drawn, or the template can't be filled in.
 pub(super) fn render(comparison: &Comparison, rows: Option<&Rows>) -> Result<String, PlotError> {
     filled("report.html", TEMPLATE, &page(comparison, rows)?)
 }
 
-/// A template with its values put in. It may use the pieces that every page has, and the filter `code`.
+/// A template filled in with its values. It may use the common parts of every page, and the filter `code`.
 ///
 /// # Errors
-/// If the template can't be filled in.
+/// The template can't be filled in.
 pub(crate) fn filled(name: &str, template: &str, values: &impl Serialize) -> Result<String, PlotError> {
     let failed = |error: minijinja::Error| PlotError::Page { reason: format!("{error:#}") };
     let mut environment = Environment::new();
@@ -117,11 +117,11 @@ pub(crate) fn filled(name: &str, template: &str, values: &impl Serialize) -> Res
     Ok(html.replace(|c: char| (c.is_control() && c != '\n') || matches!(c, '\u{FFFE}' | '\u{FFFF}'), " "))
 }
 
-/// The plots that show model and measurement themselves, for the page of a diagnosis: curves, errors over pressure and contraction, loops,
-/// contributions, fitted numbers.
+/// The plots that show model and measurement themselves, for the page of a diagnosis: curves, errors over
+/// pressure and contraction, loops, contributions, fitted parameters.
 ///
 /// # Errors
-/// If a plot can't be drawn.
+/// A plot can't be drawn.
 pub(crate) fn model_and_measurement(comparison: &Comparison) -> Result<Vec<Figure>, PlotError> {
     let figures = [
         (force::plot(comparison)?, force::says(comparison)),
@@ -134,10 +134,10 @@ pub(crate) fn model_and_measurement(comparison: &Comparison) -> Result<Vec<Figur
     Ok(figures.into_iter().filter_map(|(plot, says)| Some(Figure::new(plot?, says))).collect())
 }
 
-/// A text in which `commands` stand between backticks, as markup.
+/// A text as markup in which `commands` between backticks become code.
 fn code(text: &str) -> Value {
     let pieces: Vec<String> = text.split('`').map(|piece| HtmlEscape(piece).to_string()).collect();
-    // Backticks that don't come in pairs are letters.
+    // If the number of backticks is odd they are ordinary characters.
     if pieces.len().is_multiple_of(2) {
         return Value::from_safe_string(pieces.join("`"));
     }
@@ -154,7 +154,7 @@ fn page<'a>(comparison: &'a Comparison, rows: Option<&Rows>) -> Result<Page<'a>,
     let errors = breakdown::with_sentences(comparison)?;
     let (pairs, all_pairs) = correlations::pairs(comparison);
     let fit = wording::last_fit(comparison);
-    // What a fit warns of often stands among the warnings as well.
+    // Warnings of the fit are often among the warnings of the comparison too.
     let fit_warnings = fit.map(|fit| fit.warnings.clone()).unwrap_or_default();
     let fit_warnings =
         fit_warnings.into_iter().filter(|warning| !comparison.warnings.contains(warning)).collect();

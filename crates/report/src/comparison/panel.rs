@@ -1,20 +1,20 @@
-//! A panel of a plot: two axes with grid, ticks and names, and where a pair of values lies on it.
+//! A panel of a plot: two axes with grid, ticks and names, and the map from values to positions.
 
 use crate::axis::Axis;
 use crate::comparison::svg::{Anchor, Stroke, Style, Svg, TEXT, width};
 use crate::palette::{GRID, INK, SOFT_INK};
 
-/// Room left of a panel for tick labels and the name of its axis.
+/// Space left of a panel for tick labels and the name of its axis.
 pub(crate) const LEFT: f64 = 64.0;
-/// Room below it.
+/// Space below a panel.
 pub(crate) const BELOW: f64 = 46.0;
 
 /// A panel: axes and the rectangle that they span.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Panel {
-    /// Across.
+    /// Horizontal axis.
     pub(crate) x: Axis,
-    /// Upwards.
+    /// Vertical axis.
     pub(crate) y: Axis,
     /// Left edge.
     pub(crate) left: f64,
@@ -27,17 +27,17 @@ pub(crate) struct Panel {
 }
 
 impl Panel {
-    /// Where a value lies across.
+    /// Horizontal position of a value.
     pub(crate) fn across(&self, value: f64) -> f64 {
         self.left + self.width * self.x.share(value)
     }
 
-    /// Where a value lies upwards.
+    /// Vertical position of a value.
     pub(crate) fn up(&self, value: f64) -> f64 {
         self.top + self.height * (1.0 - self.y.share(value))
     }
 
-    /// Where a pair lies.
+    /// Position of a pair of values.
     pub(crate) fn at(&self, (x, y): (f64, f64)) -> (f64, f64) {
         (self.across(x), self.up(y))
     }
@@ -52,7 +52,7 @@ impl Panel {
         self.left + self.width
     }
 
-    /// Grid, ticks, their labels, names of the axes and a heading above.
+    /// Draws grid, ticks, their labels, names of the axes and a heading above.
     pub(crate) fn draw(&self, svg: &mut Svg, heading: &str, x_name: &str, y_name: &str) {
         self.draw_heading(svg, heading);
         self.draw_upwards(svg, y_name);
@@ -63,14 +63,14 @@ impl Panel {
         self.draw_across(svg, &labels, x_name);
     }
 
-    /// The heading, left-aligned with the panel.
+    /// Draws the heading, left-aligned with the panel.
     pub(crate) fn draw_heading(&self, svg: &mut Svg, heading: &str) {
         if !heading.is_empty() {
             svg.text((self.left, self.top - 14.0), heading, Style::new(Anchor::Start).bold());
         }
     }
 
-    /// The axis upwards with its grid.
+    /// Draws the vertical axis with its grid.
     pub(crate) fn draw_upwards(&self, svg: &mut Svg, name: &str) {
         for (value, label) in self.y.labels() {
             let y = self.up(value);
@@ -82,7 +82,7 @@ impl Panel {
         svg.text_upwards(middle, name, Style::new(Anchor::Middle).colour(SOFT_INK));
     }
 
-    /// The axis across with labels at places of its own, as many of them as there is room for.
+    /// Draws the horizontal axis with labels at given positions, as many of them as fit.
     pub(crate) fn draw_across(&self, svg: &mut Svg, labels: &[(f64, String)], name: &str) {
         let bottom = self.bottom();
         svg.line((self.left, bottom), (self.right(), bottom), Stroke::solid(INK, 1.0));
@@ -95,7 +95,7 @@ impl Panel {
     }
 }
 
-/// Every label, or every second, third, ... if they would touch.
+/// Every label, or only every second, third, ... if they would touch.
 fn with_room(labels: &[(f64, String)]) -> impl Iterator<Item = &(f64, String)> {
     let apart = |every: usize| {
         let kept: Vec<_> = labels.iter().step_by(every).collect();

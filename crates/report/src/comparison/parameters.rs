@@ -1,4 +1,4 @@
-//! Fitted numbers with their intervals, each on a scale of its own on which its plausible range is shaded.
+//! Fitted parameters with their intervals, each on its own scale with its plausible range shaded.
 
 use bulge_inference::{Comparison, Fitted};
 
@@ -16,10 +16,10 @@ const NAMES: f64 = 250.0;
 const NUMBERS: f64 = 250.0;
 /// Colour of a plausible range.
 const SHADE: RGBColor = RGBColor(222, 235, 222);
-/// How far a scale reaches beyond the plausible range, in widths of it.
+/// Most that a scale extends beyond the plausible range, in widths of that range.
 const BEYOND: f64 = 2.0;
 
-/// The plot; none if nothing was fitted.
+/// The plot; `None` if nothing was fitted.
 pub(crate) fn plot(comparison: &Comparison) -> Option<Plot> {
     let parameters = &last_fit(comparison)?.parameters;
     if parameters.is_empty() {
@@ -48,13 +48,14 @@ pub(crate) fn plot(comparison: &Comparison) -> Option<Plot> {
     })
 }
 
-/// Ends of the scale of a row: the plausible range and the interval, but at most [`BEYOND`] widths beyond the plausible range.
+/// Ends of the scale of a row: they cover the plausible range and the interval, but at most [`BEYOND`] widths
+/// beyond the plausible range.
 fn ends(parameter: &Fitted) -> (f64, f64) {
     let [low, high] = parameter.plausible_range;
     let finite = |ends: [f64; 2]| ends[0].is_finite() && ends[1].is_finite() && ends[1] > ends[0];
     let size = parameter.value.abs().max(1e-300);
     if !finite([low, high]) {
-        // No range to compare with: the interval fills the middle.
+        // Without a plausible range the interval fills the middle.
         let [a, b] = [parameter.low, parameter.high];
         let half = if finite([a, b]) { b - a } else { size };
         return (parameter.value - half, parameter.value + half);
@@ -67,7 +68,7 @@ fn ends(parameter: &Fitted) -> (f64, f64) {
     (least - margin, most + margin)
 }
 
-/// Colour of a value by what is to be said about it.
+/// Colour of a value, by the remarks on it.
 fn colour(parameter: &Fitted) -> RGBColor {
     if !parameter.plausible || parameter.at_bound.is_some() || !parameter.determined {
         ALERT
@@ -83,7 +84,7 @@ fn draw(svg: &mut Svg, parameter: &Fitted, (y, row): (f64, f64)) {
     let (left, right) = (NAMES, WIDTH - NUMBERS);
     let place = |v: f64| {
         let share = (v - low) / (high - low);
-        // An open end goes to the edge.
+        // An unbounded end is drawn at the edge.
         left + (right - left) * if share.is_nan() { 0.5 } else { share.clamp(0.0, 1.0) }
     };
     let ink = colour(parameter);
@@ -112,7 +113,7 @@ pub(crate) fn says(comparison: &Comparison) -> String {
     fitted_says(comparison) + &held_says(comparison)
 }
 
-/// What was held or tied; empty if nothing was.
+/// The parameters that were fixed or tied; empty if there are none.
 fn held_says(comparison: &Comparison) -> String {
     let held = comparison.ladder.last().map_or(&[][..], |rung| &rung.held);
     if held.is_empty() {

@@ -1,4 +1,4 @@
-//! Fitted numbers as rows of a table, with what is to be said about each.
+//! Fitted parameters as rows of a table, with remarks on each.
 
 use bulge_inference::{Comparison, Fitted};
 use serde::Serialize;
@@ -22,7 +22,7 @@ pub(super) struct Row {
     notes: Vec<String>,
 }
 
-/// All fitted numbers of the last rung.
+/// All fitted parameters of the last rung.
 pub(super) fn rows(comparison: &Comparison) -> Vec<Row> {
     last_fit(comparison).map(|fit| fit.parameters.iter().map(row).collect()).unwrap_or_default()
 }
@@ -68,7 +68,7 @@ fn row(parameter: &Fitted) -> Row {
     }
 }
 
-/// `effect: name`, with the specimen if each has its own.
+/// `effect: name`, with the specimen if each specimen has its own value.
 pub(super) fn label(parameter: &Fitted) -> String {
     match &parameter.specimen {
         Some(specimen) => format!("{}: {} ({specimen})", parameter.effect, parameter.name),
@@ -85,7 +85,7 @@ fn with_unit(value: &str, unit: &str) -> String {
     if unit.is_empty() || unit == "1" { value.to_owned() } else { format!("{value} {unit}") }
 }
 
-/// Value and ends of the interval, so that the interval can be seen.
+/// Value and ends of the interval, with enough decimals to show the interval.
 fn shown(parameter: &Fitted) -> [String; 3] {
     let ends = [parameter.low, parameter.high];
     match with_interval(parameter.value, ends) {

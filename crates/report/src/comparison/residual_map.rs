@@ -1,4 +1,4 @@
-//! Mean residuals over pressure and contraction as coloured cells: one map for each direction, before and after.
+//! Mean residuals over pressure and contraction as coloured cells: one map per direction, before and after.
 
 use bulge_inference::{Comparison, ResidualMap};
 use plotters::style::{RGBColor, WHITE};
@@ -13,15 +13,15 @@ use crate::palette::{INK, SOFT_INK, signed};
 const LEFT: f64 = 64.0;
 const HEAD: f64 = 30.0;
 const BELOW: f64 = 48.0;
-/// Size of the numbers in cells.
+/// Font size of the numbers in cells.
 const SMALL: f64 = 10.0;
 /// Height of the colour scale with its labels.
 const SCALE: f64 = 56.0;
 
-/// The plot; none without a map that has cells.
+/// The plot; `None` without a map that has cells.
 ///
 /// # Errors
-/// None at present; kept like that of the other plots.
+/// None at present: the signature is that of the other plots.
 #[expect(clippy::unnecessary_wraps, reason = "all plots are called alike")]
 pub(crate) fn plot(comparison: &Comparison) -> Result<Option<Plot>, PlotError> {
     let maps: Vec<&ResidualMap> = comparison.maps.iter().filter(|map| !map.first_n.is_empty()).collect();
@@ -45,7 +45,7 @@ pub(crate) fn plot(comparison: &Comparison) -> Result<Option<Plot>, PlotError> {
                 width: each - LEFT - 16.0,
                 height: *height,
             };
-            // Single readings have no direction to name.
+            // Single readings have no direction.
             let heading =
                 if comparison.data.is_path { format!("{}, {name}", map.direction) } else { sentence(name) };
             svg.text((grid.left, grid.top - 13.0), &heading, Style::new(Anchor::Start).bold());
@@ -81,11 +81,11 @@ fn caption(comparison: &Comparison) -> String {
     )
 }
 
-/// Error at the ends of the colours of the first and the last rung \[N\].
+/// Error at the ends of the colour scale, for the first and the last rung \[N\].
 fn scales(comparison: &Comparison, maps: &[&ResidualMap]) -> [f64; 2] {
     let largest = |values: fn(&ResidualMap) -> &Vec<Option<f64>>| {
         let cells = maps.iter().flat_map(|map| values(map)).flatten();
-        // Of a perfect model every cell is white, whatever the scale.
+        // A perfect model has only white cells, whatever the scale; the minimum avoids a division by zero.
         cells.fold(0.0_f64, |most, cell| most.max(cell.abs())).max(1e-9 * comparison.data.full_scale_n.abs())
     };
     let floor = comparison.noise_floor.as_ref().map_or(0.0, |floor| 3.0 * floor.sd_n);
@@ -93,7 +93,7 @@ fn scales(comparison: &Comparison, maps: &[&ResidualMap]) -> [f64; 2] {
         .map(|most| most.max(f64::MIN_POSITIVE))
 }
 
-/// Where a map is drawn.
+/// Position of a map.
 struct Grid {
     left: f64,
     top: f64,
@@ -105,7 +105,7 @@ impl Grid {
     fn draw(&self, svg: &mut Svg, map: &ResidualMap, values: &[Option<f64>], most: f64) {
         let (rows, columns) = (map.pressure_pa.len(), map.contraction.len());
         let size = (self.width / columns as f64, self.height / rows as f64);
-        // The highest pressure on top, as in the plots of the force.
+        // The highest pressure is on top, as in the plots of the force.
         for (i, value) in values.iter().enumerate() {
             let (row, column) = (i / columns, i % columns);
             let corner = (self.left + column as f64 * size.0, self.top + (rows - 1 - row) as f64 * size.1);
@@ -146,7 +146,7 @@ impl Grid {
     }
 }
 
-/// The number in its cell, where there is room for it.
+/// Draws the number in its cell if it fits.
 fn draw_value(svg: &mut Svg, middle: (f64, f64), size: (f64, f64), value: f64, most: f64) {
     let words = cell(value, most);
     if width(&words, SMALL) + 3.0 < size.0 && size.1 >= 14.0 {
@@ -155,14 +155,14 @@ fn draw_value(svg: &mut Svg, middle: (f64, f64), size: (f64, f64), value: f64, m
     }
 }
 
-/// A number with two digits at the end of the scale, and as many decimals everywhere.
+/// A number with two digits at the end of the scale, and the same number of decimals in all cells.
 fn cell(value: f64, most: f64) -> String {
     let decimals = [10.0, 1.0, 0.1, 0.01].iter().filter(|size| most < **size).count();
     let text = format!("{:.decimals$}", value.abs());
     if value < 0.0 && text.contains(|c| c != '0' && c != '.') { format!("−{text}") } else { text }
 }
 
-/// The colours with their forces, below the maps of a rung.
+/// Draws the colour scale with its forces below the maps of a rung.
 fn draw_scale(svg: &mut Svg, (start, top): (f64, f64), width: f64, most: f64) {
     let (length, steps) = (width - 190.0, 41);
     let left = start + 95.0;

@@ -1,4 +1,4 @@
-//! Force laws of the papers on the same data, beside the model.
+//! Force laws of the literature on the same data, beside the model.
 
 use bulge_inference::Comparison;
 use serde::Serialize;
@@ -6,7 +6,7 @@ use serde::Serialize;
 use crate::comparison::number::{newton, three};
 use crate::comparison::wording::{last_model, sentence};
 
-/// One row: forces in N.
+/// One row, with forces in N.
 #[derive(Debug, Serialize)]
 pub(super) struct Row {
     title: String,
@@ -21,7 +21,8 @@ pub(super) struct Row {
     own: bool,
 }
 
-/// The laws and the last rung, the smallest error first; laws that could not be fitted last. None without laws.
+/// The laws and the last rung, smallest error first; laws that could not be fitted come last. Empty without
+/// laws.
 pub(super) fn rows(comparison: &Comparison) -> Vec<Row> {
     if comparison.rivals.is_empty() {
         return Vec::new();

@@ -1,4 +1,4 @@
-//! Predicted against measured force, before and after, with the line on which both are equal.
+//! Predicted against measured force, before and after, with the line of equality.
 
 use bulge_inference::Comparison;
 
@@ -14,10 +14,10 @@ use crate::palette::{FIRST, INK, LAST};
 const HEAD: f64 = 34.0;
 const HEIGHT: f64 = 360.0;
 
-/// The plot; none without rows.
+/// The plot; `None` without rows.
 ///
 /// # Errors
-/// If the forces span more than an axis.
+/// The range of the forces overflows.
 pub(super) fn plot(comparison: &Comparison) -> Result<Option<Plot>, PlotError> {
     let rows = &comparison.scatter;
     if rows.is_empty() {
@@ -27,7 +27,7 @@ pub(super) fn plot(comparison: &Comparison) -> Result<Option<Plot>, PlotError> {
     let values = || rows.iter().flat_map(|row| row.iter().take(1 + names.len())).copied();
     let axis = Axis::with_intervals(values(), 6.0).ok_or_else(|| PlotError::span("force [N]", values()))?;
     let mut svg = Svg::new("scatter", WIDTH, HEAD + HEIGHT + BELOW);
-    // A panel that is alone stands in the middle.
+    // A single panel is centred.
     let aside = if names.len() == 1 { 0.25 * WIDTH } else { 0.0 };
     for (i, ((left, width), name)) in columns(2, WIDTH).into_iter().zip(&names).enumerate() {
         let left = left + aside;

@@ -1,7 +1,8 @@
-//! A drawing as an SVG document: text stays text, lengths are in CSS pixels, the same calls give the same bytes.
+//! A drawing as an SVG document: text remains text, lengths are in CSS pixels, and the same calls give the
+//! same bytes.
 //!
-//! Plotters draws one element for every mark, in whole units, and knows neither hatching nor tabular figures; a report holds thousands of marks
-//! and is read on paper.
+//! Plotters draws one element for every mark, in whole units, and supports neither hatching nor tabular
+//! figures. A report contains thousands of marks and is read on paper.
 
 use std::fmt::{self, Write};
 
@@ -9,13 +10,13 @@ use plotters::style::RGBColor;
 
 use crate::palette::{INK, hex};
 
-/// Fonts that every system has in some form; figures of equal width.
+/// Fonts that every system has in some form, with figures of equal width.
 const FONTS: &str = "system-ui, -apple-system, 'Segoe UI', Roboto, 'Helvetica Neue', Arial, sans-serif";
 
-/// Size of usual text.
+/// Size of normal text.
 pub(crate) const TEXT: f64 = 12.0;
 
-/// Size of usual text by which the width of a heading is judged: bold letters are wider.
+/// Size of normal text with the width of a heading: bold letters are wider.
 pub(crate) const BOLD: f64 = 1.12 * TEXT;
 
 /// A drawing in progress.
@@ -27,21 +28,21 @@ pub(crate) struct Svg {
     hatched: bool,
 }
 
-/// Where a text stands relative to its point.
+/// Position of a text relative to its point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Anchor {
-    /// It begins there.
+    /// The text begins at the point.
     Start,
-    /// Its middle is there.
+    /// The text is centred at the point.
     Middle,
-    /// It ends there.
+    /// The text ends at the point.
     End,
 }
 
-/// How a text looks.
+/// Appearance of a text.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Style {
-    /// Relative to its point.
+    /// Position relative to its point.
     pub(crate) anchor: Anchor,
     /// Height of the font.
     pub(crate) size: f64,
@@ -52,35 +53,35 @@ pub(crate) struct Style {
 }
 
 impl Style {
-    /// Usual text.
+    /// Normal text.
     pub(crate) const fn new(anchor: Anchor) -> Self {
         Self { anchor, size: TEXT, colour: INK, bold: false }
     }
 
-    /// The same as a heading.
+    /// The same style as a heading.
     pub(crate) const fn bold(self) -> Self {
         Self { bold: true, ..self }
     }
 
-    /// The same in another colour.
+    /// The same style in another colour.
     pub(crate) const fn colour(self, colour: RGBColor) -> Self {
         Self { colour, ..self }
     }
 
-    /// The same in another size.
+    /// The same style in another size.
     pub(crate) const fn size(self, size: f64) -> Self {
         Self { size, ..self }
     }
 }
 
-/// How a line looks.
+/// Appearance of a line.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Stroke {
     /// Colour.
     pub(crate) colour: RGBColor,
     /// Width.
     pub(crate) width: f64,
-    /// Lengths of dashes and gaps; none for a solid line.
+    /// Lengths of dashes and gaps; `None` for a solid line.
     pub(crate) dashes: Option<&'static str>,
 }
 
@@ -102,23 +103,23 @@ impl Stroke {
 }
 
 impl Svg {
-    /// An empty drawing; `name` keeps the ids of several drawings on one page apart.
+    /// An empty drawing. `name` makes its ids unique among several drawings on one page.
     pub(crate) fn new(name: &'static str, width: f64, height: f64) -> Self {
         Self { name, width, height, body: String::new(), hatched: false }
     }
 
     /// Adds markup.
     fn put(&mut self, markup: fmt::Arguments<'_>) {
-        // A `String` takes all that is written to it.
+        // Writing to a `String` can't fail.
         let _ = self.body.write_fmt(markup);
     }
 
-    /// A text whose middle line is at `y`.
+    /// Adds a text whose middle line is at `y`.
     pub(crate) fn text(&mut self, (x, y): (f64, f64), words: &str, style: Style) {
         self.words(words, style, &format!(r#"x="{}" y="{}""#, short(x), short(y)));
     }
 
-    /// A text that reads upwards, its middle at the point.
+    /// Adds a text that reads upwards, centred at the point.
     pub(crate) fn text_upwards(&mut self, (x, y): (f64, f64), words: &str, style: Style) {
         let (x, y) = (short(x), short(y));
         self.words(words, style, &format!(r#"x="{x}" y="{y}" transform="rotate(-90 {x} {y})""#));
@@ -139,7 +140,7 @@ impl Svg {
         ));
     }
 
-    /// A straight line.
+    /// Adds a straight line.
     pub(crate) fn line(&mut self, (x1, y1): (f64, f64), (x2, y2): (f64, f64), stroke: Stroke) {
         self.put(format_args!(
             "<line x1=\"{}\" y1=\"{}\" x2=\"{}\" y2=\"{}\" {}/>\n",
@@ -151,7 +152,7 @@ impl Svg {
         ));
     }
 
-    /// A line through points.
+    /// Adds a line through points.
     pub(crate) fn polyline(&mut self, points: &[(f64, f64)], stroke: Stroke) {
         if points.len() < 2 {
             return;
@@ -163,14 +164,14 @@ impl Svg {
         ));
     }
 
-    /// A filled area.
+    /// Adds a filled area.
     pub(crate) fn polygon(&mut self, points: &[(f64, f64)], fill: RGBColor) {
         if points.len() >= 3 {
             self.put(format_args!("<polygon points=\"{}\" fill=\"{}\"/>\n", listed(points), hex(fill)));
         }
     }
 
-    /// A filled area through which one sees what lies below.
+    /// Adds a transparent filled area.
     pub(crate) fn veil(&mut self, points: &[(f64, f64)], fill: RGBColor, opacity: f64) {
         if points.len() >= 3 {
             self.put(format_args!(
@@ -182,12 +183,12 @@ impl Svg {
         }
     }
 
-    /// A filled rectangle; a negative size extends to the other side.
+    /// Adds a filled rectangle; a negative size extends to the other side.
     pub(crate) fn rect(&mut self, corner: (f64, f64), size: (f64, f64), fill: RGBColor) {
         self.rectangle(corner, size, &hex(fill));
     }
 
-    /// A hatched rectangle.
+    /// Adds a hatched rectangle.
     pub(crate) fn hatch(&mut self, corner: (f64, f64), size: (f64, f64)) {
         self.hatched = true;
         let fill = format!("url(#{}-hatch)", self.name);
@@ -204,7 +205,7 @@ impl Svg {
         ));
     }
 
-    /// Round dots, all in one element: lines of no length with round caps.
+    /// Adds round dots, all in one element: lines of zero length with round caps.
     pub(crate) fn dots(&mut self, points: &[(f64, f64)], radius: f64, colour: RGBColor, opacity: f64) {
         if points.is_empty() {
             return;
@@ -220,7 +221,7 @@ impl Svg {
         ));
     }
 
-    /// A diamond with a light edge, which stands out on bars.
+    /// Adds a diamond with a light edge, which stands out on bars.
     pub(crate) fn diamond(&mut self, (x, y): (f64, f64), radius: f64, colour: RGBColor) {
         let points = [(x - radius, y), (x, y - radius), (x + radius, y), (x, y + radius)];
         self.put(format_args!(
@@ -252,7 +253,7 @@ impl Svg {
     }
 }
 
-/// A coordinate to a tenth of a pixel, an opacity or width to a hundredth.
+/// A coordinate rounded to a tenth of a pixel, an opacity or width to a hundredth.
 fn short(value: f64) -> String {
     let text = if value.abs() < 3.0 { format!("{value:.2}") } else { format!("{value:.1}") };
     let text = text.trim_end_matches('0').trim_end_matches('.');
@@ -263,7 +264,7 @@ fn listed(points: &[(f64, f64)]) -> String {
     points.iter().map(|(x, y)| format!("{},{}", short(*x), short(*y))).collect::<Vec<_>>().join(" ")
 }
 
-/// Text as XML: control characters aren't allowed in it at all.
+/// Text as XML, in which control characters aren't allowed.
 fn escape(words: &str) -> String {
     let mut text = String::with_capacity(words.len());
     for letter in words.chars() {
@@ -280,7 +281,7 @@ fn escape(words: &str) -> String {
     text
 }
 
-/// About how wide a text is, with the widest of the usual fonts in mind.
+/// Approximate width of a text, estimated for the widest of the usual fonts.
 pub(crate) fn width(words: &str, size: f64) -> f64 {
     let letter = |c: char| match c {
         'i' | 'j' | 'l' | '.' | ',' | ':' | ';' | '|' | '\'' | '!' | ' ' | 'I' => 0.36,
@@ -294,7 +295,7 @@ pub(crate) fn width(words: &str, size: f64) -> f64 {
     size * words.chars().map(letter).sum::<f64>()
 }
 
-/// The text, or as much of its beginning as fits into `room`, with an ellipsis.
+/// The text, shortened at the end with an ellipsis if it doesn't fit into `room`.
 pub(crate) fn fitted(words: &str, size: f64, room: f64) -> String {
     if width(words, size) <= room {
         return words.to_owned();
@@ -309,7 +310,7 @@ pub(crate) fn fitted(words: &str, size: f64, room: f64) -> String {
     format!("{}…", kept.trim_end())
 }
 
-/// The name, or its beginning and its end with an ellipsis between them: names of a series differ at the end.
+/// The name, shortened in the middle with an ellipsis if it doesn't fit: names of a series differ at the end.
 pub(crate) fn name_fitted(name: &str, size: f64, room: f64) -> String {
     if width(name, size) <= room {
         return name.to_owned();

@@ -1,4 +1,4 @@
-//! Words that several sections share: which side an error lies on, and from which size on it is worth a word.
+//! Wording that several sections share: the sign of an error, and the size from which an error is mentioned.
 
 use bulge_inference::{Comparison, Fit};
 
@@ -9,7 +9,7 @@ pub(crate) fn has_effects(comparison: &Comparison) -> bool {
     comparison.ladder.len() > 1
 }
 
-/// The model on the last rung, in a sentence.
+/// The model on the last rung, in words.
 pub(super) fn last_model(comparison: &Comparison) -> &'static str {
     if has_effects(comparison) { "the model with all effects" } else { "the base" }
 }
@@ -28,30 +28,31 @@ pub(super) fn pulls(error_n: f64) -> String {
     format!("pulls {} {side}", newton(error_n.abs()))
 }
 
-/// An error below this isn't worth a word \[N\]: the noise floor, or half a per cent of full scale where there is none.
+/// Errors below this are not mentioned \[N\]: the noise floor, or half a per cent of full scale if there is
+/// none.
 pub(super) fn negligible_n(comparison: &Comparison) -> f64 {
     comparison.noise_floor.as_ref().map_or(0.005 * comparison.data.full_scale_n.abs(), |floor| floor.sd_n)
 }
 
-/// The fit of the last rung in which something was fitted.
+/// The fit of the last rung that fitted anything.
 pub(super) fn last_fit(comparison: &Comparison) -> Option<&Fit> {
     let mut fits = comparison.ladder.iter().rev().filter_map(|rung| rung.fit.as_ref());
     fits.find(|fit| !fit.parameters.is_empty())
 }
 
-/// `specimen A`, `sweep “3, after the break”`: a name of several words stands in quotes.
+/// `specimen A`, `sweep “3, after the break”`: a name of several words is quoted.
 pub(super) fn named(what: &str, name: &str) -> String {
     let is_one_word = name.chars().all(|c| c.is_alphanumeric() || c == '-' || c == '_');
     if is_one_word { format!("{what} {name}") } else { format!("{what} “{}”", name.trim()) }
 }
 
-/// The title of an effect, or its name if it is on no rung.
+/// The title of an effect, or its name if no rung has it.
 pub(crate) fn effect_title<'a>(comparison: &'a Comparison, effect: &'a str) -> &'a str {
     let rung = comparison.ladder.iter().find(|rung| rung.added.as_deref() == Some(effect));
     rung.map_or(effect, |rung| &rung.title)
 }
 
-/// A first letter as at the beginning of a sentence.
+/// The words with a capital first letter.
 pub(crate) fn sentence(words: &str) -> String {
     let mut letters = words.chars();
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())

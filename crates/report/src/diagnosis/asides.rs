@@ -1,8 +1,9 @@
-//! What stands beside a verdict in its first lines: what could not be looked for and could be the answer, and the geometry that it depends on.
+//! First lines beside a verdict: effects that could be the answer but could not be tested, and the geometry
+//! on which the verdict depends.
 
 use bulge_inference::Diagnosis;
 
-/// Effects of one reason that are named.
+/// Most effects named for one reason.
 const MOST_NAMES: usize = 6;
 
 /// Lines that begin with `not looked for: ` or `geometry: `.

@@ -1,4 +1,5 @@
-//! An effect as its formula has it, and as the data want it: what a researcher learns a new formula from.
+//! An effect by its formula, and with the form error that the data suggest: the starting point for a new
+//! formula.
 
 use bulge_inference::{BentCurve, Diagnosis, Missing};
 
@@ -12,13 +13,13 @@ use crate::palette::SOFT_INK;
 
 /// Names of the drawings; a search adds no more effects.
 const NAMES: [&str; 3] = ["bent-1", "bent-2", "bent-3"];
-/// Half of the 95 % interval in standard deviations.
+/// Half-width of the 95 % interval in standard deviations.
 const SURE: f64 = 1.96;
 
-/// One plot for each effect whose formula the data bend, with the sentence above it.
+/// One plot for each effect with a form error, with the sentence above it.
 ///
 /// # Errors
-/// If the forces span more than an axis.
+/// The range of the forces overflows.
 pub(super) fn with_sentences(diagnosis: &Diagnosis) -> Result<Vec<(Plot, String)>, PlotError> {
     let bent = diagnosis.added().filter_map(|missing| {
         let curves = &missing.form_error.as_ref()?.curves;

@@ -13,15 +13,15 @@ use crate::comparison::wording::sentence;
 use crate::comparison::{Plot, WIDTH};
 use crate::palette::{ALERT, FIRST, GRID, LAST, SOFT_INK};
 
-/// Bars at most.
+/// Most bars.
 const MOST: usize = 28;
-/// Bars to the left end here.
+/// Bars further to the left end here.
 const LEAST: f64 = -20.0;
 const NAMES: f64 = 190.0;
 const NUMBERS: f64 = 190.0;
 const ROW: f64 = 21.0;
 
-/// What was tried, the largest evidence first.
+/// The candidates that were tried, largest evidence first.
 fn tried(diagnosis: &Diagnosis) -> Vec<&CandidateResult> {
     let mut tried: Vec<&CandidateResult> =
         diagnosis.candidates.iter().filter(|c| c.status != "not-testable").collect();
@@ -29,10 +29,10 @@ fn tried(diagnosis: &Diagnosis) -> Vec<&CandidateResult> {
     tried
 }
 
-/// The plot; none if nothing could be tried.
+/// The plot; `None` if no effect could be tried.
 ///
 /// # Errors
-/// If the evidence spans more than an axis.
+/// The range of the evidence overflows.
 pub(super) fn plot(diagnosis: &Diagnosis) -> Result<Option<Plot>, PlotError> {
     let all = tried(diagnosis);
     let rows = &all[..all.len().min(MOST)];
@@ -151,7 +151,7 @@ pub(super) fn says(diagnosis: &Diagnosis) -> String {
     )
 }
 
-/// Effects that could not be looked for, and why.
+/// Effects that could not be tested, with the reason.
 pub(super) fn untested(diagnosis: &Diagnosis) -> Vec<(String, String)> {
     let untested = diagnosis.candidates.iter().filter(|c| c.status == "not-testable");
     let why =

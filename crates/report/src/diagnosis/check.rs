@@ -1,11 +1,12 @@
-//! Whether a diagnosis can be drawn: finite numbers, and lists that belong together of the same length.
+//! Checks that a diagnosis can be drawn: numbers are finite, and corresponding lists have the same length.
 
 use bulge_inference::Diagnosis;
 
 use crate::PlotError;
 use crate::comparison::check::{check as check_comparison, finite, lengths};
 
-/// Refuses what would end as a gap or a `NaN` in a drawing. Intervals of numbers may be open, and evidence may be that of a failed fit.
+/// Rejects values that would appear as a gap or a `NaN` in a drawing. Intervals of parameters may be
+/// unbounded, and evidence may come from a failed fit.
 ///
 /// # Errors
 /// [`PlotError::Value`] and [`PlotError::Lengths`].

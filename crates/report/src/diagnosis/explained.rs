@@ -1,4 +1,4 @@
-//! What each added effect explains: the misfit before it as dots, what it adds as a line.
+//! What each added effect explains: the misfit before it as dots, its contribution as a line.
 
 use bulge_inference::{Diagnosis, ExplainedStep};
 
@@ -17,12 +17,12 @@ const NAMES: [&str; 6] =
 /// One plot for each step that has curves.
 ///
 /// # Errors
-/// If the forces span more than an axis.
+/// The range of the forces overflows.
 pub(super) fn plots(diagnosis: &Diagnosis) -> Result<Vec<Plot>, PlotError> {
     Ok(with_sentences(diagnosis)?.into_iter().map(|(plot, _)| plot).collect())
 }
 
-/// The same with the sentence above each.
+/// The plots, each with the sentence above it.
 ///
 /// # Errors
 /// As [`plots`].
@@ -68,7 +68,7 @@ fn plot(step: &ExplainedStep, name: &'static str, branches: [&'static str; 2]) -
     })
 }
 
-/// The sentence above a plot: part of the squared mean misfit that the step takes away.
+/// The sentence above a plot: the fraction of the squared mean misfit that the step removes.
 fn says(step: &ExplainedStep) -> String {
     let pairs = || step.curves.iter().flat_map(|c| c.before_n.iter().zip(&c.explained_n));
     let count = pairs().count().max(1) as f64;

@@ -6,29 +6,30 @@ use crate::comparison::number::{newton, three};
 use crate::diagnosis::asides::asides;
 use crate::diagnosis::words::chance;
 
-/// Words after which two sentences are about the same.
+/// Two sentences that share this number of first words are considered the same.
 const ALIKE: usize = 4;
-/// By how much a mechanism is surer than a family for both to be said.
+/// Smallest difference in confidence between mechanism and effect for both to be given.
 const SURER: f64 = 0.05;
-/// What a verdict that names effects begins with.
+/// Beginning of a verdict that names effects.
 const MISSING: &str = "missing: ";
-/// What a diagnosis without a verdict may begin with.
+/// Possible beginning of a diagnosis without a verdict.
 const CANNOT_TELL: &str = "these data can't tell: ";
-/// Verdicts in words, where the diagnosis has none of its own.
+/// Wording of verdicts for which the diagnosis has no sentence of its own.
 const ADEQUATE: &str = "the model explains these data within noise and tolerance";
 const UNKNOWN: &str = "these data hold a structure that no effect of the catalogue explains";
 const TOO_FEW: &str = "these data are too few or too noisy for a verdict";
 
-/// The verdict, one line for each thing that it says; each begins with `missing: `, `remains: `, `adequate: `, `unknown: `, `cannot tell: `, `nearest: `,
-/// `not looked for: ` or `geometry: `.
+/// The verdict, one line per statement. Each line begins with `missing: `, `remains: `, `adequate: `,
+/// `unknown: `, `cannot tell: `, `nearest: `, `not looked for: ` or `geometry: `.
 ///
 /// ```text
 /// missing: bladder-elasticity (rubber; on data like these such a claim is right 97 % of the time)
 /// ```
-/// A claim that the data decide no further than to the mechanism or the class is said as that: `missing: dry friction, likeliest force-friction`,
-/// `missing: one of fibre-stretch, end-slip`. What is missing comes first, then that something remains. Effects that were tried on the way to another verdict are
-/// `nearest: `: nothing is claimed of them. Where the diagnosis has a sentence of its own for the verdict, with numbers, it is the line. Last come effects that could be the answer and were not looked for,
-/// and the geometry that all this depends on.
+/// If the data decide only the mechanism or the class, the claim says so: `missing: dry friction, likeliest
+/// force-friction`, `missing: one of fibre-stretch, end-slip`. Missing effects come first, then the statement
+/// that something remains. Effects tried on the way to another verdict are `nearest: `: nothing is claimed of
+/// them. If the diagnosis has its own sentence with numbers for the verdict, that sentence is the line. Last
+/// come effects that could be the answer but were not tested, and the geometry on which all this depends.
 #[must_use]
 pub fn headlines(diagnosis: &Diagnosis) -> Vec<String> {
     let mut lines = verdict(diagnosis);
@@ -94,7 +95,7 @@ fn verdict(diagnosis: &Diagnosis) -> Vec<String> {
     std::iter::once(format!("{verdict}: {says}")).chain(rest).collect()
 }
 
-/// How large a structure is: where it can't be told from none, how large it may be at most.
+/// Size of a structure; if it can't be distinguished from zero, its upper limit.
 fn structure(remaining: &Remaining) -> String {
     if remaining.misfit_n > 0.0 {
         newton(remaining.misfit_n)
@@ -103,7 +104,7 @@ fn structure(remaining: &Remaining) -> String {
     }
 }
 
-/// The sentence of the diagnosis, as far as it says more than [`headlines`] do.
+/// The sentence of the diagnosis, if it says more than [`headlines`].
 #[must_use]
 pub fn further(diagnosis: &Diagnosis) -> Option<&str> {
     let says = diagnosis.says.trim();
@@ -123,7 +124,8 @@ fn opens_alike(a: &str, b: &str) -> bool {
     a.eq(b)
 }
 
-/// As what a missing effect was fitted, and which other forms of the same mechanism would do; none if it stands alone under its own name.
+/// The form in which a missing effect was fitted, and the other forms of the same mechanism that would do;
+/// `None` if it is the only one and was fitted under its own name.
 #[must_use]
 pub fn forms_says(missing: &Missing) -> Option<String> {
     let fitted = (missing.fitted != missing.effect)
@@ -134,7 +136,7 @@ pub fn forms_says(missing: &Missing) -> Option<String> {
     (!parts.is_empty()).then(|| parts.join("; "))
 }
 
-/// How much the data bend the formula of a missing effect; none where it is exact.
+/// The size of the form error of a missing effect; `None` if its formula is exact.
 #[must_use]
 pub fn bending_says(missing: &Missing) -> Option<String> {
     let error = missing.form_error.as_ref()?;
@@ -152,7 +154,7 @@ pub fn bending_says(missing: &Missing) -> Option<String> {
     ))
 }
 
-/// Effects that the data can't tell from a missing one, without itself.
+/// The other effects that the data can't distinguish from a missing one.
 pub fn others_in_class(missing: &Missing) -> impl Iterator<Item = &str> {
     missing.class.iter().map(String::as_str).filter(|name| *name != missing.effect)
 }

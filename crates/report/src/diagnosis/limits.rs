@@ -1,4 +1,4 @@
-//! What these data could have shown: detection limits as rows of a table.
+//! Detection limits of these data as rows of a table.
 
 use bulge_inference::{CandidateResult, Diagnosis};
 use serde::Serialize;
@@ -16,7 +16,7 @@ pub(super) struct Row {
     score: String,
 }
 
-/// Effects that could be looked for, in the order of the catalogue's names.
+/// Effects that could be tested, in the order of their names in the catalogue.
 pub(super) fn rows(diagnosis: &Diagnosis) -> Vec<Row> {
     let mut rows: Vec<Row> = limited(diagnosis).map(row).collect();
     rows.sort_by(|a, b| a.effect.cmp(&b.effect));

@@ -1,4 +1,4 @@
-//! On what the misfit of the base depends: shares as bars.
+//! The variables on which the misfit of the base depends: fractions as bars.
 
 use bulge_inference::{Diagnosis, Located};
 
@@ -16,10 +16,10 @@ const NUMBERS: f64 = 510.0;
 const ROW: f64 = 26.0;
 const TOP: f64 = 8.0;
 
-/// The plot; none if the misfit depends on nothing that was looked at.
+/// The plot; `None` if the misfit depends on none of the variables examined.
 ///
 /// # Errors
-/// None at present; kept like that of the other plots.
+/// None at present: the signature is that of the other plots.
 pub(super) fn plot(diagnosis: &Diagnosis) -> Result<Option<Plot>, PlotError> {
     let rows = &diagnosis.r#where;
     if rows.is_empty() {

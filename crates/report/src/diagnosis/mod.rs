@@ -1,11 +1,14 @@
-//! The report of a diagnosis: one page that stands for itself, each of its plots, and the sentences that it shares with the command line.
+//! The report of a diagnosis: one self-contained page, each of its plots, and the sentences that it shares
+//! with the command line.
 //!
 //! ```text
-//! html(&diagnosis)?      -> report.html, without network or fonts of its own; its rows can be asked
+//! html(&diagnosis)?      -> report.html, without network or fonts of its own; its plots of rows are interactive
 //! plots(&diagnosis)?     -> NAME.svg for each plot
 //! headlines(&diagnosis)  -> the verdict in plain words
 //! ```
-//! Numbers come from the diagnosis alone: nothing is fitted or predicted here. A misfit is measured - model throughout.
+//!
+//! All numbers come from the diagnosis: nothing is fitted or predicted here. A misfit is measured - model
+//! throughout.
 
 mod asides;
 mod bent;
@@ -35,7 +38,8 @@ pub use words::{base_name, chance, found_by, is_significant, noise_says, once_in
 /// The page: one HTML document with the verdict, all plots and tables, readable on screen and on paper.
 ///
 /// # Errors
-/// A number that isn't finite, lists of different lengths that belong together, or values too far apart for an axis.
+/// A number isn't finite, lists that should have the same length don't, or the range of the values on an axis
+/// overflows.
 ///
 /// # Examples
 /// ```
@@ -57,7 +61,8 @@ pub fn html(diagnosis: &Diagnosis) -> Result<String, PlotError> {
     page::render(diagnosis)
 }
 
-/// The plots for which there are numbers, in the order of the page: those of the diagnosis, then those of its comparison.
+/// The plots for which there are numbers, in the order of the page: the plots of the diagnosis, then those of
+/// its comparison.
 ///
 /// # Errors
 /// As [`html`].
@@ -71,7 +76,7 @@ pub fn plots(diagnosis: &Diagnosis) -> Result<Vec<Plot>, PlotError> {
     plots.extend(rivals::plot(diagnosis)?);
     plots.extend(located::plot(diagnosis)?);
     plots.extend(remaining::plot(diagnosis)?);
-    // The ladder of the comparison is that of the diagnosis.
+    // Both have a ladder; the one of the diagnosis is kept.
     let shown = crate::comparison::plots(&diagnosis.comparison)?;
     plots.extend(shown.into_iter().filter(|plot| plot.name != "ladder"));
     Ok(plots)

@@ -1,4 +1,5 @@
-//! Small panels over the contraction, one for each pressure level, with a colour and a dash for each direction of movement.
+//! Small panels over the contraction, one per pressure level, with a colour and a dash pattern for each
+//! direction of movement.
 
 use plotters::style::RGBColor;
 
@@ -12,7 +13,7 @@ use crate::comparison::panel::{BELOW, Panel, columns};
 use crate::comparison::svg::{Stroke, Svg};
 use crate::palette::{CATEGORIES, INK};
 
-/// Panels at most.
+/// Most panels.
 const LEVELS: usize = 6;
 const HEIGHT: f64 = 190.0;
 const HEAD: f64 = 34.0;
@@ -21,14 +22,14 @@ const HEAD: f64 = 34.0;
 pub(super) struct Piece<'a> {
     /// Pressure \[Pa\].
     pub(super) pressure_pa: f64,
-    /// +1 shortening, -1 lengthening, 0 at rest.
+    /// Direction: +1 shortening, -1 lengthening, 0 at rest.
     pub(super) direction: f64,
     /// Contractions.
     pub(super) contraction: &'a [f64],
 }
 
 impl Piece<'_> {
-    /// Points of a quantity on a panel.
+    /// Positions of the values of a quantity on a panel.
     pub(super) fn points(&self, panel: &Panel, values: impl IntoIterator<Item = f64>) -> Vec<(f64, f64)> {
         self.contraction.iter().zip(values).map(|(c, value)| panel.at((100.0 * c, value))).collect()
     }
@@ -45,7 +46,7 @@ pub(super) fn colour(direction: f64) -> RGBColor {
     }
 }
 
-/// Line of a direction: lengthening is dashed, so that it is told apart in grey too.
+/// Line of a direction: lengthening is dashed, so that it can be distinguished in grey too.
 pub(super) fn stroke(direction: f64) -> Stroke {
     if direction < 0.0 {
         Stroke::dashed(colour(direction), 2.0)
@@ -54,7 +55,7 @@ pub(super) fn stroke(direction: f64) -> Stroke {
     }
 }
 
-/// Directions that occur, with their names: those of the two branches of a loop, and rest.
+/// The directions that occur, with their names: the two branches of a loop, and rest.
 pub(super) fn directions(pieces: &[Piece<'_>], [there, back]: [&'static str; 2]) -> Vec<(f64, &'static str)> {
     let named = [(1.0, there), (-1.0, back), (0.0, "at rest")];
     named
@@ -63,22 +64,22 @@ pub(super) fn directions(pieces: &[Piece<'_>], [there, back]: [&'static str; 2])
         .collect()
 }
 
-/// What is drawn, besides the curves themselves.
+/// What is drawn around the curves.
 pub(super) struct Frame<'a> {
-    /// Keeps the ids of drawings apart.
+    /// Makes the ids of the drawing unique.
     pub(super) name: &'static str,
-    /// What is seen.
+    /// Title of the drawing.
     pub(super) title: &'a str,
-    /// Name of the axis upwards, with its unit.
+    /// Name of the vertical axis, with its unit.
     pub(super) quantity: &'static str,
     /// The legend.
     pub(super) entries: &'a [(Mark, String)],
 }
 
-/// The drawing, and what its caption says about levels that aren't shown.
+/// The drawing, and the remark of its caption about levels that aren't shown.
 ///
 /// # Errors
-/// If the values span more than an axis.
+/// The range of the values overflows.
 pub(super) fn draw(
     frame: &Frame<'_>,
     pieces: &[Piece<'_>],

@@ -1,4 +1,4 @@
-//! The next experiment, in words: what the verdict of a diagnosis leaves to be done.
+//! The next experiment in words: what remains to be done after the verdict of a diagnosis.
 
 use bulge_effects::Catalogue;
 use bulge_inference::{CandidateResult, Diagnosis, Missing, NextExperiment, NextLimits, Verdict};
@@ -7,27 +7,27 @@ use serde::Serialize;
 
 use crate::diagnosis::headline::{further, others_in_class};
 
-/// Hints that are shown.
+/// Most hints shown.
 const MOST_HINTS: usize = 4;
-/// A compensation from which other numbers, and not the noise, set a detection limit.
+/// Above this compensation the detection limit is set by other parameters and not by the noise.
 const MUCH: f64 = 0.5;
-/// Said where no test separates, and nobody has stated what can be tested.
+/// Sentence for the case that no test separates the effects and nobody has stated what can be tested.
 const WIDER: &str =
     "these limits are those of the data: state wider ones of pressure and contraction to allow for others";
 
-/// What to do next.
+/// The next thing to do.
 #[derive(Debug)]
 pub struct NextStep<'a> {
     diagnosis: &'a Diagnosis,
-    /// The effect that these data can't tell from others.
+    /// The effect that these data can't distinguish from others.
     pub open: Option<&'a Missing>,
-    /// The experiment for it, or that there is none.
+    /// The experiment that would separate them, or the finding that there is none.
     pub next: Option<&'a NextExperiment>,
-    /// In words.
+    /// The advice in words.
     pub sentences: Vec<String>,
 }
 
-/// An effect that is missing, in the JSON document.
+/// A missing effect in the JSON document.
 #[derive(Debug, Serialize)]
 struct Named<'a> {
     effect: &'a str,
@@ -47,7 +47,7 @@ pub struct NextDocument<'a> {
 }
 
 impl<'a> NextStep<'a> {
-    /// After a diagnosis that was made within `limits`.
+    /// The next step after a diagnosis made within `limits`.
     #[must_use]
     pub fn after(diagnosis: &'a Diagnosis, catalogue: &Catalogue, limits: NextLimits) -> Self {
         answer(diagnosis, catalogue, limits)
@@ -68,11 +68,11 @@ impl<'a> NextStep<'a> {
     }
 }
 
-/// What to do next, by the verdict.
+/// The next step, depending on the verdict.
 fn answer<'a>(diagnosis: &'a Diagnosis, catalogue: &Catalogue, limits: NextLimits) -> NextStep<'a> {
     let mut sentences = Vec::new();
     let next = diagnosis.next_experiment.as_ref().filter(|_| diagnosis.verdict == Verdict::Missing);
-    // The experiment is for the first class that holds several.
+    // The experiment is for the first class with several members.
     let several = || diagnosis.missing.iter().filter(|missing| others_in_class(missing).next().is_some());
     let is_meant = |missing: &&Missing| next.is_some_and(|next| next.separates.contains(&missing.effect));
     let open = next.and_then(|_| several().find(is_meant).or_else(|| several().next()));
@@ -107,7 +107,7 @@ fn answer<'a>(diagnosis: &'a Diagnosis, catalogue: &Catalogue, limits: NextLimit
     NextStep { diagnosis, open, next, sentences }
 }
 
-/// What would lower the largest detection limit.
+/// The measure that would lower the largest detection limit.
 fn lower(diagnosis: &Diagnosis, catalogue: &Catalogue) -> Option<String> {
     let limited =
         diagnosis.candidates.iter().filter(|c| c.status == "rejected" && c.detection_limit.is_some());
@@ -135,7 +135,7 @@ fn lower(diagnosis: &Diagnosis, catalogue: &Catalogue) -> Option<String> {
     ))
 }
 
-/// Where to measure again when something is left that no effect explains.
+/// Where to measure again if a misfit remains that no effect explains.
 fn again(diagnosis: &Diagnosis) -> String {
     let points = diagnosis.remaining.surface.iter().flat_map(|curve| {
         curve.contraction.iter().zip(&curve.misfit_n).map(|(e, misfit)| (misfit.abs(), *e, curve.pressure_pa))

@@ -1,4 +1,4 @@
-//! The page of a diagnosis: texts, tables and plots put into the template.
+//! The page of a diagnosis: fills texts, tables and plots into the template.
 
 use bulge_inference::{Diagnosis, Missing, NextExperiment, Verdict};
 use minijinja::value::Value;
@@ -17,7 +17,7 @@ use crate::diagnosis::{
 use crate::explore::{Explore, policy};
 use crate::interval::with_interval;
 
-/// A missing effect as the verdict's box shows it.
+/// A missing effect as shown in the box of the verdict.
 #[derive(Debug, Serialize)]
 struct Found<'a> {
     effect: &'a str,
@@ -26,14 +26,14 @@ struct Found<'a> {
     /// Whether no other effect explains the data as well.
     is_alone: bool,
     detectability: String,
-    /// How often the claim and its class are right; empty where nothing is claimed.
+    /// How often the claim and its class are right; empty without a claim.
     right: String,
     /// Name, value, interval.
     numbers: Vec<[String; 3]>,
     plausible: bool,
 }
 
-/// Everything that the template shows.
+/// All values of the template.
 #[derive(Debug, Serialize)]
 struct Page<'a> {
     muscle: &'a str,
@@ -79,7 +79,7 @@ struct Page<'a> {
 /// The page as HTML.
 ///
 /// # Errors
-/// If a plot can't be drawn, or the template not be filled in.
+/// A plot can't be drawn, or the template can't be filled in.
 pub(super) fn render(diagnosis: &Diagnosis) -> Result<String, PlotError> {
     filled("diagnosis.html", include_str!("diagnosis.html"), &page(diagnosis)?)
 }
@@ -141,7 +141,7 @@ fn page(diagnosis: &Diagnosis) -> Result<Page<'_>, PlotError> {
     })
 }
 
-/// Class of the verdict's box.
+/// CSS class of the box of the verdict.
 fn tone(verdict: Verdict) -> &'static str {
     match verdict {
         Verdict::Adequate => "adequate",
@@ -177,13 +177,13 @@ fn found(missing: &Missing, verdict: Verdict) -> Found<'_> {
     }
 }
 
-/// How often such a claim is right, with its interval, and how often the class holds the right one.
+/// How often such a claim is right, with its interval, and how often its class contains the right effect.
 fn right(missing: &Missing) -> String {
     let simulated = &missing.simulated;
     if simulated.claims == 0 {
         return format!("{} of the time", chance(missing.confidence));
     }
-    // With other claims beside it a claim is right less often than alone.
+    // Together with other claims a claim is right less often than alone.
     let together = if missing.confidence < simulated.interval[0] {
         format!("{} of the time with all that is named together; alone ", chance(missing.confidence))
     } else {
@@ -242,7 +242,7 @@ fn next_says(next: Option<&NextExperiment>) -> String {
     }
 }
 
-/// Nothing where there is no such experiment: the sentence says so.
+/// Facts about the next experiment; empty if there is none, which the sentence says.
 fn next(next: &NextExperiment) -> Vec<(&'static str, String)> {
     if next.repeats == 0 {
         return Vec::new();

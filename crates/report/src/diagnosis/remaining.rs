@@ -1,4 +1,4 @@
-//! The systematic misfit that is left, smoothed, with a band of one standard deviation.
+//! The remaining systematic misfit, smoothed, with a band of one standard deviation.
 
 use bulge_inference::Diagnosis;
 
@@ -9,10 +9,10 @@ use crate::comparison::panel::Panel;
 use crate::comparison::svg::Svg;
 use crate::diagnosis::multiples::{Frame, Piece, colour, directions, draw, stroke};
 
-/// The plot; none without a surface.
+/// The plot; `None` without a surface.
 ///
 /// # Errors
-/// If the forces span more than an axis.
+/// The range of the forces overflows.
 pub(super) fn plot(diagnosis: &Diagnosis) -> Result<Option<Plot>, PlotError> {
     let curves = &diagnosis.remaining.surface;
     let pieces: Vec<Piece<'_>> = curves

@@ -1,4 +1,4 @@
-//! How far the nearest rivals of each missing effect are from it, in standard deviations.
+//! Distance of each missing effect to its nearest rivals, in standard deviations.
 
 use bulge_inference::{Diagnosis, Missing, RivalResult};
 
@@ -12,28 +12,28 @@ use crate::comparison::{Plot, WIDTH};
 use crate::diagnosis::headline::others_in_class;
 use crate::palette::{ALERT, FIRST, GRID, INK, SOFT_INK};
 
-/// Two effects nearer than this are not told apart (method: one false claim of a thousand).
+/// Two effects nearer than this can't be distinguished (method: one false claim in a thousand).
 const SEPARATION: f64 = 3.29;
-/// Rivals that are drawn for each effect.
+/// Most rivals drawn per effect.
 const MOST: usize = 8;
-/// Bars end here; numbers stand beside them.
+/// Bars end here; the numbers are beside them.
 const FAR: f64 = 15.0;
 const NAMES: f64 = 190.0;
 const NUMBERS: f64 = 230.0;
 const ROW: f64 = 22.0;
 const HEAD: f64 = 30.0;
 
-/// Rivals of an effect, the nearest first.
+/// Rivals of an effect, nearest first.
 pub(super) fn nearest(missing: &Missing) -> Vec<&RivalResult> {
     let mut nearest: Vec<&RivalResult> = missing.rivals.iter().collect();
     nearest.sort_by(|a, b| a.separation.total_cmp(&b.separation));
     nearest
 }
 
-/// The plot; none without rivals.
+/// The plot; `None` without rivals.
 ///
 /// # Errors
-/// None at present; kept like that of the other plots.
+/// None at present: the signature is that of the other plots.
 pub(super) fn plot(diagnosis: &Diagnosis) -> Result<Option<Plot>, PlotError> {
     let groups: Vec<(&Missing, Vec<&RivalResult>)> = diagnosis
         .added()
@@ -103,7 +103,7 @@ fn draw(svg: &mut Svg, panel: &Panel, (missing, rival, drawn): (&Missing, &Rival
     }
 }
 
-/// The sentence above the plot: the class first.
+/// The sentence above the plot, with the class first.
 pub(super) fn says(diagnosis: &Diagnosis) -> String {
     let of = |missing: &Missing| {
         let others: Vec<String> = others_in_class(missing).map(str::to_owned).collect();

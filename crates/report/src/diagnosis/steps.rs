@@ -10,17 +10,17 @@ use crate::comparison::wording::effect_title;
 use crate::comparison::{Plot, ladder};
 use crate::diagnosis::words::{base_name, form_of_step, step_name};
 
-/// What a bent rung is not.
+/// Explanation of the rungs with form errors.
 const BENT: &str = " The last bars bend the formulas of effects as the data want it and add none; on data held out of the fit that was not tried.";
 
-/// The plot; none without a ladder.
+/// The plot; `None` without a ladder.
 ///
 /// # Errors
-/// If the errors span more than an axis.
+/// The range of the errors overflows.
 pub(super) fn plot(diagnosis: &Diagnosis) -> Result<Option<Plot>, PlotError> {
     let mut comparison = with_noise(diagnosis);
     let is_bent = diagnosis.ladder.iter().any(|step| step.bent);
-    // The end of a name says which rung it is; `+ ` stands before it.
+    // The end of a name identifies the rung; `+ ` precedes it.
     let name =
         |step: &LadderStep| name_fitted(&step_name(diagnosis, step), TEXT, ladder::NAME - width("+ ", TEXT));
     let full_scale = comparison.data.full_scale_n.max(f64::MIN_POSITIVE);
@@ -41,7 +41,7 @@ pub(super) fn plot(diagnosis: &Diagnosis) -> Result<Option<Plot>, PlotError> {
     Ok(plot.map(|plot| if is_bent { Plot { caption: plot.caption + BENT, ..plot } } else { plot }))
 }
 
-/// The comparison with the noise floor of the diagnosis, which knows more of the noise.
+/// The comparison with the noise floor of the diagnosis, whose noise estimate uses more information.
 pub(super) fn with_noise(diagnosis: &Diagnosis) -> Comparison {
     let law = &diagnosis.noise.law;
     let source = match law.source {
@@ -53,7 +53,7 @@ pub(super) fn with_noise(diagnosis: &Diagnosis) -> Comparison {
     Comparison { noise_floor: Some(floor), ..diagnosis.comparison.clone() }
 }
 
-/// One row: forces in N.
+/// One row, with forces in N.
 #[derive(Debug, Serialize)]
 pub(super) struct Row {
     title: String,

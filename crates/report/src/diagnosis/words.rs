@@ -1,11 +1,11 @@
-//! Sentences and numbers of a diagnosis that page and command line share: plain letters, no markup.
+//! Sentences and numbers of a diagnosis shared by page and command line: plain text, no markup.
 
 use bulge_inference::{CorrelationTime, Diagnosis, LadderStep, Verdict};
 
 use crate::comparison::number::{count, newton, three};
 use crate::interval::with_interval;
 
-/// A chance in per cent: `97 %`, `more than 99 %`, `less than 1 %`.
+/// A probability in per cent: `97 %`, `more than 99 %`, `less than 1 %`.
 #[must_use]
 pub fn chance(share: f64) -> String {
     match share {
@@ -15,19 +15,19 @@ pub fn chance(share: f64) -> String {
     }
 }
 
-/// How often chance alone does as much: `p = 0.03`, `p < 0.001`.
+/// The p-value in words: `p = 0.03`, `p < 0.001`.
 #[must_use]
 pub fn once_in(p: f64) -> String {
     if p < 0.001 { "p < 0.001".to_owned() } else { format!("p = {}", three(p)) }
 }
 
-/// Whether a probability is one that chance alone seldom gives.
+/// Whether a p-value is significant.
 #[must_use]
 pub fn is_significant(p: f64) -> bool {
     p < 0.05
 }
 
-/// Where the noise is from.
+/// Source of the noise estimate.
 #[must_use]
 pub fn found_by(source: &str) -> &str {
     match source {
@@ -38,7 +38,7 @@ pub fn found_by(source: &str) -> &str {
     }
 }
 
-/// The base of the ladder: `equilibrium`, or `equilibrium + end-taper` with the effects that it has already.
+/// The base of the ladder: `equilibrium`, or `equilibrium + end-taper` with the effects that it already has.
 #[must_use]
 pub fn base_name(diagnosis: &Diagnosis) -> String {
     let comparison = &diagnosis.comparison;
@@ -48,8 +48,8 @@ pub fn base_name(diagnosis: &Diagnosis) -> String {
     std::iter::once(comparison.base.as_str()).chain(effects).collect::<Vec<_>>().join(" + ")
 }
 
-/// A rung of the ladder: the base, the effect that it adds, and where an effect is bent, whether it is `coulomb-friction, by its formula` or
-/// `coulomb-friction, as the data want it`.
+/// A rung of the ladder: the base, or the effect that it adds. For an effect with a form error it says
+/// whether the rung is `coulomb-friction, by its formula` or `coulomb-friction, as the data want it`.
 #[must_use]
 pub fn step_name(diagnosis: &Diagnosis, step: &LadderStep) -> String {
     step.added
@@ -57,7 +57,7 @@ pub fn step_name(diagnosis: &Diagnosis, step: &LadderStep) -> String {
         .map_or_else(|| base_name(diagnosis), |added| format!("{added}{}", form_of_step(diagnosis, step)))
 }
 
-/// What `step_name` says after the name of an effect.
+/// The suffix that `step_name` puts after the name of an effect.
 pub(super) fn form_of_step(diagnosis: &Diagnosis, step: &LadderStep) -> &'static str {
     let mut bent = diagnosis.ladder.iter().filter(|step| step.bent).flat_map(LadderStep::effects);
     let mut is_bent_later = || bent.any(|name| step.effects().any(|own| own == name));
@@ -70,7 +70,7 @@ pub(super) fn form_of_step(diagnosis: &Diagnosis, step: &LadderStep) -> &'static
     }
 }
 
-/// The noise in a sentence: its size, over what it is correlated, where it is from, and how many rows count.
+/// The noise in a sentence: its size, its correlation, its source, and the effective number of rows.
 #[must_use]
 pub fn noise_says(diagnosis: &Diagnosis) -> String {
     let (noise, law) = (&diagnosis.noise, &diagnosis.noise.law);
@@ -96,7 +96,7 @@ pub fn noise_says(diagnosis: &Diagnosis) -> String {
     format!("{scatters}{correlated}{offsets}{independent}, {}{counted}", found_by(&noise.source))
 }
 
-/// What remains in a sentence: the systematic misfit with its interval, and whether it has structure.
+/// The remaining misfit in a sentence: the systematic misfit with its interval, and whether it has structure.
 #[must_use]
 pub fn remains_says(diagnosis: &Diagnosis) -> String {
     let remaining = &diagnosis.remaining;
@@ -107,7 +107,7 @@ pub fn remains_says(diagnosis: &Diagnosis) -> String {
     let structure = match remaining.structured {
         _ if diagnosis.verdict == Verdict::CannotTell => "whether it has a structure cannot be told",
         true => "it has a structure beyond chance",
-        // A tolerance, or chance that is seldom.
+        // The interval excludes zero, but the misfit is within the tolerance, or a rare chance.
         false if diagnosis.verdict == Verdict::Adequate && low_n > 0.0 => "no structure that counts",
         false => "no structure beyond chance",
     };

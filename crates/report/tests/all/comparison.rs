@@ -28,7 +28,7 @@ fn html(comparison: &Comparison) -> Result<String, PlotError> {
     bulge_report::comparison::html(comparison, None)
 }
 
-/// The page as XML: it is written so that both kinds of parser read it.
+/// The page as XML: it is written so that HTML and XML parsers can read it.
 fn parsed(html: &str) -> Document<'_> {
     let options = ParsingOptions { allow_dtd: true, ..ParsingOptions::default() };
     Document::parse_with_options(html, options).unwrap()
@@ -100,7 +100,7 @@ fn every_page_is_well_formed_small_and_free_of_numbers_that_are_none() {
         let words: Vec<&str> = words.split(|c: char| !c.is_alphanumeric()).collect();
         for none in ["NaN", "nan", "inf", "Infinity", "null", "none", "undefined"] {
             let style = document.descendants().any(|n| n.has_tag_name("style"));
-            // `none` is a word of style sheets.
+            // `none` is a keyword of style sheets.
             assert!(none == "none" && style || !words.contains(&none), "{sample}: `{none}`");
             assert!(!html.contains(&format!("\"{none}\"")) || none == "none", "{sample}: `{none}`");
         }
@@ -165,7 +165,7 @@ fn each_section_begins_with_a_sentence() {
     }
 }
 
-/// Three significant digits, written here once more.
+/// Three significant digits, implemented independently here.
 fn shown(value: f64) -> String {
     let size = value.abs();
     let text = match size {
@@ -400,7 +400,7 @@ fn many_rows_are_thinned_and_the_page_stays_light() {
         header["rows"] == 10_000 && header["report"]["every"] == 10 && header["report"]["all"] == 100_000
     );
     assert_eq!(columns["line"][..3], [2.0, 12.0, 22.0]);
-    // The error is that of all rows.
+    // The error is computed from all rows.
     let errors =
         (0..rows.len()).filter(|row| rows.counts[*row]).map(|row| rows.measured_n[row] - rows.base_n[row]);
     let errors: Vec<f64> = errors.collect();
@@ -423,7 +423,7 @@ fn a_page_with_rows_runs_its_own_script_alone_and_is_else_the_page_without_them(
         let document = parsed(&rest);
         let explore = document.descendants().find(|n| n.attribute("id") == Some("explore")).unwrap();
         assert_eq!(explore.attribute("class"), Some("with-script"));
-        // Whoever runs no script has all drawings.
+        // Without scripts all drawings are visible.
         let drawings = |page: &str| page.matches("<svg ").count();
         assert_eq!(drawings(&rest), drawings(&html(&comparison).unwrap()));
         assert_eq!(rest.matches("<figure").count(), plots(&comparison).unwrap().len());

@@ -200,7 +200,7 @@ fn verdicts_stand_in_the_first_lines() {
     ] {
         assert_eq!(headlines(&diagnosis), begins);
         let page = words(&html(&diagnosis).unwrap());
-        // A capital letter begins a sentence.
+        // A sentence begins with a capital letter.
         let shown = page.find(&begins[0][1..]).unwrap();
         assert!(shown < page.find("The ladder of errors").unwrap());
         assert!(page.contains(&diagnosis.says));
@@ -220,7 +220,7 @@ fn a_claim_goes_as_far_as_the_data_decide() {
     assert!(first(&diagnosis).starts_with(begins), "{}", first(&diagnosis));
     diagnosis.missing[0].class.truncate(1);
     assert!(first(&diagnosis).starts_with("missing: rubber, likeliest bladder-elasticity ("));
-    // A further effect of which not even the mechanism is likely is there, and is no claim.
+    // A further effect of which not even the mechanism is likely is shown, but not claimed.
     let mut doubtful = diagnosis.missing.remove(1);
     (doubtful.confidence_mechanism, doubtful.plausible) = (0.2, true);
     diagnosis.nearest = vec![doubtful];
@@ -315,7 +315,7 @@ fn the_picture_of_the_ladder_has_a_bar_for_each_form_of_a_bent_effect() {
     let bent = widths[3] / widths[0];
     assert!((bent / (4.2 / diagnosis.comparison.ladder[0].rmse_n) - 1.0).abs() < 0.02, "{widths:?}");
     assert!(caption.ends_with("on data held out of the fit that was not tried."), "{caption}");
-    // Where no formula is bent, nothing is said of it.
+    // Without form errors nothing is said about them.
     let mut exact = missing(comparison());
     exact.ladder.pop();
     let (texts, widths, caption) = drawn(&exact);
@@ -337,7 +337,7 @@ fn sentences_are_exact() {
         "0.4 N of systematic misfit (RMS; 95 % interval 0.0 to 1.2 N): no structure beyond chance"
     );
     assert_eq!(base_name(&diagnosis), "equilibrium");
-    // A base that has an effect already.
+    // A base that already has an effect.
     let mut given = missing(comparison());
     given.comparison = rich(&Recipe::usual());
     given.comparison.ladder.truncate(4);
@@ -355,7 +355,7 @@ fn rivals_are_drawn_with_the_line_beyond_which_they_are_told_apart() {
     assert!(place("wall-thickness") < place("hoop-elasticity"), "the nearest first");
     place("3.29 sigma");
     place("32.0 sigma");
-    // Bars are as long as the separations: 7.5 is to 1.2 as their widths.
+    // The lengths of the bars are proportional to the separations: 7.5 to 1.2.
     let widths: Vec<f64> = document
         .descendants()
         .filter(|n| n.has_tag_name("rect") && n.attribute("height") == Some("13.6"))
@@ -374,7 +374,7 @@ fn the_rows_of_a_diagnosis_are_drawn_in_its_page() {
         let page = html(&diagnosis).unwrap();
         assert!(page.contains(&bulge_report::policy(true)) && without.contains(&bulge_report::policy(false)));
         assert_eq!([&page, &without].map(|page| page.matches("<script").count()), [2, 0]);
-        // The two drawings that the plots of rows stand for are there without scripts.
+        // The two drawings that the plots of rows replace are there for readers without scripts.
         assert_eq!(page.matches("<svg ").count(), without.matches("<svg ").count());
         assert_eq!(page.matches("<div class=\"without-script\">").count(), 2);
     }

@@ -1,4 +1,4 @@
-//! The reports through the public API: one program of tests, one module for each kind, and the samples of both.
+//! The reports through the public API: one test program, one module per kind, and the samples of both.
 
 mod comparison;
 mod diagnosed;

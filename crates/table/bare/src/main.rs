@@ -1,4 +1,5 @@
-//! A program without std and without an allocator that looks up the force of a pleated muscle: it ends with 0 if the force is right.
+//! A program without std and without an allocator that looks up the force of a pleated muscle. Its exit code
+//! is 0 if the force is right.
 //!
 //! ```text
 //! cargo build --release --manifest-path crates/table/bare/Cargo.toml --target-dir target/bare
@@ -6,8 +7,8 @@
 //! crates/table/bare/check.sh                        builds, runs, searches the program for std and alloc, and tries microcontrollers
 //! ```
 //!
-//! The C runtime calls `main`, so that the program can be run on a PC; on a microcontroller `main` would be called by its start-up code, and
-//! nothing else would change. The table lies in the program itself, in flash there.
+//! The C runtime calls `main`, so the program runs on a PC. On a microcontroller the start-up code would call
+//! `main`, and nothing else would change. The table is part of the program, in flash on a microcontroller.
 #![no_std]
 #![no_main]
 
@@ -15,7 +16,7 @@ use core::panic::PanicInfo;
 
 use bulge_table::Table;
 
-// The C runtime, whose start-up code calls `main`; without std nobody else asks for it.
+// Links the C runtime, whose start-up code calls `main`: without std nothing else links it.
 // SAFETY: nothing is declared, so nothing can be declared wrongly.
 #[expect(unsafe_code, reason = "proof above")]
 #[link(name = "c")]
@@ -25,15 +26,15 @@ static TABLE: &[u8] = include_bytes!("../../examples/data/ppam.table");
 
 /// sin(2 pi/n) n/(2 pi) of n = 40 fibres.
 const FIBRES: f64 = 0.995_892_735_243_561_5;
-/// Pa.
+/// Pressure \[Pa\].
 const PRESSURE: f64 = 1e5;
-/// m.
+/// Length \[m\].
 const LENGTH: f64 = 0.11;
 
 /// The force in N of a muscle of 110 mm with a radius of 16 mm at 1 bar and 20 %.
 fn force() -> Option<f64> {
     let lookup = Table::from_bytes(TABLE).ok()?.lookup::<2, 2>().ok()?;
-    // Hidden from the optimiser: nothing may be looked up while it is compiled.
+    // Hides the point from the optimiser: the lookup must not happen at compile time.
     let [force, _volume] = lookup.at(core::hint::black_box([0.2, 110.0 / 16.0]))?;
     Some(PRESSURE * LENGTH * LENGTH * FIBRES * force.value)
 }
@@ -54,7 +55,7 @@ pub extern "C" fn main() -> i32 {
     }
 }
 
-/// There is nobody to tell: the program stays here, and `check.sh` ends it.
+/// No output exists for a message: the program loops here until `check.sh` ends it.
 #[panic_handler]
 fn panic(_: &PanicInfo<'_>) -> ! {
     loop {

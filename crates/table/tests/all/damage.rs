@@ -1,4 +1,4 @@
-//! Whatever the bytes: a table, or the right error. Whatever the point: a finite value, or none. Never a panic.
+//! Any bytes give a table or the right error. Any point gives a finite value or none. Nothing panics.
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
@@ -43,12 +43,12 @@ fn malformed(field: &'static str) -> TableError {
     TableError::Malformed { field }
 }
 
-/// The error of bytes that must not be a table.
+/// The error of bytes that must not form a table.
 fn error(bytes: &[u8]) -> TableError {
     Table::from_bytes(bytes).unwrap_err()
 }
 
-/// The same bytes with others from a place on, and the checksum put right.
+/// The same bytes with others from an offset on, and the checksum corrected.
 fn rewritten(bytes: &[u8], at: usize, with: &[u8]) -> Vec<u8> {
     let mut bytes = bytes.to_vec();
     bytes[at..at + with.len()].copy_from_slice(with);
@@ -61,7 +61,8 @@ fn tables() -> Vec<Vec<u8>> {
     Kind::all(3, 2).into_iter().map(|kind| kind.table(&mut random).draft.bytes()).collect()
 }
 
-/// Asks everything of a table at points on, about and far from its ends. `is_sound`: it was written well, so all values are finite.
+/// Queries everything of a table at points on, near and far from its ends. `is_sound`: it was written
+/// correctly, so all values are finite.
 fn ask(table: &Table<'_>, random: &mut Random, points: usize, is_sound: bool) {
     let (axes, outputs) = (table.axes(), table.outputs());
     let (mut values, mut gradients) = (vec![0.0; outputs], vec![0.0; outputs * axes]);
@@ -100,7 +101,7 @@ fn every_truncation() {
             let TableError::Truncated { found, needed } = error(&bytes[..length]) else { panic!("{length}") };
             assert!(found == length && needed > length);
         }
-        // The bytes before the checksum don't make a table of their own.
+        // The shortened bytes don't form a table of their own.
         let short = rewritten(bytes, 16, &u32::try_from(bytes.len() - 1).unwrap().to_le_bytes());
         assert_ne!(error(&sealed(short[..bytes.len() - 1].to_vec())), TableError::NoTable);
     }
@@ -170,11 +171,11 @@ fn odd_bytes_in_the_header() {
             assert_eq!(error(&rewritten(&bytes, at, &[*byte])), malformed(field), "{at} {byte}");
         }
     }
-    // Other numbers of axes and outputs that could be, with everything else as it was.
+    // Other plausible numbers of axes and outputs, with everything else unchanged.
     for (at, count) in [(12, 1), (12, 3), (12, 4), (13, 1), (13, 3), (13, 8)] {
         assert!(matches!(error(&rewritten(&bytes, at, &[count])), TableError::Malformed { .. }));
     }
-    // Without its flag an edge has no place.
+    // Without its flag an edge must be empty.
     assert_eq!(error(&rewritten(&bytes, 52, &[1])), malformed("number of nodes of the edge"));
     for odd in [-1.0, f64::NAN, f64::NEG_INFINITY] {
         assert_eq!(error(&rewritten(&bytes, 56, &odd.to_le_bytes())), malformed("error of the edge"));
@@ -211,7 +212,7 @@ fn lengths_and_places_that_cross() {
     }
 }
 
-/// Tables whose numbers are all in range, and whose coordinate is none: 0/0, or beyond all numbers.
+/// In these tables all numbers are in range but the coordinate is not a number: 0/0, or an overflow.
 #[test]
 fn a_coordinate_that_is_no_number_is_outside() {
     let kind = Kind { is_root: false, is_fitted: false, has_factors: false, ..KIND };
@@ -251,7 +252,7 @@ fn odd_numbers_in_the_records() {
         check(axis(i, 48), 1e9, "range of an axis");
         check(axis(i, 56), -1e9, "range of an axis");
         check(axis(i, 56), 1e91, "range of an axis");
-        // The last four are numbers, but not all that is computed with them.
+        // The last four are finite, but not everything computed from them is.
         for odd in [0.0, -0.0, -1.0, f64::NEG_INFINITY, 5e-324, 1e-91, 1e91, f64::MAX] {
             check(axis(i, 64), odd, "range of an axis");
         }
@@ -260,7 +261,7 @@ fn odd_numbers_in_the_records() {
         }
         for (offset, odd, field) in [(0, 0, "name"), (32, 0, "unit"), (0, 255, "name"), (40, 255, "unit")] {
             let changed = rewritten(&bytes, axis(i, offset), &[odd]);
-            // What comes after the end of a name isn't read.
+            // What follows the end of a name isn't read.
             if offset == 40 {
                 assert!(Table::from_bytes(&changed).is_ok());
             } else {
@@ -270,7 +271,7 @@ fn odd_numbers_in_the_records() {
         }
         assert_eq!(error(&rewritten(&bytes, axis(i, 95), &[1])), malformed("reserved bytes"));
     }
-    // The right ends with a wrong scale: the coordinate would end early or late.
+    // The true ends with a wrong scale: the coordinate would end early or late.
     check(axis(1, 72), 1e-3, "scale of an axis");
     check(axis(1, 72), 1e3, "scale of an axis");
     check(axis(1, 56), 1e6, "scale of an axis");
@@ -325,7 +326,7 @@ fn odd_numbers_of_nodes() {
     }
 }
 
-/// Four axes of 2^20 nodes: their product is beyond any number of 64 bits.
+/// Four axes of 2^20 nodes: their product exceeds 64 bits.
 #[test]
 fn products_beyond_all_numbers() {
     let kind = Kind { axes: 4, ..KIND };
@@ -367,7 +368,8 @@ fn coefficients_and_text() {
     }
 }
 
-/// Every number of the header and the records in turn is every odd value: refused, or looked up without a panic.
+/// Each number of the header and the records is set to each odd value in turn: the table is refused, or
+/// looked up without a panic.
 #[test]
 fn every_field_is_every_odd_value() {
     let mut random = Random(21);

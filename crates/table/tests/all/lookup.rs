@@ -1,4 +1,5 @@
-//! Lookups against known polynomials through all coordinates, at the borders of cells and at the ends of the domain.
+//! Lookups against known polynomials through all coordinates, at the borders of cells and at the ends of the
+//! domain.
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
@@ -44,7 +45,8 @@ fn unit_draft(is_spline: bool, nodes: &[usize]) -> Draft {
     }
 }
 
-/// Every kind of table gives the polynomials it was written from, and their gradients through coordinates, edge and factors.
+/// Every kind of table reproduces the polynomials it was written from, and their gradients through
+/// coordinates, edge and factors.
 #[test]
 fn known_polynomials_are_exact() {
     let mut random = Random(1);
@@ -73,7 +75,7 @@ fn known_polynomials_are_exact() {
     assert!(worst[0] < 1e-13 && worst[1] < 2e-6, "{worst:?}");
 }
 
-/// A cubic, its cells and its derivative, without any coordinate in between.
+/// A cubic, its cells and its derivative, with the identity as coordinate.
 #[test]
 fn a_cubic_is_a_cubic() {
     let cubic = [Polynomial(vec![(2.0, [3, 0, 0, 0]), (-1.0, [1, 0, 0, 0]), (0.5, [0; 4])])];
@@ -114,7 +116,7 @@ fn de_boor(coefficients: &[Dual], v: f64) -> [Dual; 2] {
     [d[0], slope]
 }
 
-/// The unrolled path of two axes, and the general one, against de Boor's algorithm, for any coefficients.
+/// The unrolled path of two axes and the general one against de Boor's algorithm, for random coefficients.
 #[test]
 fn splines_agree_with_de_boor() {
     let mut random = Random(2);
@@ -182,7 +184,7 @@ fn chebyshev_polynomials_are_cosines() {
     }
 }
 
-/// Gradients against differences, of every kind of table and of that of the pleated muscle.
+/// Gradients against finite differences, for every kind of table and for the table of the pleated muscle.
 #[test]
 fn gradients_are_those_of_the_values() {
     let mut random = Random(4);
@@ -216,7 +218,7 @@ fn gradients_are_those_of_the_values() {
     }
 }
 
-/// Value and gradient go on across the borders of cells, for any coefficients.
+/// Value and gradient are continuous across the borders of cells, for random coefficients.
 #[test]
 fn splines_are_smooth_across_borders() {
     let mut random = Random(5);
@@ -249,7 +251,8 @@ fn splines_are_smooth_across_borders() {
     }
 }
 
-/// Both ends are inside, but for a lower end where an output or the root's derivative is infinite; the next number is outside.
+/// Both ends are inside, except a lower end where an output or the derivative of the root is infinite; the
+/// next number is outside.
 #[test]
 fn the_ends_are_inside() {
     let mut random = Random(6);
@@ -265,7 +268,7 @@ fn the_ends_are_inside() {
         let is_inside = |i: usize, x: f64| {
             let mut point = inside.clone();
             point[i] = x;
-            // The upper end moves with the others.
+            // The upper end depends on the other axes.
             if let (true, Some(end)) = (i > 0, table.upper_end(&point)) {
                 let low = table.axis(0).unwrap().low;
                 point[0] = low + 0.5 * (end - low);
@@ -281,7 +284,7 @@ fn the_ends_are_inside() {
             assert!(!is_inside(i, axis.low.next_down()));
             if i == 0 && kind.is_fitted {
                 let end = table.upper_end(&inside).unwrap();
-                // An end of rounded arithmetic: a few units in the last place of the distance.
+                // The end is subject to rounding: a few units in the last place of the distance.
                 let tolerance = 1e-14 * (end - axis.low).max(end.abs());
                 assert!(is_inside(0, end - tolerance) && !is_inside(0, end + 10.0 * tolerance));
                 refused += usize::from(!is_inside(0, end));
@@ -350,7 +353,8 @@ fn both_agree<const A: usize, const O: usize>(random: &mut Random) {
     }
 }
 
-/// Many points at once are the same points one by one, whatever their number and their neighbours, and no place beyond them is written.
+/// Many points at once give the same as the points one by one, whatever their number and neighbours, and
+/// nothing is written beyond them.
 fn each_agrees<const A: usize, const O: usize>(
     lookup: &Lookup<'_, A, O>,
     table: &Table<'_>,
@@ -437,7 +441,7 @@ fn both_ways_of_asking_give_the_same() {
     all!(1 2 3 4);
 }
 
-/// What the header and the records say.
+/// The header and the records are read back.
 #[test]
 fn the_records_are_read() {
     let mut random = Random(8);

@@ -1,4 +1,5 @@
-//! Lookups and damaged tables: one program of tests, one module for each part, and a writer of tables that both use.
+//! Lookups and damaged tables: one test program, one module for each part, and a writer of tables that both
+//! use.
 
 mod damage;
 mod lookup;

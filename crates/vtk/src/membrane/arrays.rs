@@ -1,17 +1,17 @@
-//! What the cells of a drawing show of their elements.
+//! Arrays of the cells of a drawing, read from their elements.
 
 use super::drawing::{Cell, Drawing};
 use super::map::{Vector, unit};
 use bulge_membrane::{Fields, SheetField, Tension, ThreadField};
 use vtkio::model::Attribute;
 
-/// Name of an array, and where its values are.
+/// Name of an array, and the function that reads its values.
 type Reader<T> = (&'static str, fn(&T) -> f64);
 
-/// State of a cell that is no sheet.
+/// Wrinkle state of a cell without a sheet.
 const NO_SHEET: i32 = -1;
 
-/// Names of the groups, each once, and the index there of each group of the fields.
+/// Names of the groups, each once, and for each group of the fields the index of its name.
 pub(super) fn group_names(fields: &Fields) -> (Vec<&str>, Vec<i32>) {
     let mut names: Vec<&str> = Vec::new();
     let mut indices = Vec::new();
@@ -31,7 +31,7 @@ pub(super) fn of_cells(drawing: &Drawing, fields: &Fields) -> Vec<Attribute> {
     let group: Vec<i32> = drawing.cells.iter().map(|cell| indices[cell.group]).collect();
     let mut arrays = vec![Attribute::generic("group", 1).with_data(group)];
     let layers = |count: fn(&bulge_membrane::GroupFields) -> usize| {
-        // The first layer's arrays are there in every file, so that a reader can rely on them.
+        // The arrays of the first layer are in every file, so that a reader can rely on them.
         fields.groups.iter().map(count).fold(1, usize::max)
     };
     for layer in 0..layers(|group| group.sheets.len()) {
@@ -43,7 +43,7 @@ pub(super) fn of_cells(drawing: &Drawing, fields: &Fields) -> Vec<Attribute> {
     arrays
 }
 
-/// A name in a layer.
+/// The name of an array in a layer.
 fn name(base: &str, layer: usize) -> String {
     if layer == 0 { base.to_owned() } else { format!("{base}_{}", layer + 1) }
 }
@@ -67,7 +67,7 @@ fn sheets(drawing: &Drawing, fields: &Fields, layer: usize) -> Vec<Attribute> {
     let direction = |cell: &Cell| -> Vector {
         let Some(sheet) = sheet(cell) else { return [0.0; 3] };
         let own = if fields.groups[cell.group].is_revolved { cell.meridian } else { sheet.direction };
-        // The mean over the points of a quadratic triangle is shorter than 1.
+        // The mean direction over the points of a quadratic triangle is shorter than 1.
         drawing.maps[cell.map].of(unit(own))
     };
     let directions: Vec<f64> = drawing.cells.iter().flat_map(direction).collect();

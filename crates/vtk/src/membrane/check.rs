@@ -1,21 +1,21 @@
-//! What must be right before anything is drawn.
+//! Checks before anything is drawn.
 
 use super::map::{dot, minus};
 use super::{MembranePicture, Whole};
 use crate::VtkError;
 use bulge_membrane::{Fields, GroupFields, State};
 
-/// Fewest facets round the axis.
+/// Fewest facets around the axis.
 const LEAST_FACETS: u32 = 3;
 
-/// Sizes, finite values, and a part that the whole can be made of.
+/// Checks the sizes, that values are finite, and that the part can be completed to the whole.
 pub(super) fn check(picture: &MembranePicture) -> Result<(), VtkError> {
     check_sizes(picture.fields)?;
     check_values(picture)?;
     check_whole(picture)
 }
 
-/// The numbers of a state that go into a file, with the names they have there.
+/// The quantities of a state that go into a file, with their names there.
 pub(super) fn numbers(state: &State, time: f64) -> [(&'static str, f64); 5] {
     [
         ("pressure_Pa", state.pressure),
@@ -26,7 +26,7 @@ pub(super) fn numbers(state: &State, time: f64) -> [(&'static str, f64); 5] {
     ]
 }
 
-/// Fields are public, so that they may come from elsewhere than a solver.
+/// Checks the sizes of the fields. They are public, so they may come from elsewhere than a solver.
 fn check_sizes(fields: &Fields) -> Result<(), VtkError> {
     let wrong = |what: String| Err(VtkError::Fields { what });
     let nodes = fields.places.len();
@@ -125,10 +125,11 @@ fn check_whole(picture: &MembranePicture) -> Result<(), VtkError> {
     }
 }
 
-/// That the mesh lies on one side of a plane, from which `distance` is measured.
+/// Checks that the mesh lies on one side of a plane; `distance` is the signed distance from it.
 fn one_side(fields: &Fields, plane: &str, distance: impl Fn([f64; 3]) -> f64) -> Result<(), VtkError> {
     let used = fields.groups.iter().flat_map(|group| &group.cells).map(|node| *node as usize);
-    // Cloth that has moved beyond a plane of symmetry, where nothing stops it, isn't an error of the drawing.
+    // The undeformed places are checked: cloth may move beyond a plane of symmetry if nothing stops it, and
+    // the drawing is still right.
     let from = |node: usize| distance(minus(fields.places[node], fields.displacements[node]));
     let (mut low, mut high) = ((0.0, 0), (0.0, 0));
     for node in used {

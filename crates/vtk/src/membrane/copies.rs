@@ -1,14 +1,14 @@
-//! Copies of a drawing, turned and mirrored, grown together at their seams.
+//! Rotated and mirrored copies of a drawing, merged at their seams.
 
 use super::drawing::{Drawing, SAME_PLACE, Shape, size};
 use super::map::{Map, Vector, dot, minus};
 use crate::VtkError;
 use std::collections::{HashMap, HashSet};
 
-/// Most points of a file, which then has some 500 MB.
+/// Most points of a file, which then takes some 500 MB.
 const MOST_POINTS: u32 = 5_000_000;
 
-/// How a part is copied: mirrored at the plane of its lobe, turned, and mirrored at its middle.
+/// How a part is copied: mirrored at the plane of its lobe, rotated, and mirrored at its middle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Maps {
     pub(super) turns: u32,
@@ -17,7 +17,7 @@ pub(super) struct Maps {
 }
 
 impl Maps {
-    /// All of them, and whether the copies of it are mirrored at the middle.
+    /// All maps, each with whether it mirrors at the middle.
     fn all(&self) -> Vec<(Map, bool)> {
         let halves = [Some(Map::SAME), self.mirror.map(Map::mirror)];
         let turns = (0..self.turns).map(|k| Map::turn(f64::from(k) / f64::from(self.turns)));
@@ -28,7 +28,7 @@ impl Maps {
     }
 }
 
-/// That a file holds so many points.
+/// Checks that a file may hold so many points.
 pub(super) fn check_count(points: usize, copies: usize) -> Result<(), VtkError> {
     let all = points.checked_mul(copies).and_then(|all| u32::try_from(all).ok());
     match all {
@@ -39,10 +39,11 @@ pub(super) fn check_count(points: usize, copies: usize) -> Result<(), VtkError> 
 
 /// The copies of a drawing, one after another.
 ///
-/// Points are merged only on free edges, and, where a mirror makes the lobe, only with the images of the same node: two layers of cloth that
-/// happen to lie on each other, such as an empty airbag's, stay apart.
+/// Only points on free edges are merged. If a mirror plane completes the lobe, a point is merged only with
+/// images of the same node. So two layers of cloth that lie on each other, such as those of an empty airbag,
+/// stay separate.
 pub(super) fn copied(part: &Drawing, maps: &Maps) -> Result<Drawing, VtkError> {
-    // Before the maps are made: there may be far too many.
+    // Checked before the maps are created, since their number may be far too large.
     let halves = 1 + usize::from(maps.mirror.is_some());
     let ends = 1 + usize::from(maps.middle.is_some());
     check_count(part.points.len(), (maps.turns as usize).saturating_mul(halves * ends))?;
@@ -72,7 +73,7 @@ pub(super) fn copied(part: &Drawing, maps: &Maps) -> Result<Drawing, VtkError> {
             let mut image = cell.renumbered(|node| numbers[node]);
             image.map += first;
             if matches!(cell.shape, Shape::Vertex | Shape::Line | Shape::QuadraticLine) {
-                // In a seam two copies of a cable are the same one.
+                // The copies of a cable in a seam coincide: it is drawn once.
                 let mut nodes = image.nodes().to_vec();
                 nodes.sort_unstable();
                 if !lines.insert((cell.group, cell.element, nodes)) {
@@ -85,9 +86,9 @@ pub(super) fn copied(part: &Drawing, maps: &Maps) -> Result<Drawing, VtkError> {
     Ok(whole)
 }
 
-/// Whether each point lies on a free edge of the surfaces, or on none of them.
+/// Whether each point lies on a free edge of the surfaces, or on no surface.
 fn free(part: &Drawing) -> Vec<bool> {
-    // Edges of neighbours run in opposite senses and cancel.
+    // Neighbours run through a common edge in opposite directions, so their contributions cancel.
     let mut edges: HashMap<(usize, usize), (i32, Option<usize>)> = HashMap::new();
     let mut is_free = vec![true; part.points.len()];
     for cell in &part.cells {
@@ -120,22 +121,22 @@ struct Image {
     place: Vector,
     node: usize,
     copy: usize,
-    /// Of the point that it is, or would be.
+    /// Number of the point it is merged with, or of the new point.
     number: usize,
 }
 
-/// Points on seams by their place, in cubes as wide as the distance below which two are one.
+/// Points on seams, hashed by position into cubes as wide as the distance below which two points are merged.
 struct Seams {
     close: f64,
-    /// Whether a seam joins two edges of the part, and not one with its own image.
+    /// Whether a seam joins two different edges of the part, rather than an edge with its own image.
     is_cyclic: bool,
     places: HashMap<[i64; 3], Vec<Image>>,
 }
 
 impl Seams {
-    /// The number of a point that is the same, or nothing, and then it is remembered.
+    /// The number of a point at the same position. If there is none, `None`, and the point is stored.
     fn find_or_add(&mut self, image: Image) -> Option<usize> {
-        // A cloth in one point has no size; a cube less than this wide would need more than 2^63 of them.
+        // A cloth in one point has size 0; narrower cubes would need more than 2^63 of them.
         #[expect(clippy::cast_possible_truncation, reason = "saturates, and then only compares more places")]
         let cube = image.place.map(|x| (x / self.close.max(f64::MIN_POSITIVE)).floor() as i64);
         let mut found: Option<Image> = None;
@@ -148,7 +149,8 @@ impl Seams {
                 let is_same = other.node == image.node;
                 let is_candidate = other.copy != image.copy && (is_same || self.is_cyclic);
                 if is_candidate && dot(apart, apart).sqrt() <= self.close {
-                    // Its own image comes before another node's: the edges of a slit stay apart.
+                    // An image of the same node takes precedence over another node: the edges of a slit stay
+                    // separate.
                     if is_same || found.is_none() {
                         found = Some(*other);
                     }
@@ -156,7 +158,7 @@ impl Seams {
             }
         }
         let number = found.map(|other| other.number);
-        // Another node's point is remembered as this one's too: a third copy may meet either.
+        // A match with another node is stored under this node as well, since a third copy may meet either.
         if found.is_none_or(|other| other.node != image.node) {
             let image = Image { number: number.unwrap_or(image.number), ..image };
             self.places.entry(cube).or_default().push(image);

@@ -5,7 +5,7 @@ use super::{MembranePicture, Whole, copies};
 use crate::VtkError;
 use bulge_membrane::{CellKind, Fields, GroupFields};
 
-/// What a cell is drawn as.
+/// Shape of a cell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Shape {
     Vertex,
@@ -27,7 +27,7 @@ impl Shape {
         }
     }
 
-    /// Its edges as places in its nodes: both ends, and the middle of a quadratic one. None of lines.
+    /// Edges as indices into the nodes: both ends, and the middle of a quadratic edge. Lines have none.
     pub(super) fn edges(self) -> &'static [&'static [usize]] {
         match self {
             Self::Vertex | Self::Line | Self::QuadraticLine => &[],
@@ -37,10 +37,11 @@ impl Shape {
         }
     }
 
-    /// The order of the nodes that turns the normal over.
+    /// The order of the nodes that reverses the normal.
     pub(super) fn turned_over(self) -> &'static [usize] {
         match self {
-            // The first node stays the first, so that a direction along a line keeps its sense.
+            // The first node of a surface cell stays first; a line keeps its nodes, so that a direction along
+            // it keeps its sense.
             Self::Vertex => &[0],
             Self::Line => &[0, 1],
             Self::QuadraticLine => &[0, 1, 2],
@@ -68,12 +69,12 @@ impl From<CellKind> for Shape {
 pub(super) struct Cell {
     pub(super) shape: Shape,
     nodes: [usize; 6],
-    /// The element: index into the groups of the fields, and number there.
+    /// The element: index of its group in the fields, and number in the group.
     pub(super) group: usize,
     pub(super) element: usize,
-    /// Unit vector along the meridian of a membrane of revolution, as meshed; else zero.
+    /// Unit vector along the meridian of a membrane of revolution, as meshed; zero for other cells.
     pub(super) meridian: Vector,
-    /// Index of the map from the mesh to here.
+    /// Index of the map from the mesh to this cell.
     pub(super) map: usize,
 }
 
@@ -82,7 +83,7 @@ impl Cell {
         &self.nodes[..self.shape.nodes()]
     }
 
-    /// With each node's number made anew.
+    /// The cell with new numbers of its nodes.
     pub(super) fn renumbered(mut self, number: impl Fn(usize) -> usize) -> Self {
         for node in &mut self.nodes[..self.shape.nodes()] {
             *node = number(*node);
@@ -90,7 +91,7 @@ impl Cell {
         self
     }
 
-    /// With the normal turned over.
+    /// The cell with its normal reversed.
     pub(super) fn turned_over(mut self) -> Self {
         let before = self.nodes;
         for (node, from) in self.nodes.iter_mut().zip(self.shape.turned_over()) {
@@ -100,13 +101,13 @@ impl Cell {
     }
 }
 
-/// What goes into a file.
+/// The content of a file.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Drawing {
     pub(super) points: Vec<Vector>,
     pub(super) displacements: Vec<Vector>,
     pub(super) cells: Vec<Cell>,
-    /// By which vectors follow their cells.
+    /// The maps that carry vectors from the mesh to the cells.
     pub(super) maps: Vec<Map>,
 }
 
@@ -133,7 +134,7 @@ impl Drawing {
     }
 }
 
-/// The size of what is drawn: the diagonal of the box about it.
+/// Size of the drawing: the diagonal of its bounding box.
 pub(super) fn size(points: &[Vector]) -> f64 {
     let mut range = [[f64::INFINITY, f64::NEG_INFINITY]; 3];
     for point in points {
@@ -144,7 +145,7 @@ pub(super) fn size(points: &[Vector]) -> f64 {
     range.iter().map(|[low, high]| (high - low).powi(2)).sum::<f64>().sqrt()
 }
 
-/// Distance below which places are one, over the size.
+/// Distance below which two points coincide, relative to the size.
 pub(super) const SAME_PLACE: f64 = 1e-9;
 
 /// The elements of a group with their nodes.
@@ -158,7 +159,7 @@ fn elements(group: &GroupFields) -> impl Iterator<Item = (usize, [usize; 6])> {
     })
 }
 
-/// Cells and nodes of the mesh, with its numbers.
+/// The cells and nodes of the mesh, with the numbers of the mesh.
 fn as_meshed(fields: &Fields) -> Drawing {
     let mut cells = Vec::new();
     for (index, group) in fields.groups.iter().enumerate() {
@@ -172,7 +173,7 @@ fn as_meshed(fields: &Fields) -> Drawing {
     }
 }
 
-/// An element as it is.
+/// An element drawn as one cell.
 fn meshed(fields: &Fields, index: usize, element: usize, nodes: [usize; 6]) -> Cell {
     let group = &fields.groups[index];
     let meridian = if group.is_revolved { along(fields, nodes[0], nodes[1]) } else { [0.0; 3] };
@@ -183,7 +184,7 @@ fn along(fields: &Fields, from: usize, to: usize) -> Vector {
     unit(minus(fields.places[to], fields.places[from]))
 }
 
-/// Without the points that no cell has.
+/// The drawing without the points that no cell uses.
 fn used(drawing: Drawing) -> Drawing {
     let mut is_used = vec![false; drawing.points.len()];
     for node in drawing.cells.iter().flat_map(Cell::nodes) {
@@ -208,7 +209,7 @@ fn used(drawing: Drawing) -> Drawing {
     }
 }
 
-/// Where the points of a node of the mesh begin, and how many it has.
+/// Index of the first point of a node of the mesh, and the number of its points.
 #[derive(Debug, Clone, Copy)]
 struct Ring {
     first: usize,
@@ -221,13 +222,13 @@ impl Ring {
     }
 }
 
-/// Membranes of revolution as facets: group after group, element after element, then round; other cells as meshed.
+/// Membranes of revolution as facets, ordered by group, element and angle; other cells as meshed.
 fn revolved(fields: &Fields, facets: u32) -> Result<Drawing, VtkError> {
     let count = facets as usize;
     copies::check_count(fields.places.len(), count)?;
     let turns: Vec<Map> = (0..facets).map(|j| Map::turn(f64::from(j) / f64::from(facets))).collect();
     let mut drawing = Drawing {
-        // Of the middle of each facet; the last for what isn't revolved.
+        // Maps to the middle of each facet; the last one is for cells that aren't revolved.
         maps: (0..facets)
             .map(|j| Map::turn((f64::from(j) + 0.5) / f64::from(facets)))
             .chain([Map::SAME])
@@ -257,7 +258,8 @@ fn revolved(fields: &Fields, facets: u32) -> Result<Drawing, VtkError> {
     Ok(drawing)
 }
 
-/// The points of each node: a circle, one on the axis, one off any membrane of revolution, none where no cell is.
+/// The points of each node: a circle, one point on the axis or off membranes of revolution, none if no cell
+/// uses the node.
 fn rings(fields: &Fields, turns: &[Map], drawing: &mut Drawing) -> Vec<Ring> {
     #[derive(Clone, Copy, PartialEq)]
     enum Use {
@@ -294,7 +296,8 @@ fn rings(fields: &Fields, turns: &[Map], drawing: &mut Drawing) -> Vec<Ring> {
         .collect()
 }
 
-/// Between two rings, with the normal outward where z grows from a to b; nothing between two points of the axis.
+/// The facet between two rings, with the normal outward if z grows from a to b; `None` between two points of
+/// the axis.
 fn facet(a: Ring, b: Ring, j: usize) -> Option<(Shape, [usize; 6])> {
     match (a.points > 1, b.points > 1) {
         (true, true) => {

@@ -1,25 +1,25 @@
-//! Turns about the z axis and mirror images, as matrices.
+//! Rotations about the z axis and reflections, as matrices.
 
 use std::f64::consts::TAU;
 
 pub(super) type Vector = [f64; 3];
 
-/// A linear map, row by row.
+/// A linear map, stored by rows.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Map([Vector; 3]);
 
 impl Map {
     pub(super) const SAME: Self = Self([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
-    /// At a plane across the z axis.
+    /// Reflection in the plane z = 0.
     pub(super) const ENDS_SWAPPED: Self = Self([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, -1.0]]);
 
-    /// This part of a whole turn.
+    /// Rotation about the z axis by this fraction of a turn.
     pub(super) fn turn(part: f64) -> Self {
         let (sin, cos) = (TAU * part).sin_cos();
         Self([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]])
     }
 
-    /// At the plane across `normal`, which isn't zero.
+    /// Reflection in the plane normal to `normal`, which isn't zero.
     pub(super) fn mirror(normal: Vector) -> Self {
         let square = dot(normal, normal);
         let same = |i: usize, j: usize| if i == j { 1.0 } else { 0.0 };
@@ -32,13 +32,13 @@ impl Map {
         self.0.map(|row| dot(row, v))
     }
 
-    /// This map of the image under `first`.
+    /// The composition: first `first`, then this map.
     pub(super) fn after(&self, first: &Self) -> Self {
         let columns = [0, 1, 2].map(|j| self.of([first.0[0][j], first.0[1][j], first.0[2][j]]));
         Self([0, 1, 2].map(|i| [columns[0][i], columns[1][i], columns[2][i]]))
     }
 
-    /// Whether it makes a left hand of a right one.
+    /// Whether the map reverses orientation.
     pub(super) fn is_mirror(&self) -> bool {
         let [a, b, c] = self.0;
         dot(a, [b[1] * c[2] - b[2] * c[1], b[2] * c[0] - b[0] * c[2], b[0] * c[1] - b[1] * c[0]]) < 0.0
@@ -53,7 +53,7 @@ pub(super) fn minus(a: Vector, b: Vector) -> Vector {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
-/// Of length 1; zero stays zero.
+/// The vector scaled to length 1; zero stays zero.
 pub(super) fn unit(v: Vector) -> Vector {
     let length = dot(v, v).sqrt();
     if length > 0.0 { v.map(|x| x / length) } else { v }

@@ -1,12 +1,13 @@
-//! States of a run as numbered `.vtu` files and one `.pvd` that ParaView plays as a film.
+//! States of a run as numbered `.vtu` files and one `.pvd` that ParaView plays as an animation.
 
 use super::{MembranePicture, write_vtu};
 use crate::series::{check_stem, collection, create, member_name};
 use crate::{VtkError, whole_file};
 use std::path::{Path, PathBuf};
 
-/// A series that grows by a state at a time: `stem_0000.vtu`, `stem_0001.vtu`, ... and `stem.pvd`, which names all of them after each state, so
-/// that a run that is broken off leaves a series that can be opened. It holds no states.
+/// A series written state by state: `stem_0000.vtu`, `stem_0001.vtu`, ... and `stem.pvd`, which is rewritten
+/// after each state and lists all of them. So an interrupted run leaves a series that can be opened. The
+/// states aren't kept in memory.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MembraneSeries {
     dir: PathBuf,
@@ -15,17 +16,19 @@ pub struct MembraneSeries {
 }
 
 impl MembraneSeries {
-    /// An empty series in the folder `dir`, which is created if needed. The files of an earlier series of this name are removed: its states
-    /// would pass for those of this one. Nothing is written before the first state.
+    /// An empty series in the folder `dir`, which is created if needed. The files of an earlier series of
+    /// this name are removed, since its states would be taken for states of this one. Nothing is written
+    /// before the first state.
     ///
     /// # Errors
-    /// The stem is no file name, the folder can't be created, or a file of an earlier series can't be removed.
+    /// The stem can't be part of a file name, the folder can't be created, or a file of an earlier series
+    /// can't be removed.
     pub fn new(dir: impl AsRef<Path>, stem: &str) -> Result<Self, VtkError> {
         check_stem(stem)?;
         create(dir.as_ref())?;
         let series = Self { dir: dir.as_ref().to_path_buf(), stem: stem.to_owned(), times: Vec::new() };
         remove(&series.path())?;
-        // Numbered without a gap.
+        // The members are numbered without a gap.
         let mut member = 0;
         while remove(&series.dir.join(member_name(stem, member, "vtu")))? {
             member += 1;
@@ -33,7 +36,8 @@ impl MembraneSeries {
         Ok(series)
     }
 
-    /// Writes one more state, then the `.pvd` with the time of each; the path of the state's file. After an error the series is as before.
+    /// Writes one more state, then the `.pvd` with the time of each, and returns the path of the state's
+    /// file. After an error the series is unchanged.
     ///
     /// # Errors
     /// As [`write_vtu`].
@@ -59,7 +63,7 @@ impl MembraneSeries {
     }
 }
 
-/// Whether there was such a file.
+/// Removes a file; returns whether it existed.
 fn remove(path: &Path) -> Result<bool, VtkError> {
     match std::fs::remove_file(path) {
         Ok(()) => Ok(true),

@@ -9,7 +9,7 @@ use vtkio::model::{
 };
 use vtkio::xml::Compressor;
 
-/// The bytes of a file, or why there are none.
+/// The bytes of a file, or the reason why it can't be encoded.
 pub(super) fn encode(drawing: Drawing, picture: &MembranePicture) -> Result<Vec<u8>, String> {
     let vtk = Vtk {
         version: Version::new_xml(1, 0),
@@ -19,7 +19,7 @@ pub(super) fn encode(drawing: Drawing, picture: &MembranePicture) -> Result<Vec<
         file_path: None,
     };
     let file = vtk.try_into_xml_format(Compressor::ZLib, 6).map_err(|e| e.to_string())?;
-    // Into memory: the writer of vtkio doesn't notice a disk that is full.
+    // Written to memory first: vtkio doesn't notice a full disk.
     let mut body = Vec::new();
     file.write(&mut body).map_err(|e| e.to_string())?;
     let body = String::from_utf8(body).map_err(|e| e.to_string())?;
@@ -28,7 +28,7 @@ pub(super) fn encode(drawing: Drawing, picture: &MembranePicture) -> Result<Vec<
     Ok(format!("<?xml version=\"1.0\"?>\n{head}<UnstructuredGrid>{fields}{tail}\n").into_bytes())
 }
 
-/// Field data, which vtkio doesn't write.
+/// Field data, which vtkio can't write.
 fn field_data(picture: &MembranePicture) -> String {
     let mut xml = String::from("<FieldData>");
     // Writing to a String can't fail.
@@ -47,7 +47,7 @@ fn field_data(picture: &MembranePicture) -> String {
     let _ =
         write!(xml, r#"<Array type="String" Name="groups" NumberOfTuples="{}" format="ascii">"#, names.len());
     for name in names {
-        // Codes of characters; a zero ends a name, so it can't be part of one.
+        // Names are stored as character codes. A zero ends a name, so it can't be part of one.
         for byte in name.bytes().filter(|byte| *byte != 0) {
             let _ = write!(xml, "{byte} ");
         }

@@ -1,4 +1,4 @@
-//! Small cases solved, and files read back by vtkio and measured.
+//! Small cases, solved, and files read back by vtkio and measured.
 
 use bulge_membrane::case::Case;
 use bulge_membrane::{Fields, State};
@@ -151,7 +151,7 @@ fn arrays(attributes: &[Attribute]) -> HashMap<String, Vec<f64>> {
 impl Read {
     pub(crate) fn of(path: &Path) -> Self {
         let xml = fs::read_to_string(path).unwrap();
-        // vtkio doesn't read field data.
+        // vtkio can't read field data.
         let (head, rest) = xml.split_once("<FieldData>").unwrap();
         let (_, tail) = rest.split_once("</FieldData>").unwrap();
         let vtk = Vtk::parse_xml(format!("{head}{tail}").as_bytes()).unwrap();
@@ -203,7 +203,7 @@ impl Read {
         self.types.iter().filter(|own| **own == wanted).count()
     }
 
-    /// Plane triangles of a surface cell; a quadratic one in 4 N^2 by its shape functions.
+    /// Plane triangles of a surface cell; a quadratic one is divided into 4 N^2 by its shape functions.
     pub(crate) fn triangles(&self, cell: usize) -> Vec<[Point; 3]> {
         let x: Vec<Point> = self.cells[cell].iter().map(|node| self.points[*node]).collect();
         match self.types[cell] {
@@ -243,7 +243,8 @@ impl Read {
         all.map(|t| normal(t).iter().map(|n| n * n).sum::<f64>().sqrt()).sum()
     }
 
-    /// By the flow of (x, y, 0)/2, to which ends across the z axis add nothing; positive if the normals point outward.
+    /// Volume as the flux of (x, y, 0)/2, to which ends across the z axis contribute nothing; positive if the
+    /// normals point outward.
     pub(crate) fn volume(&self) -> f64 {
         let flow = |t: [Point; 3]| {
             let (n, third) = (normal(t), 1.0 / 3.0);
@@ -253,7 +254,7 @@ impl Read {
         (0..self.cells.len()).flat_map(|cell| self.triangles(cell)).map(flow).sum()
     }
 
-    /// Edges of surface cells that don't cancel with a neighbour's.
+    /// Edges of surface cells that don't cancel with an edge of a neighbour.
     pub(crate) fn open_edges(&self) -> Vec<(usize, usize)> {
         let mut edges: HashMap<(usize, usize), i32> = HashMap::new();
         for (cell, kind) in self.cells.iter().zip(&self.types) {

@@ -1,8 +1,9 @@
-//! Steps against what is known in closed form: mixing, exponential decay, conduction, adiabatic charging.
+//! Steps against closed-form solutions: mixing, exponential decay, conduction, adiabatic charging.
 
 use super::*;
 
-/// Gas and walls without air passing the inlet: the pressure is what keeps the mass. Gives gas and wall after a time.
+/// Gas and walls without air passing the inlet: the pressure is the one that keeps the mass. Returns gas and
+/// wall after a time.
 fn closed(problem: &HeatProblem, c: &Conductances, steps: u32, time: f64) -> (State, Mesh) {
     let mut mesh = Mesh::new(problem);
     mesh.wall_outer.fill(0.0);
@@ -69,7 +70,7 @@ fn closed_gas_and_wall_meet_exponentially() {
     let [coarse, middle, fine] = [100, 200, 400].map(gap);
     let order = ((coarse - exact) / (middle - exact)).log2();
     assert!((order - 1.0).abs() < 0.02, "order {order}");
-    // Extrapolated twice: third order.
+    // Two Richardson extrapolations: third order.
     let (once, twice) = (2.0 * middle - coarse, 2.0 * fine - middle);
     close((4.0 * twice - once) / 3.0, exact, 1e-5);
 }
@@ -111,7 +112,7 @@ fn walls_cool_and_conduct_as_the_closed_forms() {
     let c = nothing(&mesh);
     let now = problem.instant(0.0);
     let mut state = State::uniform(&mesh, now, AMBIENT, 350.0);
-    // The slowest modes of 20 and of 10 cells.
+    // The slowest modes for 20 and for 10 cells.
     let mode = |i: usize, n: f64| (PI * (i as f64 + 0.5) / n).cos();
     for i in 0..20 {
         state.muscle.wall[i] = 350.0 + 10.0 * mode(i, 20.0);
@@ -122,7 +123,7 @@ fn walls_cool_and_conduct_as_the_closed_forms() {
     let outside = Outside { ambient: AMBIENT, supply: AMBIENT };
     let step = Step { mesh: &mesh, conductances: &c, outside, from: now, to: now, dt: 50.0 };
     Stepper::default().step(step, &mut state).unwrap();
-    // U outside by hand: 10 W/(m2 K) on a diameter of 23 mm, and rubber from 10.75 mm to 11.5 mm.
+    // Outer U by hand: 10 W/(m2 K) on a diameter of 23 mm, and rubber from 10.75 mm to 11.5 mm.
     let u = (1.0 / (10.0 * PI * 0.023) + (11.5_f64 / 10.75).ln() / (2.0 * PI * 0.16)).recip();
     let section = PI * (0.0115_f64.powi(2) - 0.01_f64.powi(2));
     let along = |k: f64, n: f64| 4.0 * k / 0.0125_f64.powi(2) * (PI / (2.0 * n)).sin().powi(2);
@@ -139,7 +140,7 @@ fn walls_cool_and_conduct_as_the_closed_forms() {
     }
 }
 
-/// Charged without heat or mixing from 1 to 6 bar: temperatures of the gas.
+/// Gas temperatures after charging from 1 to 6 bar without heat transfer or mixing.
 fn charged(cells: usize, steps: u32) -> (Vec<f64>, Mesh) {
     let mut problem = coarse();
     problem.numerics.cells = cells;
@@ -166,7 +167,7 @@ fn charged(cells: usize, steps: u32) -> (Vec<f64>, Mesh) {
 #[test]
 fn the_end_is_compressed_adiabatically_to_first_order() {
     let exact = AMBIENT * 6.0_f64.powf((GAMMA - 1.0) / GAMMA);
-    // So many cells that the fresh air doesn't reach the last.
+    // The cells are so many that the fresh air doesn't reach the last one.
     let [coarse, fine] = [200, 400].map(|steps| charged(40, steps).0[39]);
     let order = ((coarse - exact) / (fine - exact)).log2();
     assert!((order - 1.0).abs() < 0.1, "order {order}: {coarse} K, {fine} K, {exact} K");
@@ -175,8 +176,8 @@ fn the_end_is_compressed_adiabatically_to_first_order() {
 
 #[test]
 fn a_charged_muscle_has_the_temperatures_of_the_closed_form() {
-    // Air that entered at the pressure Pe lies at the distance L (Pe/P)^(1/gamma) from the end, at T_s (P/Pe)^(1-1/gamma):
-    // T = T_s s^(1-gamma) at the distance s L, up to the air that was there at first.
+    // Air that entered at the pressure Pe lies at the distance L (Pe/P)^(1/gamma) from the end, at T_s
+    // (P/Pe)^(1-1/gamma). So T = T_s s^(1-gamma) at the distance s L, up to the air that was there initially.
     let first = 6.0_f64.powf(-1.0 / GAMMA);
     let error = |cells: usize| {
         let (gas, mesh) = charged(cells, 40 * u32::try_from(cells).unwrap());
@@ -187,7 +188,8 @@ fn a_charged_muscle_has_the_temperatures_of_the_closed_form() {
         gas.iter().zip(&mesh.x).map(off).sum::<f64>() / cells as f64
     };
     let [coarse, fine] = [20, 80].map(error);
-    // A kink spreads as the root of the cells' length, over a width that is itself such: at least that order.
+    // A kink is smeared over a width proportional to the root of the cell length, and so is the error: the
+    // order is at least that.
     let order = (coarse / fine).log2() / 2.0;
     assert!((0.8..1.2).contains(&order) && fine < 2.0, "order {order}, {fine} K");
 }

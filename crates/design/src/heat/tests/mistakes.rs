@@ -1,4 +1,4 @@
-//! Numbers that can not be, and what is said of them.
+//! Impossible inputs and their error messages.
 
 use super::*;
 

@@ -1,4 +1,4 @@
-//! What a step is made of: properties of air, convection, cells, the drive, tridiagonal rows.
+//! Parts of a step: properties of air, convection, cells, the drive, tridiagonal systems.
 
 use super::*;
 
@@ -34,7 +34,7 @@ fn convection_and_jet_are_as_documented() {
     let got = passage.convection(&closures);
     close(got.transfer, nusselt(re, ra, &closures) * k / 0.02, 1e-12);
     close(got.diffusivity, k / (5.0 * CP) + 0.3 * 2.0 * 0.02, 1e-12);
-    // At rest natural convection is all.
+    // At rest there is only natural convection.
     let rest = Passage { speed: 0.0, ..passage }.convection(&closures);
     close(rest.transfer, 0.55 * ra.powf(0.25) * k / 0.02, 1e-12);
     close(rest.diffusivity, k / (5.0 * CP), 1e-12);
@@ -79,7 +79,7 @@ fn conductances_follow_the_flow() {
     let pipe =
         Passage { hydraulic: 0.004, speed: nozzle, density, gas: 310.0, wall: 300.0 }.convection(&closures);
     close(c.pipe_inner[4], 0.0125 / (1.0 / (pipe.transfer * PI * 0.004) + nylon(2.0, 2.375)), 1e-12);
-    // Air that is drawn out makes no jet.
+    // Air that flows out makes no jet.
     state.pipe.flow = vec![-2e-3; 11];
     state.muscle.flow = vec![0.0; 21];
     mesh.conductances(&problem, &state, now, &mut c);
@@ -92,7 +92,7 @@ fn conductances_follow_the_flow() {
 fn mach_numbers_are_those_of_the_nozzle() {
     let sound = |t: f64| (1.4 * R * t).sqrt();
     for problem in [coarse(), piped(&coarse(), 0.125, 0.006)] {
-        // Port and pipe are alike.
+        // Port and pipe have the same section.
         let mesh = Mesh::new(&problem);
         let now = Instant { pressure: 2e5, section: 1.0 };
         let mut state = State::uniform(&mesh, now, 350.0, 300.0);

@@ -1,4 +1,4 @@
-//! The periodic state: orders of convergence, what S3 reports, the balance of a cycle, ageing.
+//! The periodic state: orders of convergence, trends of S3, the balance of a cycle, ageing.
 
 use super::*;
 
@@ -25,7 +25,7 @@ fn what_s3_reports() {
         [None, pipe(0.1, 0.004), pipe(0.15, 0.004), pipe(0.2, 0.004), pipe(0.2, 0.003), pipe(0.2, 0.006)];
     let all: Vec<HeatSolution> = trend(&problem, &pipes).into_iter().map(Result::unwrap).collect();
     let [none, short, middle, long, narrow, wide] = &all[..] else { panic!() };
-    // Without a pipe the end is hottest, and hotter than anything with a pipe.
+    // Without a pipe the end is hottest, and hotter than any point with a pipe.
     assert!(none.end_rise_k > none.inlet_rise_k + 50.0 && none.hottest_x_m > 0.24);
     for with in &all[1..] {
         assert!(with.hottest_rise_k < none.end_rise_k - 5.0 && with.end_rise_k < none.end_rise_k - 5.0);
@@ -46,7 +46,7 @@ fn conduction_alone_turns_two_of_the_trends() {
     let all: Vec<HeatSolution> = trend(&problem, &pipes).into_iter().map(Result::unwrap).collect();
     assert!(all[2].inlet_rise_k > all[1].inlet_rise_k + 1.0);
     assert!(all[2].inlet_rise_k > all[0].end_rise_k);
-    // The others hold.
+    // The other trends hold.
     assert!(all[2].end_rise_k > all[1].end_rise_k + 1.0 && all[0].end_rise_k > all[2].end_rise_k + 20.0);
 }
 
@@ -81,7 +81,7 @@ fn extrapolated_cycles_end_where_all_cycles_end() {
         assert!((a - b).abs() < 2e-3, "{a} K, {b} K");
     }
     close(fast.time_to_90_s, plain.time_to_90_s, 0.03);
-    // By hand: the cycle's mean crosses 90 %, half a period after its start.
+    // By hand: the mean over the cycle crosses 90 %, half a period after its start.
     let goal = 0.9 * plain.hottest_rise_k;
     let cell = plain.muscle.x_m.iter().position(|x| (x - plain.hottest_x_m).abs() < 1e-12).unwrap();
     let mut runner = cycle::Runner::new(&problem);
@@ -128,7 +128,8 @@ fn ageing_follows_arrhenius() {
     let mut problem = coarse();
     let reference = problem.solve().unwrap();
     let expected = |wall: f64, energy: f64| (energy / 8.314_462_618 * (1.0 / AMBIENT - 1.0 / wall)).exp();
-    // The ripple of the wall in a cycle is a fraction of a kelvin: its mean factor is that of its mean temperature.
+    // The ripple of the wall in a cycle is a fraction of a kelvin: its mean factor is the factor at its mean
+    // temperature.
     close(reference.ageing_factor, expected(AMBIENT + reference.hottest_rise_k, 85e3), 2e-3);
     problem.activation_energy_j_per_mol = 0.0;
     close(problem.solve().unwrap().ageing_factor, 1.0, 1e-12);
@@ -136,7 +137,7 @@ fn ageing_follows_arrhenius() {
 
 #[test]
 fn all_kinds_of_muscles_have_a_periodic_state() {
-    // A sequence that fills (0, 1) evenly in each of its coordinates.
+    // A low-discrepancy sequence that fills (0, 1) evenly in each coordinate.
     let mut count = 0.0;
     let mut solved = 0;
     for i in 0..48 {

@@ -1,4 +1,4 @@
-//! One step: energy and mass are kept to rounding.
+//! One step conserves energy and mass to rounding.
 
 use super::*;
 
@@ -28,7 +28,7 @@ fn every_step_keeps_energy_and_mass() {
             let exchange = stepper.step(step, &mut state).unwrap();
             let gained = energy(&mesh, &state) - energy(&mesh, &before);
             let balance = exchange.enthalpy - exchange.heat - exchange.work;
-            // Of some 30 kJ in the walls.
+            // Out of some 30 kJ in the walls.
             assert!((gained - balance).abs() < 1e-9, "step {i}: {gained} J against {balance} J");
             let moved = air(&state) - air(&before);
             assert!((moved - exchange.mass).abs() < 1e-16, "step {i}: {moved} kg");
@@ -49,8 +49,8 @@ fn every_step_keeps_energy_and_mass() {
 
 #[test]
 fn conserved_energy_alone_gives_the_right_temperatures() {
-    // The last solve must agree with the iteration before it, which is another form of the balance: a step repeated
-    // with walls and conductances of its own end keeps cp M_old (T - T_old) = V dP + sum in.
+    // The last solve must agree with the iteration before it, which uses another form of the balance: a step
+    // repeated with the final walls and conductances satisfies cp M_old (T - T_old) = V dP + sum in.
     let problem = piped(&coarse(), 0.15, 0.004);
     let mesh = Mesh::new(&problem);
     let mut state = State::uniform(&mesh, problem.instant(0.0), 300.0, 320.0);

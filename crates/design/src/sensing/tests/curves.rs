@@ -1,4 +1,4 @@
-//! Curves over a range: their inverse, slopes, linearity.
+//! Curves over a range: inverse, slopes, linearity.
 
 use super::*;
 
@@ -15,7 +15,7 @@ fn the_inverse_gives_the_contraction_back() {
             let found = sensor.contraction(&curve, asked).unwrap();
             assert!((found - contraction).abs() < 1e-9, "{contraction}: {found}");
         }
-        // The noise of a reading, through the inverse.
+        // The noise of a reading, propagated through the inverse.
         let noise = 1e-5 * sensor.reference_resistance_ohm();
         let resolution = curve.resolution(noise).unwrap();
         let here = &curve.readings[10];
@@ -24,7 +24,7 @@ fn the_inverse_gives_the_contraction_back() {
         close(resolution.contraction[10], 0.5 * (up - down), 1e-5);
         close(resolution.worst_m, resolution.worst * muscle.muscle().length().si(), 1e-15);
         assert!(resolution.contraction.iter().all(|size| *size <= resolution.worst));
-        // Outside, and on another's curve.
+        // Outside the curve, and on the curve of another sensor.
         let outside = sensor.contraction(&curve, 2.0 * curve.readings[20].resistance_ohm);
         assert!(matches!(outside, Err(SensingError::OutsideCurve { .. })));
         assert!(matches!(sensor.contraction(&curve, f64::NAN), Err(SensingError::OutsideCurve { .. })));
@@ -37,8 +37,9 @@ fn the_inverse_gives_the_contraction_back() {
 
 #[test]
 fn a_curve_that_turns_has_no_inverse() {
-    // On a cylinder lambda^2 ~ c^2 (r + t)^2 + 1 - q^2 r^2 with c = theta' and q = sin(alpha0)/r0: largest at r = c^2 t/(q^2 - c^2). For a
-    // layer of 2 mm that stays, c^2 = q^2 12/14 puts this at r = 12 mm.
+    // On a cylinder lambda^2 ~ c^2 (r + t)^2 + 1 - q^2 r^2 with c = theta' and q = sin(alpha0)/r0: its
+    // maximum is at r = c^2 t/(q^2 - c^2). For a layer of constant 2 mm, c^2 = q^2 12/14 puts it at r = 12
+    // mm.
     let alpha = 25f64.to_radians();
     let fibre = 0.2 / alpha.cos();
     let turns = (12.0f64 / 14.0).sqrt() * alpha.sin() / 0.01 * fibre / TAU;
@@ -55,7 +56,7 @@ fn a_curve_that_turns_has_no_inverse() {
     assert!(before > 0.0 && after < 0.0 && here.abs() < 1e-4 * before, "{before:e} {here:e} {after:e}");
     assert!(sensor.contraction(&curve, curve.readings[3].resistance_ohm).is_err());
     assert!(curve.resolution(1e-6).is_err());
-    // Nor is it a place to wind.
+    // Nor is it an acceptable zone.
     let search = Search { range, widths: [1.0; 2], width_steps: 1, centres: 3, goal: Goal::MostSensitive };
     let Err(SensingError::NoPlace { scanned, largest, .. }) = sensor.best_place(&search) else {
         panic!("no place")
@@ -75,7 +76,8 @@ fn slopes_and_lines_are_those_of_known_curves() {
         let exact = (4.0 * slope(5e-4) - slope(1e-3)) / 3.0;
         close(curve.sensitivity[i], exact, if i < 2 { 3e-5 } else { 1e-6 });
     }
-    // R = 3 + 2 e^2: the best line is at the variance of e about the middle, (n + 1)/(12 (n - 1)).
+    // R = 3 + 2 e^2: the best line equals it where e^2 about the middle equals its mean, (n + 1)/(12 (n -
+    // 1)).
     let n = 101;
     let e: Vec<f64> = (0..n).map(|i| f64::from(i) / 100.0).collect();
     let r: Vec<f64> = e.iter().map(|e| 3.0 + 2.0 * e * e).collect();
@@ -119,9 +121,9 @@ fn the_linearity_of_the_second_generation_ppam() {
     assert!(line.terminal_percent > 9.33 && line.terminal_percent < 9.38);
     assert!(line.mean_sensitivity > 19.55 && line.mean_sensitivity < 19.61);
     assert!(curve.reference_resistance_ohm > 12.19 && curve.reference_resistance_ohm < 12.20);
-    // The curve is concave: steepest where the muscle begins.
+    // The curve is concave: it is steepest at the smallest contraction.
     assert!(curve.sensitivity.windows(2).all(|pair| pair[1] < pair[0]));
-    // 1 mohm is at worst, at 30 %: 1e-3/(13.646 * 12.195) of 110 mm.
+    // 1 mohm is worst at 30 %: 1e-3/(13.646 * 12.195) of 110 mm.
     let resolution = curve.resolution(1e-3).unwrap();
     assert!((resolution.worst_at - 0.3).abs() < 1e-12);
     assert!(resolution.worst_m > 0.658e-6 && resolution.worst_m < 0.664e-6, "{}", resolution.worst_m);

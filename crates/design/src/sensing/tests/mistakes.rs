@@ -1,4 +1,4 @@
-//! What can not be, and what is answered: shapes, strains, windings, questions.
+//! Impossible inputs and their errors: shapes, strains, windings, requests.
 
 use super::*;
 
@@ -26,7 +26,8 @@ fn shapes_from_elsewhere_are_read_and_checked() {
     ] {
         assert!(matches!(found, Err(SensingError::Meridian { .. })), "{found:?}");
     }
-    // A meridian that turns outwards by 40 rad on its way has no parallel surface 5 mm outside, whatever the layer does.
+    // A meridian that turns outward by 40 rad along its length has no parallel surface 5 mm outside, for
+    // either layer.
     let mut waist = shape.clone();
     for point in &mut waist.meridian {
         point.slope_rad = 40.0 * (point.fibre_length_m / 0.11 - 0.5);

@@ -1,4 +1,4 @@
-//! Where a channel is best wound.
+//! The best zone for a channel.
 
 use super::*;
 
@@ -12,7 +12,7 @@ fn a_pleated_muscle_is_best_wound_at_its_middle() {
         assert!((found.best.centre - 0.5).abs() < 1e-9 && (found.best.width - 0.1).abs() < 1e-9);
         let gauge = found.best.sensitivity.unwrap();
         assert!(gauge > 21.9 && gauge < 22.0, "{gauge}");
-        // The curve that comes with it is that of the zone.
+        // The curve returned is that of the zone.
         let line = found.curve.linearity.unwrap();
         close(line.mean_sensitivity, gauge, 1e-12);
         close(line.best_fit_percent, found.best.best_fit_percent.unwrap(), 1e-9);
@@ -23,7 +23,7 @@ fn a_pleated_muscle_is_best_wound_at_its_middle() {
         let insensitive = found.scanned.iter().any(|place| place.verdict == Verdict::Insensitive);
         assert_eq!(insensitive, goal != Goal::MostSensitive);
     }
-    // An elastomer that bears less: the best zone reaches its limit, or there is none.
+    // With a weaker elastomer the best zone reaches its limit, or there is none.
     let weak = |max_strain| {
         let sensor = sensor_with(&ppam(), layer(0.0, 1.0, 6.0), Options { max_strain, ..options });
         sensor.best_place(&search(0.3, [0.1; 2], Goal::MostSensitive))
@@ -36,7 +36,7 @@ fn a_pleated_muscle_is_best_wound_at_its_middle() {
     );
     assert!(found.scanned.iter().any(|place| place.verdict == Verdict::Overstrained));
     assert!(matches!(weak(0.1), Err(SensingError::NoPlace { overstrained: 15, .. })));
-    // Turns that run into each other in the narrowest zones only.
+    // The turns overlap only in the narrowest zones.
     let dense = sensor.rewound(layer(0.0, 1.0, 60.0)).unwrap();
     let found = dense.best_place(&search(0.3, [0.1, 0.4], Goal::MostSensitive)).unwrap();
     assert!(found.scanned[..15].iter().all(|place| place.verdict == Verdict::Impossible));
@@ -61,22 +61,22 @@ fn a_braid_is_straightest_near_its_fittings() {
     assert!(
         found < free.scanned.iter().filter_map(|place| place.best_fit_percent).fold(f64::INFINITY, f64::min)
     );
-    // No place of a scan twenty times as fine is better.
+    // No zone of a scan twenty times as fine is better.
     let fine = (0..=60)
         .map(|i| departure(0.08 + 2e-4 * f64::from(i), 0.1).best_fit_percent)
         .fold(f64::INFINITY, f64::min);
     assert!(found <= fine + 1e-9 && fine - found < 2e-3, "{found} {fine}");
-    // More sensitivity is paid for with linearity, and no more of it is taken than asked for.
+    // Higher sensitivity costs linearity, and no more of it is taken than required.
     let bound = best([0.1; 2], 5.0).best;
     close(bound.sensitivity.unwrap(), 5.0, 2e-4);
     assert!(bound.sensitivity.unwrap() >= 5.0 && bound.best_fit_percent.unwrap() > found);
-    // Other widths can only help.
+    // A range of widths can only improve the result.
     let wide = best([0.1, 0.25], 5.0).best;
     assert!(wide.best_fit_percent.unwrap() <= bound.best_fit_percent.unwrap() + 1e-12);
     let impossible = sensor.best_place(&search(0.25, [0.1; 2], Goal::MostLinear { least_sensitivity: 8.0 }));
     let Err(SensingError::NoPlace { largest, .. }) = impossible else { panic!("8 can't be reached") };
     assert!(largest > 7.39 && largest < 7.42);
-    // A long braid: the straightest zone is where the ends give way to the cylinder.
+    // In a long braid the most linear zone is at the transition from the ends to the cylinder.
     let long = sensor_with(&alone(&preset("dmsp-20-250").unwrap()), layer(0.0, 1.0, 6.0), Options::default());
     let goal = Goal::MostLinear { least_sensitivity: 0.0 };
     let placed = long.best_place(&search(0.25, [0.1; 2], goal)).unwrap();

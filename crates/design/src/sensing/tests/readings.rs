@@ -15,7 +15,7 @@ fn a_helix_on_a_cylinder_has_its_closed_form() {
         for contraction in [-0.02, 0.0, 0.1, 0.25] {
             let sigma = alpha.cos() * (1.0 - contraction);
             let r = r0 / alpha.sin() * (1.0 - sigma * sigma).sqrt();
-            // The layer keeps its volume: ((r + t)^2 - r^2) l = the same at rest.
+            // The layer keeps its volume: ((r + t)^2 - r^2) l equals its value at rest.
             let t = match layer {
                 Layer::Kept => offset,
                 Layer::Thinning => {
@@ -39,7 +39,7 @@ fn a_helix_on_a_cylinder_has_its_closed_form() {
 
 #[test]
 fn along_the_meridian_the_stretch_is_that_of_the_net() {
-    // Pleated and inextensible: nothing changes; the whole muscle, 1 mm^2 of eGaIn: 0.294 ohm/m.
+    // Pleated and inextensible: nothing changes. The whole muscle with 1 mm^2 of eGaIn: 0.294 ohm/m.
     let along = Winding { section_m2: 1e-6, ..zone(0.0, 1.0, 0.0) };
     let straight = sensor(&ppam(), along);
     close(straight.reference_resistance_ohm(), 0.294 * 0.11, 1e-12);
@@ -49,7 +49,7 @@ fn along_the_meridian_the_stretch_is_that_of_the_net() {
     let curve = straight.curve(Range { from: 0.05, to: 0.3, points: 21 }).unwrap();
     assert_eq!((curve.linearity, curve.check_monotone()), (None, Err(SensingError::NoChange)));
     assert!(curve.resolution(1e-6).is_err());
-    // Pleated with fibres that stretch: (1 + e)^2.
+    // Pleated with elastic fibres: (1 + e)^2.
     let elastic = muscle(
         "name = \"e\"\nkind = \"pleated\"\nlength = \"110 mm\"\nradius = \"16 mm\"\nfibres = 40\nfibre = { stiffness = \"2 kN\" }\n",
     );
@@ -58,7 +58,8 @@ fn along_the_meridian_the_stretch_is_that_of_the_net() {
     assert!(strain > 0.005);
     let found = sensor(&alone(&elastic), along).reading(0.1).unwrap();
     close(1.0 + found.relative_change, (1.0 + strain).powi(2), 1e-11);
-    // Braided: (cos(alpha)/cos(alpha0))^2, and for the cylinder that is (1 - contraction)^2; the resistance falls and tells the contraction.
+    // Braided: (cos(alpha)/cos(alpha0))^2, which for the cylinder is (1 - contraction)^2. The resistance
+    // decreases and determines the contraction.
     let found = sensor(&cylinder(), along).reading(0.2).unwrap();
     close(1.0 + found.relative_change, 0.64, 1e-12);
     let falling = sensor(&braid(), along);
@@ -83,14 +84,15 @@ fn a_ring_at_mid_length_measures_the_largest_radius() {
         let found = from_5.reading(contraction).unwrap();
         close(1.0 + found.relative_change, (r / radius(0.05)).powi(2), 1e-7);
     }
-    // At the reference itself nothing has changed, along the whole muscle.
+    // At the reference itself nothing changes, along the whole muscle.
     let whole =
         from_5.rewound(Winding { offset_m: 1e-3, layer: Layer::Thinning, ..zone(0.0, 1.0, 9.0) }).unwrap();
     let found = whole.reading(0.05).unwrap();
     assert!(found.relative_change.abs() < 1e-10 && found.largest_strain.abs() < 1e-9, "{found:?}");
 }
 
-/// Length, resistance and liquid of a polyline in space, extrapolated to no spacing; the reference gives the unstretched lengths.
+/// Length, resistance and liquid volume of a polyline in space, extrapolated to zero spacing; the reference
+/// gives the unstretched lengths.
 fn polyline(sensor: &Sensor, contraction: f64) -> [f64; 3] {
     let sums = |count: usize| {
         let [now, then] =
@@ -124,7 +126,7 @@ fn length_resistance_and_liquid_are_those_of_a_curve_in_space() {
             let [length, resistance, liquid] = polyline(&sensor, contraction);
             close(reading.channel_length_m, length, 2e-9);
             close(reading.resistance_ohm, resistance, 2e-9);
-            // Liquid neither comes nor goes.
+            // The volume of the liquid is constant.
             close(reading.liquid_m3, liquid, 2e-9);
             close(reading.liquid_m3, 1e-8 * sensor.reference_length_m(), 1e-11);
             assert!(reading.resistance_ohm > reading.uniform_resistance_ohm);
@@ -148,7 +150,8 @@ fn a_thinning_layer_keeps_its_volume() {
     assert!(t < 0.6 * offset, "{t}");
     let volume = r * t + (1.0 + kappa * r) * t * t / 2.0 + kappa * t * t * t / 3.0;
     close(volume, 0.016 * offset + offset * offset / 2.0, 1e-9);
-    // What the change of t along the muscle adds to the length is left out: small, and never negative.
+    // The variation of t along the muscle would add to the length, but is neglected: it is small and never
+    // negative.
     let reading = sensor.reading(contraction).unwrap();
     let [length, resistance, _] = polyline(&sensor, contraction);
     let left_out = [length / reading.channel_length_m - 1.0, resistance / reading.resistance_ohm - 1.0];
@@ -176,7 +179,7 @@ fn the_error_falls_with_the_sixth_power_of_the_spacing() {
         assert!(orders[1] > 5.0 && orders[1] < 8.5, "{name}: {errors:?}");
         assert!(errors[2] < at_49 && default < 1e-11, "{name}: {errors:?} {default:e}");
     }
-    // The longest shipped braid, whose ends are 20 times shorter than itself.
+    // The longest shipped braid: it is 20 times as long as its ends.
     let long = alone(&preset("dmsp-20-400").unwrap());
     let [found, exact] = [201, 1601].map(|points| {
         let options = Options { points, ..Options::default() };
@@ -223,14 +226,14 @@ fn effects_of_the_muscle_take_part() {
     let [a, b] = [&learnt("[effects.radius-error]\nradius = \"10.7 mm\""), &wide]
         .map(|muscle| sensor(muscle, winding).reading(0.1).unwrap());
     assert_eq!(a, b);
-    // Fibres that are 1 % longer than the muscle says: the contraction is that from the stated length.
+    // Fibres 1 % longer than the muscle file says: the contraction is relative to the stated length.
     let longer = sensor(&learnt("[effects.fibre-length]\nexcess = \"1 %\""), zone(0.1, 0.9, 0.0))
         .reading(0.1)
         .unwrap();
     assert!((longer.contraction - 0.1).abs() < 1e-15);
     close(longer.muscle_length_m, 0.18, 1e-12);
     close(1.0 + longer.relative_change, (0.9f64 / 1.01).powi(2), 1e-12);
-    // Fibres stretch more under more pressure; inextensible ones don't care.
+    // Fibres stretch more at higher pressure; inextensible ones don't stretch.
     let stiff = sensor(&ppam(), winding);
     let [one, two] =
         [1.0, 3.0].map(|p| stiff.at_pressure(bar(p)).unwrap().reading(0.2).unwrap().resistance_ohm);

@@ -1,4 +1,4 @@
-//! Readings that are none of the muscle's: coarse, clipped, frozen, spikes.
+//! Disturbed readings: coarse, clipped, frozen, spikes.
 
 use super::*;
 
@@ -12,7 +12,7 @@ fn on_grid(values: &mut [f64], step: f64) {
 #[test]
 fn coarse_sensors() {
     type Column = fn(&mut Columns) -> &mut Vec<f64>;
-    // Steps are said in N, % and kPa.
+    // Steps are reported in N, % and kPa.
     let sensors: [(&str, Column, [f64; 2], [&str; 2]); 3] = [
         ("force", |columns| &mut columns.force_n, [1.0, 20.0], ["1 N", "20 N"]),
         ("contraction", motion, [5e-4, 5e-3], ["0.05 %", "0.5 %"]),
@@ -35,7 +35,7 @@ fn coarse_sensors() {
             );
         }
     }
-    // What is held is judged by its size: 300 N in steps of 1 N are 308 levels, whatever the noise.
+    // A held quantity is judged by its size: 300 N in steps of 1 N are 308 levels, whatever the noise.
     let mut held = clean_loops(2, 1);
     let mut noise = Noise::new(4);
     held.force_n = held.force_n.iter().map(|_| (300.0 + 2.0 * noise.normal()).round()).collect();
@@ -86,7 +86,8 @@ fn a_length_and_a_pressure_that_are_clipped() {
 
 #[test]
 fn tops_of_few_rows_are_clipped_together() {
-    // Triangles of pressure at one length, 8 rows each way; the amplifier ends at 560 N, where each top has two or three rows.
+    // Triangles of pressure at one length, 8 rows each way; the amplifier saturates at 560 N, where each top
+    // has two or three rows.
     let mut noise = Noise::new(7);
     let bar = |i: usize| 1.0 + 0.6 * (if i % 16 < 8 { i % 16 } else { 16 - i % 16 }) as f64;
     let rows = 160;
@@ -103,7 +104,7 @@ fn tops_of_few_rows_are_clipped_together() {
 
 #[test]
 fn a_top_that_is_read_again_and_again_is_clipped_wherever_it_is() {
-    // Set points at random: neighbours in the file say nothing about each other.
+    // Random set points: neighbours in the file are unrelated.
     let mut noise = Noise::new(11);
     let rows = 400;
     let (mut bar, mut length) = (Vec::new(), Vec::new());
@@ -123,7 +124,7 @@ fn a_top_that_is_read_again_and_again_is_clipped_wherever_it_is() {
     assert_eq!(quality(columns.clone()).of(FindingKind::Clipped).count(), 0);
     columns.force_n.iter_mut().for_each(|f| *f = f.min(limit));
     assert_eq!(lines(&quality(columns), FindingKind::Clipped), over);
-    // Coarse readings of a sine come often at its top: 2.4 times as often as the next.
+    // Coarse readings of a sine are frequent at its top: 2.4 times as frequent as the next.
     let bar: Vec<f64> = (0..rows).map(|i| 3.0 + 2.0 * (0.0157 * i as f64).sin()).collect();
     let force = bar.iter().map(|bar| (20.0 * bar).round()).collect();
     let pressure = bar.iter().map(|bar| 1e5 * bar).collect();
@@ -140,10 +141,10 @@ fn a_recording_that_stands_still() {
         columns.pressure_pa[300..340].fill(100_010.0);
         motion(columns)[300..340].fill(0.1765);
     });
-    // A load cell that stood still while the muscle moved on.
+    // A load cell that is frozen while the muscle moves on.
     plants(FindingKind::Frozen, &rows, |columns| columns.force_n[300..340].fill(333.3));
     plants(FindingKind::Frozen, &rows[..7], |columns| columns.force_n[300..308].fill(333.3));
-    // One that shows full newtons, at the turning points of a slow loop, doesn't.
+    // A load cell that shows full newtons, at the turning points of a slow loop, isn't frozen.
     let mut columns = clean_loops(1, 1);
     columns.force_n.iter_mut().for_each(|force| *force = (*force / 5.0).round() * 5.0);
     assert_eq!(quality(columns).of(FindingKind::Frozen).count(), 0);
@@ -167,7 +168,7 @@ fn spikes_in_each_column() {
     plants(FindingKind::Spike, &[350], |columns| motion(columns)[350] += 0.02);
 }
 
-/// Triangles with Coulomb's friction of this size, so many rows for each of three pressures.
+/// Triangles with Coulomb friction of this size, `rows` rows at each of three pressures.
 fn friction_loops(rows: usize, friction: f64, noise_n: f64, seed: u64) -> Columns {
     let mut noise = Noise::new(seed);
     let (mut p, mut c, mut f) = (Vec::new(), Vec::new(), Vec::new());
@@ -204,7 +205,7 @@ fn clean_rows_are_no_spikes() {
 
 #[test]
 fn spikes_of_what_a_model_leaves_are_found_where_paths_are_cut() {
-    // Set points of pressure, one after the other: each is a run of its own, and what a model leaves goes on.
+    // Successive set points of pressure: each is a run of its own, but the residuals of a model go on.
     let mut noise = Noise::new(5);
     let rows = 240;
     let pressure: Vec<f64> =
@@ -223,7 +224,7 @@ fn spikes_of_what_a_model_leaves_are_found_where_paths_are_cut() {
         left[row] += 15.0;
     }
     assert_eq!(data.spikes(&left), [start, start + 38, 100]);
-    // A step of what it leaves, from one run to the next, is none.
+    // A step of the residuals from one run to the next isn't a spike.
     let mut stepped: Vec<f64> = (0..rows).map(|_| 0.5 * noise.normal()).collect();
     stepped[start + 40..start + 80].iter_mut().for_each(|value| *value += 15.0);
     assert_eq!(data.spikes(&stepped), [0; 0]);
@@ -244,7 +245,7 @@ fn spikes_of_20_sigma_in_two_per_cent_of_the_rows() {
             }
         }
         let data = Data::from_columns(columns).unwrap();
-        // As a model sees them: what it leaves along the path.
+        // Residuals of a model along the path.
         let left: Vec<f64> = (0..1200)
             .map(|row| data.force()[row] - force(data.pressure()[row], data.contraction(1.0)[row], 0.0))
             .collect();
@@ -268,7 +269,7 @@ fn heavy_tails_are_hardly_spikes() {
         }
         called += Data::from_columns(columns).map(|data| data.spikes(data.force()).len()).unwrap();
     }
-    // Student's t with 3 degrees of freedom is beyond 11 in one of 600 rows.
+    // Student's t with 3 degrees of freedom exceeds 11 in one of 600 rows.
     assert!(called < 60, "{called} of 12000");
 }
 
@@ -277,7 +278,7 @@ fn tips_of_loops_are_no_spikes_and_spikes_beside_them_are() {
     let mut noise = Noise::new(5);
     let (mut c, mut f) = (Vec::new(), Vec::new());
     for row in 0..2000_u32 {
-        // Triangles of 100 rows; where the muscle turns friction lets go, and one row shows it.
+        // Triangles of 100 rows. Friction drops where the muscle turns, and one row shows it.
         let way = f64::from(row % 100) / 50.0;
         let x = if way <= 1.0 { way } else { 2.0 - way };
         let tip = if row % 50 == 0 && row > 0 { 30.0 } else { 0.0 };
@@ -290,7 +291,7 @@ fn tips_of_loops_are_no_spikes_and_spikes_beside_them_are() {
     columns.time_s = Some((0..2000).map(|row| 0.01 * f64::from(row)).collect());
     let data = Data::from_columns(columns).unwrap();
     assert_eq!(data.spikes(data.force()), [530, 1275]);
-    // A disturbed reading at one turn of many is a spike as elsewhere.
+    // A disturbed reading at one turning point of many is a spike as elsewhere.
     let mut once: Vec<f64> = data.force().to_vec();
     for row in (50..2000).step_by(50).filter(|row| *row != 600) {
         once[row] -= 30.0;

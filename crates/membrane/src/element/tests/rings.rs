@@ -2,7 +2,7 @@
 
 use super::*;
 
-/// A cylinder, a cone, and a bent meridian with its middle node aside; each ends in its radius.
+/// A cylinder, a cone, and a bent meridian with an off-centre middle node; each ends at its radius.
 const CYLINDER: [Vector; 3] = [[1.4, 0.0, 0.2], [1.4, 0.0, 1.3], [1.4, 0.0, 0.75]];
 
 fn cut<const N: usize>(places: &[Vector; 3]) -> [Vector; N] {
@@ -31,7 +31,7 @@ fn rings_of<const N: usize>() {
                     panic!("{what}")
                 };
                 assert!(!sheet.wrinkles || found == tension, "{what}: {found:?}");
-                // The other way round: wrinkles along the meridian.
+                // Reversed: wrinkles along the meridian.
                 let isotropic = matches!(sheet.cloth, Cloth::Isotropic(_));
                 let x = revolved_at(&cut::<N>(&CYLINDER), [stretch[1], stretch[0] * fullness], 0.0);
                 check(&element, &x, &format!("turned {what}"));
@@ -39,7 +39,7 @@ fn rings_of<const N: usize>() {
                     panic!("{what}")
                 };
                 assert!(!sheet.wrinkles || !isotropic || found == tension, "{what}: {found:?}");
-                // A bent meridian in the midst of each state.
+                // A bent meridian well inside each state.
                 if [1.3, 1.25, 0.9].contains(&stretch[0]) {
                     let element = Ring::<N>::new(&cut(&MERIDIAN), &layers).unwrap();
                     check(
@@ -70,7 +70,8 @@ fn threads_of<const N: usize>() {
         let mut element = Ring::<N>::new(&cut(&CYLINDER), layers).unwrap();
         let mut bent = Ring::<N>::new(&cut(&MERIDIAN), layers).unwrap();
         for is_held in [false, true] {
-            // Whole stretches in both directions stretch every family alike: taut, and close to where T0 = 0 or T0 = 40 x 0.03 ends.
+            // Equal stretches in both directions stretch every family equally: taut, and close to the ends of
+            // T0 = 0 and T0 = 40 x 0.03.
             for stretch in [1.2, 1.001, 0.999, 0.971, 0.969, 0.8] {
                 let x = revolved_at(&cut::<N>(&CYLINDER), [stretch; 2], 0.0);
                 check(&element, &x, &format!("{N} {layers:?} {is_held} {stretch}"));
@@ -167,7 +168,7 @@ fn what_a_membrane_of_revolution_carries() {
 
 #[test]
 fn threads_carry_what_a_braid_does() {
-    // n threads at the present angle b on a cylinder of radius r pull with n T cos b along it.
+    // n threads at the current angle b on a cylinder of radius r pull with n T cos b along it.
     let angle = 0.5_f64;
     let threads = RingLayer::Threads { thread: Thread::Elastic { stiffness: 3.0 }, count: 7.0, angle };
     let element = Ring::<2>::new(&cut(&CYLINDER), &[threads]).unwrap();
@@ -180,7 +181,7 @@ fn threads_carry_what_a_braid_does() {
     assert!((local.force[1][2] - 7.0 * tension * a / stretch).abs() < 1e-13);
     // Each is h/cos a long.
     assert!((local.energy - 7.0 * 0.5 * tension * (stretch - 1.0) * 1.1 / angle.cos()).abs() < 1e-13);
-    // Hoop: the work of dr is n T dl_f L.
+    // Hoop direction: the work of dr is n T dl_f L.
     let hoop = 7.0 * tension * 1.1 / angle.cos() * b * angle.sin() / stretch / 1.4;
     assert!((local.force[0][0] + local.force[1][0] - hoop).abs() < 1e-13);
 }
@@ -201,6 +202,6 @@ fn membranes_of_revolution_move_along_their_axis() {
     for i in 0..3 {
         assert!(norm(sub(a.force[i], b.force[i])) < 1e-13 && norm(sub(a.sweep[i], b.sweep[i])) < 1e-13);
     }
-    // No force along the axis on the whole.
+    // No total force along the axis.
     assert!(a.force.iter().map(|f| f[2]).sum::<f64>().abs() < 1e-13);
 }

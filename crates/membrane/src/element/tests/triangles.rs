@@ -2,7 +2,7 @@
 
 use super::*;
 
-/// Stretched in its plane, the first stretch at `angle` to x, then turned and moved in space.
+/// Stretched in its plane, the first stretch at `angle` to x, then rotated and displaced in space.
 fn spread<const N: usize>(reference: &[Vector; N], [l1, l2]: [f64; 2], angle: f64) -> [Vector; N] {
     let (sin, cos) = angle.sin_cos();
     reference.map(|[x, y, z]| {
@@ -20,7 +20,7 @@ fn triangles_of<const N: usize>(flat: &[Vector; N], curved: Option<&[Vector; N]>
                 let x = spread(flat, stretch, angle);
                 let what = format!("{N} {sheet:?} {stretch:?} {angle}");
                 check(&element, &x, &what);
-                // The border of woven cloth is known along the warp only.
+                // The border of woven cloth is only known along the warp.
                 if sheet.wrinkles && (!is_woven || angle == 0.0) {
                     let found = element.carried(&x).unwrap().tension;
                     assert_eq!(found, tension, "{what}");
@@ -35,7 +35,7 @@ fn triangles_of<const N: usize>(flat: &[Vector; N], curved: Option<&[Vector; N]>
             }
         }
     }
-    // A facet only hands the pressure on.
+    // A facet only transmits the pressure.
     let facet = Triangle::<N>::new(flat, WARP, None).unwrap();
     check(&facet, &shaken(&spread(flat, [1.2, 1.1], 0.4), 0.1), "facet");
     assert!(facet.carried(flat).is_none() && facet.energy(flat) == 0.0);
@@ -82,7 +82,7 @@ fn triangles_dont_see_rotations() {
 
 #[test]
 fn a_pattern_in_any_plane_is_the_same_pattern() {
-    // The reference turned in space with its warp: the same element.
+    // Rotating the reference in space together with its warp gives the same element.
     for sheet in sheets() {
         let x = spread(&FLAT, [1.2, 0.9], 0.7);
         let turned = FLAT.map(|x| add(rotated(x, 1.3), [1.0, 2.0, 3.0]));
@@ -102,7 +102,7 @@ fn what_a_triangle_carries() {
     for sheet in sheets().into_iter().filter(|sheet| !sheet.wrinkles) {
         for (flat, is_six) in [(six(FLAT, 0.0), true), (six(FLAT, 0.0), false)] {
             for stretch in [[1.3, 1.15], [1.4, natural(&sheet.cloth, 1.4)], [1.5, 0.7]] {
-                // Woven cloth has its axes in the directions of the stretches: warp along the first one.
+                // The axes of woven cloth are aligned with the stretches, with the warp along the first one.
                 for angle in [0.0, 0.37, 0.785, 1.2, 1.9, 2.35, 2.6] {
                     let warp = [f64::cos(angle), f64::sin(angle), 0.0];
                     let x = spread(&flat, stretch, angle);
@@ -114,7 +114,7 @@ fn what_a_triangle_carries() {
                     };
                     let carried = carried.unwrap();
                     let [w1, w2] = by_hand(&sheet.cloth, stretch[0], stretch[1]);
-                    // Per present length across.
+                    // Per current length across.
                     let expected = [w1 / stretch[1], w2 / stretch[0]];
                     let what = format!("{is_six} {sheet:?} {stretch:?} {angle}: {carried:?} {expected:?}");
                     for i in 0..2 {
@@ -131,7 +131,8 @@ fn what_a_triangle_carries() {
 
 #[test]
 fn known_forces_of_a_strip_and_of_a_balloon() {
-    // Uniaxial neo-Hooke: sigma = mu (l^2 - 1/l) over the present thickness h/sqrt(l); equibiaxial: mu (l^2 - 1/l^4) over h/l^2.
+    // Uniaxial neo-Hooke: sigma = mu (l^2 - 1/l) over the current thickness h/sqrt(l); equibiaxial: mu (l^2 -
+    // 1/l^4) over h/l^2.
     let sheet = |law| Sheet { cloth: Cloth::Isotropic(law), wrinkles: true, residual: 0.0 };
     let carried = |law, stretch| {
         let element = Triangle::<3>::new(&FLAT, WARP, Some(sheet(law))).unwrap();
@@ -140,7 +141,8 @@ fn known_forces_of_a_strip_and_of_a_balloon() {
     let rubber = Law::NeoHooke { shear: 1.3 };
     let l = 1.44;
     let strip = carried(rubber, [l, 0.7]);
-    // Wrinkled: the force is spread over the present width of the wrinkled strip, 0.7, of what it was at its natural width 1/sqrt(l).
+    // Wrinkled: the force acts over the current width 0.7 of the wrinkled strip instead of its natural width
+    // 1/sqrt(l).
     let force = 1.3 * (l * l - 1.0 / l) / l.sqrt() / l.sqrt() / 0.7;
     assert!((strip.force[0] - force).abs() < 1e-13 && strip.force[1].abs() < 1e-14, "{strip:?}");
     assert_eq!(strip.tension, Tension::Wrinkled);
@@ -151,7 +153,7 @@ fn known_forces_of_a_strip_and_of_a_balloon() {
     let balloon = carried(Law::MooneyRivlin { c1: 0.6, c2: 0.2 }, [l, l]);
     let force = 2.0 * (0.6 + 0.2 * l * l) * (1.0 - l.powi(-6));
     assert!((balloon.force[0] - force).abs() < 1e-13);
-    // Uniaxial Hencky: sigma = Y ln l of a present section l^(-2 nu): per present width Y ln l/(l l^-nu).
+    // Uniaxial Hencky: sigma = Y ln l over a current section l^(-2 nu): per current width Y ln l/(l l^-nu).
     let strip = carried(Law::Hencky { stiffness: 3.0, poisson: 0.3 }, [l, l.powf(-0.3)]);
     assert!((strip.force[0] - 3.0 * l.ln() / l.powf(0.7)).abs() < 1e-13);
     // Uniaxial St Venant-Kirchhoff: S = Y E, force over reference width l Y E.
@@ -176,7 +178,7 @@ fn woven_cloth_pulled_off_its_axes() {
 
 #[test]
 fn the_direction_of_six_nodes_is_a_unit_vector() {
-    // The principal direction varies a little over the element about any angle.
+    // The principal direction varies slightly over the element, around any angle.
     let flat = six(FLAT, 0.0);
     let sheet = Sheet { cloth: Cloth::Isotropic(LAWS[2]), wrinkles: true, residual: 0.0 };
     let element = Triangle::<6>::new(&flat, WARP, Some(sheet)).unwrap();

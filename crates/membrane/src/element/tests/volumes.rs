@@ -27,7 +27,7 @@ fn icosahedron() -> (Vec<Vector>, Vec<[usize; 3]>) {
     (corners, faces)
 }
 
-/// About z, and along it.
+/// Rotated about z, and displaced along it.
 fn turned_about_z(x: Vector) -> Vector {
     let (sin, cos) = 0.7_f64.sin_cos();
     [cos * x[0] - sin * x[1], sin * x[0] + cos * x[1], x[2] + 4.0]
@@ -42,20 +42,21 @@ fn a_closed_surface_of_facets() {
     };
     // 5 (3 + sqrt 5) a^3/12.
     let exact = 5.0 * (3.0 + 5.0_f64.sqrt()) * 8.0 / 12.0;
-    // A closed surface may be turned and moved in any way.
+    // A closed surface may be rotated and displaced in any way.
     let anyhow = |x: &Vector| add(rotated(*x, 1.2), [2.0, -3.0, 1.0]);
     let places: Vec<Vector> = corners.iter().map(anyhow).collect();
     assert!((volume(&corners) - exact).abs() < 1e-13 && (volume(&places) - exact).abs() < 1e-12);
     let turned: Vec<Vector> = places.iter().map(|x| turned_about_z(*x)).collect();
     assert!((volume(&turned) - exact).abs() < 1e-12);
-    // Each open piece may be turned about z and moved along it.
+    // Each open piece may be rotated about z and displaced along it.
     for face in &faces {
         let x = face.map(|i| places[i]);
         let difference =
             Triangle::<3>::volume(&x, &rule) - Triangle::<3>::volume(&x.map(turned_about_z), &rule);
         assert!(difference.abs() < 1e-13);
     }
-    // The force of the pressure on a corner: a third of each facet that meets there, along its normal.
+    // The force of the pressure on a corner: a third of that on each facet that meets there, along its
+    // normal.
     let mut swept = vec![[0.0; 3]; 12];
     let mut flux = swept.clone();
     for face in &faces {
@@ -126,8 +127,8 @@ fn a_closed_surface_of_curved_triangles() {
     let all = octants(2);
     let turned: Vec<_> = all.iter().map(|x| x.map(|x| add(rotated(x, 0.9), [3.0, 1.0, -2.0]))).collect();
     assert!((volume(&all) - volume(&turned)).abs() < 1e-12);
-    // The volume by another formula, of x.n/3, and the force of the pressure as the integral of N n dA, both at points of
-    // their own: a square of Gauss points drawn together into the triangle.
+    // The volume by another formula, from x.n/3, and the force of the pressure as the integral of N n dA.
+    // Both use other quadrature points: a square of Gauss points collapsed into the triangle.
     let gauss = [
         (0.861_136_311_594_052_6, 0.347_854_845_137_453_9),
         (0.339_981_043_584_856_3, 0.652_145_154_862_546_1),
@@ -171,7 +172,8 @@ fn a_closed_surface_of_curved_triangles() {
 
 #[test]
 fn a_sphere_of_revolution_sweeps_its_area() {
-    // The force of the pressure on a ring between two open ends: 2 pi r N (dz, -dr) and the discs' share along z.
+    // The force of the pressure on a ring between two open ends: 2 pi r N (dz, -dr) and the share of the end
+    // discs along z.
     let x = MERIDIAN;
     let rule = Ring::<3>::volume_rule();
     let local = Ring::<3>::new(&x, &[]).unwrap().local(&x, PENALTY, PRESSURE, &rule);
@@ -191,7 +193,7 @@ fn a_sphere_of_revolution_sweeps_its_area() {
             flux[2] -= w * 2.0 * PI * r * dr * n;
         }
     }
-    // pi r^2 at the ends: what a disc there would take.
+    // pi r^2 at the ends: the force that a disc there would carry.
     flux[0][2] -= PI * x[0][0].powi(2);
     flux[1][2] += PI * x[1][0].powi(2);
     for (swept, flux) in local.sweep.iter().zip(&flux) {
@@ -209,6 +211,6 @@ fn elements_without_size_are_refused() {
     assert!(Cable::<2>::new(&[[1.0; 3]; 2], Thread::Inextensible, 1.0).is_none());
     assert!(Ring::<2>::new(&[[0.0, 0.0, 0.0], [0.0, 0.0, 1.0]], &[]).is_none());
     assert!(Ring::<2>::new(&[[1.0, 0.0, 1.0], [1.0, 0.0, 1.0]], &[]).is_none());
-    // A warp that stands upright on the element: some direction in its plane is taken.
+    // If the warp is perpendicular to the element, some direction in its plane is taken.
     assert!(Triangle::<3>::new(&FLAT, [0.0, 0.0, 1.0], Some(cloth)).is_some());
 }

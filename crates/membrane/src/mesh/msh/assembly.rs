@@ -1,33 +1,33 @@
-//! Nodes and elements as they come from a file, put together to a mesh.
+//! Builds a mesh from the nodes and elements of a file.
 
 use super::super::{Block, CellKind, Mesh, MeshError};
 use super::cursor::{Cursor, DAMAGED};
 use std::collections::{HashMap, HashSet};
 
-/// What has been read up to now.
+/// The data read so far.
 #[derive(Default)]
 pub(super) struct Assembly {
     mesh: Mesh,
     /// Names of the physical groups by dimension and number.
     names: HashMap<(u8, u32), String>,
-    /// Indices of nodes by their number in the file. A map, as the numbers may be sparse and huge.
+    /// Indices of nodes by their number in the file. A map, because the numbers may be sparse and huge.
     indices: HashMap<u64, usize>,
     /// Blocks by the number of their physical group and their kind.
     blocks: HashMap<(Option<u32>, CellKind), usize>,
     /// Blocks by the name of their group and their kind.
     named_blocks: HashMap<(String, CellKind), usize>,
-    /// Whether each block is of a physical group.
+    /// Whether each block belongs to a physical group.
     is_grouped: Vec<bool>,
 }
 
-/// An element's nodes, as many as its kind has.
+/// The nodes of an element, as many as its kind has.
 pub(super) struct Nodes {
     indices: [usize; 6],
     kind: CellKind,
 }
 
 impl Nodes {
-    /// The cell, turned around if its physical group says so.
+    /// The cell, reversed if its physical group says so.
     fn ordered(&self, is_reversed: bool) -> impl Iterator<Item = usize> {
         const AHEAD: [usize; 6] = [0, 1, 2, 3, 4, 5];
         let order = match (is_reversed, self.kind) {
@@ -47,7 +47,7 @@ impl Assembly {
         self.indices.reserve(count);
     }
 
-    /// A physical group's name; false if it has one already.
+    /// Names a physical group; returns false if it has a name already.
     pub(super) fn name(&mut self, dimension: u8, group: u32, name: &str) -> bool {
         self.names.insert((dimension, group), name.to_owned()).is_none()
     }
@@ -96,7 +96,7 @@ impl Assembly {
         Ok(nodes)
     }
 
-    /// The block for elements of a kind in a physical group; groups of one name are one.
+    /// The block for elements of a kind in a physical group; groups with the same name are merged.
     pub(super) fn block(&mut self, group: Option<u32>, kind: CellKind) -> usize {
         if let Some(block) = self.blocks.get(&(group, kind)) {
             return *block;
@@ -123,7 +123,8 @@ impl Assembly {
         }
     }
 
-    /// The mesh. As when Gmsh saves, elements without a physical group are only wanted where there are no physical groups.
+    /// The mesh. Elements without a physical group are only kept if there are no physical groups, as when
+    /// Gmsh saves.
     pub(super) fn finish(mut self, cursor: &Cursor) -> Result<Mesh, MeshError> {
         if self.mesh.blocks.is_empty() {
             return Err(cursor.error_of_file(
@@ -143,7 +144,7 @@ impl Assembly {
     }
 }
 
-/// Of what is meshed: points, curves or surfaces.
+/// Dimension of a cell: point, curve or surface.
 pub(super) fn dimension(kind: CellKind) -> u8 {
     match kind {
         CellKind::Point => 0,
@@ -152,7 +153,7 @@ pub(super) fn dimension(kind: CellKind) -> u8 {
     }
 }
 
-/// What Gmsh's element type is here; an error that names the element for those without a use in a membrane.
+/// The cell kind of Gmsh's element type. The error for a type without use in a membrane names the element.
 pub(super) fn kind(cursor: &Cursor, element_type: i32, number: u64) -> Result<CellKind, MeshError> {
     let surface = "mesh with triangles (in Gmsh: without `Recombine`)";
     let volume = "save only the surfaces: mesh in two dimensions, or put them into physical groups and save without \

@@ -1,21 +1,23 @@
-//! Where the reader is in an MSH file: numbers one after another, as text or as bytes, and the place of a mistake.
+//! The position of the reader in an MSH file: reads one number after another, as text or binary, and locates
+//! mistakes.
 //!
-//! MSH 4.1 has the same numbers in the same order in both, so that one reader does for both. Text is read by lines, as Gmsh writes it:
-//! a number that is missing or one too many is noticed on its own line instead of shifting everything after it.
+//! MSH 4.1 has the same numbers in the same order in both encodings, so that one reader serves both. Text is
+//! read by lines, as Gmsh writes it: a missing or superfluous number is detected on its own line instead of
+//! shifting everything after it.
 
 use super::super::MeshError;
 use std::fmt::Display;
 use std::str::FromStr;
 
-/// What to do about a file that is shorter than it should be.
+/// Remedy for a truncated file.
 pub(super) const CUT: &str = "the file is cut or damaged: copy it again, or save it again with Gmsh";
-/// What to do about a file that no version of Gmsh writes.
+/// Remedy for a file that no version of Gmsh writes.
 pub(super) const DAMAGED: &str = "the file is damaged or was edited by hand: save it again with Gmsh";
 
-/// The longest quotation of a file in characters.
+/// Longest quotation from a file, in characters.
 const LONGEST_QUOTE: usize = 60;
 
-/// How numbers are written.
+/// Encoding of numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Encoding {
     Text,
@@ -23,13 +25,13 @@ pub(super) enum Encoding {
     BigEndian,
 }
 
-/// A place in the file.
+/// A position in the file.
 pub(super) struct Cursor<'a> {
     pub(super) encoding: Encoding,
     origin: &'a str,
     bytes: &'a [u8],
     at: usize,
-    /// Where the number that was read last begins.
+    /// Start of the number that was read last.
     last: usize,
 }
 
@@ -47,12 +49,12 @@ impl<'a> Cursor<'a> {
         self.bytes.get(self.at..).unwrap_or_default()
     }
 
-    /// A mistake at the number that was read last.
+    /// An error at the number that was read last.
     pub(super) fn error(&self, what: impl Display, instead: &str) -> MeshError {
         self.error_at(self.last, what, instead)
     }
 
-    /// A mistake at the place that was reached.
+    /// An error at the current position.
     pub(super) fn error_here(&self, what: impl Display, instead: &str) -> MeshError {
         self.error_at(self.at, what, instead)
     }
@@ -67,7 +69,7 @@ impl<'a> Cursor<'a> {
         MeshError { file: format!("{}:{line}", self.origin), what: what.to_string(), instead }
     }
 
-    /// A mistake that has no place: something isn't there.
+    /// An error without a position, because something is missing.
     pub(super) fn error_of_file(&self, what: impl Display, instead: &str) -> MeshError {
         MeshError { file: self.origin.to_owned(), what: what.to_string(), instead: instead.to_owned() }
     }
@@ -90,7 +92,7 @@ impl<'a> Cursor<'a> {
         }
     }
 
-    /// Closes the section of which everything that it declares has been read.
+    /// Closes a section whose declared contents have been read.
     pub(super) fn close_section(&mut self, name: &str) -> Result<(), MeshError> {
         self.skip(is_white);
         self.last = self.at;
@@ -112,7 +114,7 @@ impl<'a> Cursor<'a> {
         ))
     }
 
-    /// Passes over a section of which nothing is needed, whatever is in it.
+    /// Skips a section, whatever it contains.
     pub(super) fn skip_section(&mut self, name: &str) -> Result<(), MeshError> {
         let end = format!("$End{name}");
         let mut from = self.at;
@@ -129,19 +131,19 @@ impl<'a> Cursor<'a> {
         ))
     }
 
-    /// Goes to the next line of text that isn't blank; bytes follow each other.
+    /// Goes to the next line of text that isn't blank; does nothing in binary files.
     pub(super) fn begin_record(&mut self) {
         if self.is_text() {
             self.skip(is_white);
         }
     }
 
-    /// Checks that nothing more stands on a line of text.
+    /// Checks that a line of text has ended.
     pub(super) fn end_record(&mut self, what: impl Display) -> Result<(), MeshError> {
         if self.is_text() { self.end_line(what) } else { Ok(()) }
     }
 
-    /// The same for a line that is text in every file.
+    /// Checks the same for a line that is text in every file.
     pub(super) fn end_line(&mut self, what: impl Display) -> Result<(), MeshError> {
         self.skip(|byte| is_white(byte) && byte != b'\n');
         match self.rest().first() {
@@ -158,14 +160,14 @@ impl<'a> Cursor<'a> {
         }
     }
 
-    /// The next line that isn't blank, whole; text in every file.
+    /// The next complete line that isn't blank; text in every file.
     pub(super) fn line(&mut self) -> &'a [u8] {
         self.skip(is_white);
         self.last = self.at;
         self.take_line().trim_ascii()
     }
 
-    /// A whole number of four bytes.
+    /// An integer of four bytes.
     pub(super) fn int(&mut self, what: impl Display) -> Result<i32, MeshError> {
         match self.encoding {
             Encoding::Text => self.written(what),
@@ -174,7 +176,7 @@ impl<'a> Cursor<'a> {
         }
     }
 
-    /// A whole number of eight bytes, not below zero.
+    /// A nonnegative integer of eight bytes.
     pub(super) fn size(&mut self, what: impl Display) -> Result<u64, MeshError> {
         match self.encoding {
             Encoding::Text => self.written(what),
@@ -202,14 +204,14 @@ impl<'a> Cursor<'a> {
         Err(self.error(format_args!("{what} is {value}"), instead))
     }
 
-    /// How many entries follow, of at least so many bytes each in text and in bytes. A number that the rest of the file can't hold is
-    /// refused before memory is asked for.
+    /// The number of following entries, each of at least so many bytes in text and in binary. A number that
+    /// doesn't fit into the rest of the file is refused before memory is allocated.
     pub(super) fn count(&mut self, what: &str, (text, binary): (u64, u64)) -> Result<usize, MeshError> {
         let declared = self.size(what)?;
         self.covered(declared, what, if self.is_text() { text } else { binary })
     }
 
-    /// The same for a number on a line of its own that is text in every file.
+    /// The same for a number on a line of its own, which is text in every file.
     pub(super) fn counted_line(
         &mut self,
         what: &str,
@@ -260,7 +262,7 @@ impl<'a> Cursor<'a> {
         rest.get(..end).unwrap_or_default()
     }
 
-    /// The next bytes, so many as the array has.
+    /// The next N bytes.
     pub(super) fn array<const N: usize>(&mut self, what: impl Display) -> Result<[u8; N], MeshError> {
         self.last = self.at;
         let Some(bytes) = self.rest().first_chunk::<N>() else {
@@ -287,7 +289,7 @@ fn is_white(byte: u8) -> bool {
     byte.is_ascii_whitespace() || byte == 0x0b
 }
 
-/// Where `part` first stands in `bytes`.
+/// The first position of `part` in `bytes`.
 pub(in crate::mesh) fn find(bytes: &[u8], part: &[u8]) -> Option<usize> {
     let first = *part.first()?;
     let mut from = 0;
@@ -303,7 +305,7 @@ pub(in crate::mesh) fn find(bytes: &[u8], part: &[u8]) -> Option<usize> {
 
 /// A piece of the file for a message: short, on one line, printable.
 pub(in crate::mesh) fn quoted(bytes: &[u8]) -> String {
-    // A byte is at most a character; four of them at least are one.
+    // A character takes between one and four bytes.
     let start = bytes.get(..bytes.len().min(4 * (LONGEST_QUOTE + 1))).unwrap_or_default();
     let text = String::from_utf8_lossy(start);
     let trimmed = text.trim();

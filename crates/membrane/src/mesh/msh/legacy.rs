@@ -83,7 +83,7 @@ fn element(
     Ok(())
 }
 
-/// The number of a node or an element, four bytes where it isn't text.
+/// The number of a node or an element; four bytes in binary files.
 fn number(cursor: &mut Cursor, what: impl std::fmt::Display) -> Result<u64, MeshError> {
     if cursor.is_text() {
         return cursor.written(what);

@@ -5,10 +5,11 @@ use super::assembly::{self, Assembly};
 use super::cursor::{Cursor, DAMAGED};
 use std::collections::HashMap;
 
-/// Most physical groups of one point, curve or surface: a bound on how often its elements are repeated.
+/// Most physical groups of one point, curve or surface; bounds how often its elements are repeated.
 const MOST_GROUPS: usize = 64;
 
-/// The physical groups of the points, curves and surfaces, by dimension and number. A negative number turns the elements around.
+/// The physical groups of the points, curves and surfaces, by dimension and number. A negative number
+/// reverses the elements.
 pub(super) type Entities = HashMap<(i32, i32), Vec<i32>>;
 
 pub(super) fn entities(cursor: &mut Cursor) -> Result<Entities, MeshError> {
@@ -28,7 +29,7 @@ pub(super) fn entities(cursor: &mut Cursor) -> Result<Entities, MeshError> {
             cursor.begin_record();
             let tag = cursor.int(format_args!("the number of a {name}"))?;
             for _ in 0..if dimension == 0 { 3 } else { 6 } {
-                // Boxes of geometry without an extent may be infinite; they aren't needed.
+                // The bounding box of geometry without extent may be infinite; it isn't needed.
                 cursor.any_number(format_args!("a coordinate of {name} {tag}"))?;
             }
             let groups = cursor.count("the number of physical groups", (2, 4))?;
@@ -135,7 +136,7 @@ pub(super) fn elements(
                 }
                 for group in groups_of(cursor, entities, (dimension, entity))? {
                     let block = assembly.block(group.map(i32::unsigned_abs), kind);
-                    // Groups of one name are one group, and an element is in it once.
+                    // Groups with the same name are one group, which contains an element once.
                     if groups.iter().all(|(other, _)| *other != block) {
                         groups.push((block, group.is_some_and(i32::is_negative)));
                     }
@@ -153,7 +154,7 @@ pub(super) fn elements(
     agree(cursor, "elements", total, found)
 }
 
-/// The physical groups of an entity, each once, or a single none.
+/// The physical groups of an entity, each once; a single `None` if there are none.
 fn groups_of(
     cursor: &Cursor,
     entities: Option<&Entities>,
@@ -172,12 +173,12 @@ fn groups_of(
     Ok(if tags.is_empty() { vec![None] } else { tags.iter().copied().map(Some).collect() })
 }
 
-/// The first line of a section: how many blocks, and how many nodes or elements in all of them.
+/// The first line of a section: the number of blocks, and the total number of nodes or elements.
 fn head(cursor: &mut Cursor, things: &str, each: (u64, u64)) -> Result<(usize, usize), MeshError> {
     cursor.begin_record();
     let blocks = cursor.count(&format!("the number of blocks of {things}"), (8, 20))?;
     let total = cursor.count(&format!("the number of {things}"), each)?;
-    // Their least and largest numbers help only those who allocate by number.
+    // Their least and largest numbers are only useful for allocating by number.
     cursor.size("the least number")?;
     cursor.size("the largest number")?;
     cursor.end_record(format_args!("the number of {things}"))?;

@@ -1,4 +1,4 @@
-//! Meshes as MSH 4.1 text, to be opened with Gmsh.
+//! Writes meshes as MSH 4.1 text for Gmsh.
 
 use super::super::{Block, CellKind, Mesh};
 use super::assembly::dimension;
@@ -7,11 +7,12 @@ use std::collections::hash_map::Entry;
 use std::fmt::Write as _;
 
 impl Mesh {
-    /// The mesh as a file of Gmsh (MSH 4.1, text): each block is a discrete entity, each name of a group a physical group.
+    /// The mesh as a Gmsh file (MSH 4.1, text): each block is a discrete entity, each group name a physical
+    /// group.
     ///
-    /// Numbers of nodes and elements are kept if no two are equal; else they are counted from 1, as for a cell that is in several
-    /// blocks. The flat pattern has no place in this format. A block without a name is no physical group, so that
-    /// [`Self::from_msh`] leaves it out if other blocks of its dimension have names.
+    /// Numbers of nodes and elements are kept if no two are equal. Otherwise they are renumbered from 1, as
+    /// for a cell in several blocks. The format can't store the flat pattern. A block without a name is no
+    /// physical group, so that [`Self::from_msh`] drops it if other blocks of its dimension have names.
     #[must_use]
     pub fn to_msh(&self) -> String {
         let mut out = String::from("$MeshFormat\n4.1 0 8\n$EndMeshFormat\n");
@@ -34,7 +35,7 @@ impl Mesh {
         self.write_entities(out, groups)?;
         let numbers = unique(self.numbers.iter(), self.nodes.len());
         let (least, largest) = range(&numbers);
-        // Nodes must be on some entity; which one matters only to those who mesh again.
+        // Nodes must belong to some entity; which one only matters for remeshing.
         let (dimension, tag) =
             groups.entities.iter().copied().max_by_key(|(dimension, _)| *dimension).unwrap_or((0, 1));
         let blocks = usize::from(!self.nodes.is_empty());
@@ -97,7 +98,7 @@ impl Mesh {
         writeln!(out, "$EndElements")
     }
 
-    /// The box around a block.
+    /// The bounding box of a block.
     fn bounds(&self, block: &Block) -> ([f64; 3], [f64; 3]) {
         let mut places = block.cells.iter().filter_map(|node| self.nodes.get(*node));
         let first = places.next().copied().unwrap_or_default();
@@ -111,13 +112,13 @@ impl Mesh {
     }
 }
 
-/// The physical groups and entities of a mesh that is written.
+/// The physical groups and entities of a mesh during writing.
 struct Groups {
     /// Dimension, number and name.
     names: Vec<(u8, usize, String)>,
-    /// The group's number for each block.
+    /// Number of the group of each block.
     of_blocks: Vec<Option<usize>>,
-    /// Dimension and number for each block.
+    /// Dimension and number of each block's entity.
     entities: Vec<(u8, usize)>,
 }
 
@@ -145,13 +146,13 @@ impl Groups {
     }
 }
 
-/// The given numbers if they can be numbers in a file of Gmsh, else those from 1.
+/// The given numbers if they are valid in a Gmsh file, otherwise numbers from 1.
 fn unique<'a>(given: impl Iterator<Item = &'a u64>, count: usize) -> Vec<u64> {
     let given: Vec<u64> = given.copied().collect();
     let mut sorted = given.clone();
     sorted.sort_unstable();
     sorted.dedup();
-    // Gmsh keeps numbers in signed words.
+    // Gmsh stores numbers in signed words.
     let fits = |number: &u64| (1..=i64::MAX as u64).contains(number);
     if given.len() == count && sorted.len() == count && sorted.iter().all(fits) {
         return given;

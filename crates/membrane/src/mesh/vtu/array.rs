@@ -1,7 +1,7 @@
 //! Data arrays of VTK's XML files: <https://docs.vtk.org/en/latest/vtk_file_formats/vtkxml_file_format.html>.
 //!
-//! An array is text, or bytes with a header that says how many; the bytes are inline as base64 or appended, there as base64 or as
-//! they are, and may be compressed in blocks.
+//! An array is text, or bytes with a header that states their number. The bytes are inline as base64 or
+//! appended, as base64 or raw, and may be compressed in blocks.
 
 use super::super::MeshError;
 use super::super::msh::quoted;
@@ -14,31 +14,31 @@ use std::borrow::Cow;
 use std::cell::Cell;
 use std::io::Read as _;
 
-/// Most bytes to which a file may unpack: these and so many times its length. Regular meshes unpack to ten times their length; the
-/// bound is for files that were made to fill the memory.
+/// Most bytes to which a file may unpack: this number plus this multiple of its length. Regular meshes unpack
+/// to ten times their length; the bound is for files that were made to exhaust the memory.
 const MOST_UNPACKED: (u64, u64) = (64 << 20, 30);
 
-/// What to do about numbers that don't fit together.
+/// Remedy for inconsistent numbers.
 const DAMAGED: &str =
     "the file is damaged or its writer is at fault: save it again, for example with ParaView";
 
-/// How the arrays of a file are written.
+/// How the arrays of a file are stored.
 pub(super) struct Arrays<'a, 'xml> {
     origin: &'a str,
     document: &'a Document<'xml>,
     appended: &'a [u8],
     is_appended_raw: bool,
-    /// Where appended arrays begin, in order.
+    /// Offsets at which appended arrays begin, in order.
     offsets: Vec<usize>,
     is_big_endian: bool,
     is_compressed: bool,
-    /// Bytes of a word of a header.
+    /// Size of a header word in bytes.
     header: usize,
-    /// How many bytes may still be unpacked.
+    /// Number of bytes that may still be unpacked.
     unpackable: Cell<u64>,
 }
 
-/// The bytes of a number and how they are read.
+/// The size of a number in bytes, and its type.
 #[derive(Debug, Clone, Copy)]
 enum NumberType {
     Signed(usize),
@@ -54,7 +54,7 @@ enum Number {
 }
 
 impl<'a, 'xml> Arrays<'a, 'xml> {
-    /// `length` is that of the whole file.
+    /// Determines how arrays are stored. `length` is that of the whole file.
     pub(super) fn new(
         origin: &'a str,
         document: &'a Document<'xml>,
@@ -112,13 +112,13 @@ impl<'a, 'xml> Arrays<'a, 'xml> {
         Ok(arrays)
     }
 
-    /// A mistake in an element of the XML.
+    /// An error in an XML element.
     pub(super) fn error(&self, node: Node, what: impl Into<String>, instead: &str) -> MeshError {
         let line = self.document.text_pos_at(node.range().start).row;
         MeshError { file: format!("{}:{line}", self.origin), what: what.into(), instead: instead.to_owned() }
     }
 
-    /// A number that an element has as attribute.
+    /// A number from an attribute of an XML element.
     pub(super) fn count(&self, node: Node, attribute: &str) -> Result<usize, MeshError> {
         let text = node.attribute(attribute).unwrap_or_default();
         text.trim().parse().map_err(|_| {
@@ -131,11 +131,11 @@ impl<'a, 'xml> Arrays<'a, 'xml> {
         })
     }
 
-    /// The array as whole numbers; as many as `expected`, or as there are.
+    /// The array as integers: `expected` of them, if given.
     pub(super) fn integers(&self, array: Node, expected: Option<usize>) -> Result<Vec<i64>, MeshError> {
         self.read(array, expected, |number| match number {
             Number::Whole(value) => i64::try_from(value).ok(),
-            // Exact below 2^53: the cast can't lose anything.
+            // Exact below 2^53, so the cast loses nothing.
             #[allow(clippy::cast_possible_truncation)]
             Number::Real(value) => {
                 let whole = value.fract().abs() <= 0.0 && value.abs() <= 9_007_199_254_740_992.0;
@@ -155,7 +155,7 @@ impl<'a, 'xml> Arrays<'a, 'xml> {
     /// An array of strings, each ended by a NUL.
     pub(super) fn strings(&self, array: Node) -> Result<Vec<String>, MeshError> {
         let bytes = if array.attribute("format") == Some("ascii") {
-            // Codes of characters, which VTK writes with a sign or without.
+            // Character codes, which VTK writes as signed or unsigned.
             let byte = |code: i16| {
                 u8::try_from(code).ok().or_else(|| i8::try_from(code).ok().map(i8::cast_unsigned))
             };
@@ -237,7 +237,7 @@ impl<'a, 'xml> Arrays<'a, 'xml> {
         })
     }
 
-    /// The bytes of an array that isn't text, unpacked.
+    /// The unpacked bytes of an array that isn't text.
     fn bytes(&self, array: Node) -> Result<Cow<'a, [u8]>, MeshError> {
         let packed = match array.attribute("format") {
             Some("binary") => self.base64(array, texts(array).flat_map(str::bytes))?,
@@ -268,7 +268,8 @@ impl<'a, 'xml> Arrays<'a, 'xml> {
             }
             .ok_or_else(cut);
         }
-        // Compressed: the number of blocks, their size unpacked, that of the last if it is another, and all sizes packed.
+        // Compressed data: the number of blocks, their unpacked size, the size of the last one if it differs,
+        // and all compressed sizes.
         if first == 0 {
             return Ok(Cow::Borrowed(&[]));
         }
@@ -298,7 +299,7 @@ impl<'a, 'xml> Arrays<'a, 'xml> {
         Ok(Cow::Owned(out))
     }
 
-    /// Counts bytes that are to be kept against those that may be.
+    /// Charges bytes that are kept to the allowance.
     fn charge(&self, array: Node, bytes: u64) -> Result<(), MeshError> {
         let Some(left) = self.unpackable.get().checked_sub(bytes) else {
             let what = format!("with {} the file unpacks to far more than meshes do", name(array));
@@ -308,7 +309,7 @@ impl<'a, 'xml> Arrays<'a, 'xml> {
         Ok(())
     }
 
-    /// From the array's offset to the next one, or to the end.
+    /// The bytes from the array's offset to the next one, or to the end.
     fn appended(&self, array: Node) -> Result<Cow<'a, [u8]>, MeshError> {
         let begin = self.count(array, "offset")?;
         let next = self.offsets.partition_point(|offset| *offset <= begin);
@@ -317,7 +318,7 @@ impl<'a, 'xml> Arrays<'a, 'xml> {
             let what = format!("{} begins at {begin}, after the end of the appended data", name(array));
             return Err(self.error(array, what, CUT));
         };
-        // Any number of arrays may begin at one place.
+        // Any number of arrays may begin at one offset.
         self.charge(array, bytes.len() as u64)?;
         if self.is_appended_raw {
             Ok(Cow::Borrowed(bytes))
@@ -326,7 +327,8 @@ impl<'a, 'xml> Arrays<'a, 'xml> {
         }
     }
 
-    /// Text of base64, in one piece, or in several that each have their padding: VTK encodes the header of what is compressed apart.
+    /// Base64 text in one piece, or in several with their own padding: VTK encodes the header of compressed
+    /// data separately.
     fn base64(&self, array: Node, text: impl Iterator<Item = u8>) -> Result<Cow<'a, [u8]>, MeshError> {
         let text: Vec<u8> = text.filter(|byte| !byte.is_ascii_whitespace()).collect();
         let mut out = Vec::with_capacity(text.len() / 4 * 3);
@@ -364,7 +366,7 @@ impl NumberType {
         match self {
             Self::Unsigned(_) => Number::Whole(word.into()),
             Self::Signed(bytes) => {
-                // The sign is the first of the bits in use.
+                // The sign is the highest of the used bits.
                 let unused = 64 - 8 * bytes;
                 Number::Whole(((word << unused).cast_signed() >> unused).into())
             }
@@ -387,18 +389,18 @@ impl std::fmt::Display for Number {
     }
 }
 
-/// At most eight bytes as a number.
+/// A number of at most eight bytes.
 fn unsigned(bytes: &[u8], is_big_endian: bool) -> u64 {
     let join = |word: u64, byte: &u8| word << 8 | u64::from(*byte);
     if is_big_endian { bytes.iter().fold(0, join) } else { bytes.iter().rev().fold(0, join) }
 }
 
-/// The text of an array; VTK puts elements with further information after it.
+/// The text nodes of an array; VTK appends elements with further information.
 fn texts<'a>(array: Node<'a, '_>) -> impl Iterator<Item = &'a str> {
     array.children().filter(Node::is_text).filter_map(|node| node.text())
 }
 
-/// How messages call an array.
+/// The name of an array in messages.
 pub(super) fn name(array: Node) -> String {
     array
         .attribute("Name")

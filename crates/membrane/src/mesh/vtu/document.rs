@@ -1,4 +1,4 @@
-//! The XML of a VTK file, and the data appended to it, which may be bytes that no XML allows.
+//! The XML of a VTK file and its appended data, which may contain bytes that aren't valid in XML.
 
 use super::super::MeshError;
 use super::super::msh::{find, quoted};
@@ -7,19 +7,19 @@ use std::borrow::Cow;
 const BEGIN: &[u8] = b"<AppendedData";
 const END: &[u8] = b"</AppendedData>";
 
-/// What to do about a file that is shorter than it should be.
+/// Remedy for a truncated file.
 pub(super) const CUT: &str =
     "the file is cut or damaged: copy it again, or save it again with the program that wrote it";
 
 /// The two parts of a file.
 pub(super) struct Parts<'a> {
-    /// Everything but the appended data.
+    /// Everything except the appended data.
     pub(super) xml: Cow<'a, str>,
-    /// What follows the underscore of the appended data.
+    /// The bytes after the underscore of the appended data.
     pub(super) appended: &'a [u8],
 }
 
-/// Cuts the appended data out of a file.
+/// Separates the appended data from a file.
 pub(super) fn parts<'a>(bytes: &'a [u8], origin: &str) -> Result<Parts<'a>, MeshError> {
     let error = |what: String, instead: &str| MeshError {
         file: origin.to_owned(),
@@ -53,7 +53,7 @@ pub(super) fn parts<'a>(bytes: &'a [u8], origin: &str) -> Result<Parts<'a>, Mesh
     if head.ends_with(b"/>") {
         return Ok(Parts { xml: Cow::Borrowed(text(bytes)?), appended: &[] });
     }
-    // The last one: raw data may contain anything.
+    // Take the last one, because raw data may contain anything.
     let end = rest.windows(END.len()).rposition(|window| window == END).ok_or_else(cut)?;
     let (data, tail) = rest.split_at_checked(end).ok_or_else(cut)?;
     let Some(appended) = data.trim_ascii_start().strip_prefix(b"_") else {

@@ -8,7 +8,7 @@ use std::ops::Range;
 
 type Row = Option<(f64, Vec<f64>)>;
 
-/// A problem by a function of the parameters and the row; `None` where there is no value.
+/// A problem from a function of the parameters and the row; `None` where it has no value.
 struct Model<F> {
     rows: usize,
     parameters: usize,

@@ -57,7 +57,7 @@ fn profile_of_a_decay_agrees_with_its_closed_form() {
 fn open_profiles_say_why() {
     let (problem, usual) = (decay(12, [1.0, 1.0], in_order), Options::default());
     let minimum = free(&problem, &[1.0, 0.1]);
-    // A bound before the rise; a rise that a rate of infinity doesn't reach.
+    // A bound before the rise; a rise that even an infinite rate doesn't reach.
     let bounds = Bounds { lower: vec![f64::NEG_INFINITY, 0.6], upper: vec![f64::INFINITY; 2] };
     let found = profile(&problem, &minimum, &bounds, &usual, 1, 1.0).unwrap();
     assert!(matches!(found.lower, ProfileEnd::AtBound { value: 0.6, rise } if rise > 0.0 && rise < 1.0));
@@ -73,7 +73,7 @@ fn open_profiles_say_why() {
         matches!(found.upper, ProfileEnd::Undefined { value, .. } if (value - 2.0).abs() < 1e-5),
         "{found:?}"
     );
-    // From a bound inwards: (x + 1)^2 with x >= 0 rises by 2 x + x^2 = 3 at x = 1.
+    // Inwards from a bound: (x + 1)^2 with x >= 0 rises by 2 x + x^2 = 3 at x = 1.
     let held = model(1, 1, |p, _| Some((p[0] + 1.0, vec![1.0])));
     let bounds = Bounds { lower: vec![0.0], upper: vec![f64::INFINITY] };
     let found = profile(&held, &least(&held, &[5.0], &bounds), &bounds, &usual, 0, 3.0).unwrap();

@@ -19,7 +19,7 @@ fn an_active_bound_of_a_linear_problem_is_exact() {
     assert_eq!((certificate.rank, minimum.standard_deviations(1.0)[1]), (1, None));
     // The variance of x alone: 1/(1 + 1).
     assert_close(&minimum.covariance(1.0), &[0.5, 0.0, 0.0, 0.0], 1e-14);
-    // A bound that the minimum doesn't need is left: from (2, 0) on the bound of an upper limit.
+    // A bound that doesn't hold the minimum is left: from (2, 0) on an upper bound.
     let bounds = Bounds { lower: vec![f64::NEG_INFINITY; 2], upper: vec![f64::INFINITY, 0.0] };
     let minimum = least(&problem, &[2.0, 0.0], &bounds);
     assert_close(&minimum.theta, &[2.0, -1.0], 1e-14);
@@ -73,7 +73,7 @@ fn boxes_agree_with_trying_every_active_set() {
 
 #[test]
 fn forty_bounded_parameters_meet_the_conditions_of_a_minimum() {
-    // Rows of a smooth kernel: well apart from orthogonal, and half of the bounds are active.
+    // Rows of a smooth kernel: far from orthogonal, and half of the bounds are active.
     let (rows, k) = (120, 40);
     let kernel = |i: usize, j: usize| 1.0 / (1.0 + (0.3 * i as f64 - j as f64).powi(2));
     let data = |i: usize| (0.37 * i as f64).sin() + 0.3 * (1.9 * i as f64).cos();
@@ -165,7 +165,7 @@ fn straight_line_has_the_textbook_covariance() {
 
 #[test]
 fn what_the_residuals_do_not_determine_is_reported() {
-    // a + b alone matters, c is determined, d is without influence.
+    // Only a + b matters, c is determined, and d has no influence.
     let problem = model(8, 4, |p, i| {
         let x = i as f64 - 2.0;
         let y = 2.0 * x + 5.0 + 0.1 * (x * 3.0).sin();
@@ -183,10 +183,10 @@ fn what_the_residuals_do_not_determine_is_reported() {
     assert!((along(&[0.0, 0.0, 0.0, 1.0]) - 1.0).abs() < 1e-12);
     let deviations = minimum.standard_deviations(1.0);
     assert_eq!(deviations.iter().map(Option::is_some).collect::<Vec<_>>(), [false, false, true, false]);
-    // Along flat directions nothing moved: the steps of a and b are equal, d stays.
+    // Nothing moved along flat directions: the steps of a and b are equal, and d stays.
     assert_close(&[minimum.theta[0] - minimum.theta[1], minimum.theta[3]], &[0.5, 3.0], 1e-9);
     assert!(minimum.covariance(1.0)[..8].iter().all(|c| *c == 0.0));
-    // c as in the problem with a alone: sum 1 = 8, sum x = 12, sum x^2 = 60.
+    // c as in the problem without b: sum 1 = 8, sum x = 12, sum x^2 = 60.
     assert_close(&[minimum.covariance(1.0)[10]], &[60.0 / (8.0 * 60.0 - 144.0)], 1e-10);
 }
 
@@ -221,7 +221,7 @@ fn powers_of_two_in_the_parameters_give_the_same_path_bit_for_bit() {
         (plain.iterations, plain.evaluations, plain.linearisations)
     );
     assert_eq!(bits(&scaled.residuals), bits(&plain.residuals));
-    // Other factors change the rounding alone.
+    // Other factors only change the rounding errors.
     let scaled = free(&decay(40, [1e9, 1e-9], in_order), &[1e-9, 1e8]);
     assert_close(&[scaled.theta[0] * 1e9, scaled.theta[1] * 1e-9], &plain.theta, 1e-9);
     assert_eq!(scaled.iterations, plain.iterations);
@@ -257,7 +257,7 @@ fn bytes_do_not_depend_on_threads_or_repetition() {
 fn a_million_rows_pass_through_in_blocks() {
     let parameters = [1.0, -2.0, 3.0, 0.5, 0.25, -1.0, 2.0, 4.0];
     let mut problem = model(1_000_000, 8, |p, i| {
-        // Powers of x in [-1, 1] would do; products of tent functions are cheaper and as independent.
+        // Powers of x in [-1, 1] would do; products of tent functions are cheaper and equally independent.
         let mut x = (i as f64).mul_add(0.618_033_988_749_894_9, 0.25).fract();
         let row: Vec<f64> = (0..8)
             .map(|_| {
@@ -289,12 +289,13 @@ fn stationary_points_that_are_no_minima_are_left() {
     let minimum = free(&saddle, &[0.0]);
     assert!(minimum.certificate.converged);
     assert_close(&[minimum.theta[0].abs()], &[0.875_f64.sqrt()], 1e-9);
-    // Half the second derivative there: 1 - 8 + 24 x^2 = 14, of which the column explains |J|^2 = 1 + 16 x^2 = 15.
+    // Half the second derivative there: 1 - 8 + 24 x^2 = 14, relative to the column's |J|^2 = 1 + 16 x^2 =
+    // 15.
     assert_close(&[minimum.certificate.least_curvature.unwrap()], &[14.0 / 15.0], 1e-4);
     let trusting = Options { check_curvature: false, ..Options::default() };
     let stationary = minimise(&saddle, &[0.0], &Bounds::none(1), &trusting).unwrap();
     assert!(stationary.certificate.least_curvature.is_none() && stationary.theta[0] == 0.0);
-    // Held from below, the same point is a minimum over x <= 0 only with the bound; the other side is taken.
+    // With the bound x <= 0 only, the same point is a minimum, and the other side is searched.
     let bounds = Bounds { lower: vec![-2.0], upper: vec![0.0] };
     assert_close(&least(&saddle, &[0.0], &bounds).theta, &[-0.875_f64.sqrt()], 1e-9);
 }
@@ -316,7 +317,8 @@ fn ends_that_are_no_minima_are_not_called_converged() {
 
 #[test]
 fn a_kink_is_the_end_where_shorter_steps_are_not_worth_it() {
-    // (2 + |x - 1|, 0.1 x): least at the kink x = 1, where the derivatives on either side promise a fall.
+    // (2 + |x - 1|, 0.1 x): the minimum is at the kink x = 1, where the derivatives on both sides promise a
+    // decrease.
     let kinked = model(2, 1, |p, i| {
         let side = if p[0] < 1.0 { -1.0 } else { 1.0 };
         Some(if i == 0 { (2.0 + side * (p[0] - 1.0), vec![side]) } else { (0.1 * p[0], vec![0.1]) })
@@ -332,7 +334,7 @@ fn a_kink_is_the_end_where_shorter_steps_are_not_worth_it() {
     assert!(found.cost - 4.01 < 1e-3 && (exact.theta[0] - 1.0).abs() < 1e-12, "{found:?}");
     let work = |end: &Minimum| end.evaluations + end.linearisations;
     assert!(2 * work(&found) < work(&exact), "{} {}", work(&found), work(&exact));
-    // A smooth minimum is none, and is found as well.
+    // A smooth minimum isn't a kink, and is found as well.
     let options = Options { least_decrease: 1e-3, ..Options::default() };
     let smooth = minimise(&rosenbrock(), &[-1.2, 1.0], &Bounds::none(2), &options).unwrap();
     assert!(smooth.certificate.converged && (smooth.theta[0] - 1.0).abs() < 1e-9);
@@ -356,7 +358,7 @@ fn trial_points_without_value_shorten_the_step() {
         assert!(minimum.certificate.converged);
         assert_close(&minimum.theta, &[1e-3], 1e-12);
     }
-    // Derivatives that fail where residuals don't.
+    // Derivatives that fail at points where the residuals don't.
     let problem = model(1, 1, |p, _| Some((p[0] - 4.0, vec![if p[0] > 8.0 { f64::NAN } else { 0.1 }])));
     assert!(minimise(&problem, &[1.0], &Bounds::none(1), &Options::default()).is_ok());
 }

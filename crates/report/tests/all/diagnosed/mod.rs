@@ -1,4 +1,4 @@
-//! Diagnoses to show, one of each verdict, around a comparison.
+//! Simulated diagnoses, one of each verdict, around a comparison.
 
 use bulge_effects::Mechanism;
 use bulge_inference::{
@@ -8,7 +8,8 @@ use bulge_inference::{
     SurfaceCurve, Verdict,
 };
 
-/// Rubber and friction are missing, the second and third rungs of the comparison; rubber of another form than its formula's.
+/// Rubber and friction are missing, the second and third rungs of the comparison; rubber has another form
+/// than its formula.
 pub(crate) fn missing(mut comparison: Comparison) -> Diagnosis {
     comparison.ladder.truncate(3);
     Diagnosis {
@@ -90,7 +91,7 @@ pub(crate) fn adequate(comparison: Comparison) -> Diagnosis {
     diagnosis
 }
 
-/// Something else is missing.
+/// An unknown effect is missing.
 pub(crate) fn unknown(comparison: Comparison) -> Diagnosis {
     let mut diagnosis = missing(comparison);
     diagnosis.verdict = Verdict::Unknown;
@@ -104,7 +105,7 @@ pub(crate) fn unknown(comparison: Comparison) -> Diagnosis {
     diagnosis
 }
 
-/// The data don't suffice.
+/// The data are insufficient.
 pub(crate) fn cannot_tell(comparison: Comparison) -> Diagnosis {
     let mut diagnosis = adequate(comparison);
     diagnosis.verdict = Verdict::CannotTell;
@@ -151,7 +152,7 @@ fn bladder() -> Missing {
         plausible: true,
         detectability: 9.3,
         log_evidence: 40.0,
-        // Not in order.
+        // Not sorted.
         rivals: vec![rival("hoop-elasticity", 25.0, 7.5), rival("wall-thickness", 0.8, 1.2)],
     }
 }

@@ -1,4 +1,4 @@
-//! Comparisons to draw: a simulated braided muscle in loops, and odd cases made from it.
+//! Comparisons to draw: a simulated braided muscle in loops, and odd cases derived from it.
 
 #![expect(clippy::float_cmp, reason = "values are compared with those they were copied from")]
 
@@ -9,10 +9,10 @@ use bulge_inference::{
 use bulge_measurements::{Finding, FindingKind, LineRange, Severity, SweepKind};
 use std::f64::consts::PI;
 
-/// A name that is no markup but looks like it.
+/// A name that looks like markup but is text.
 const HOSTILE: &str = "<script>alert(\"1\")</script> & 'b' \u{7}";
 
-/// What is simulated.
+/// Parameters of the simulation.
 #[derive(Debug, Clone)]
 pub(crate) struct Recipe {
     /// Pressure levels \[Pa\].
@@ -70,7 +70,7 @@ fn ideal(pressure: f64, contraction: f64) -> f64 {
     pressure * PI * 1e-4 * (3.0 * (1.0 - contraction).powi(2) / alpha.tan().powi(2) - alpha.sin().powi(-2))
 }
 
-/// What the effects add: bladder, friction, pressure gain, ends.
+/// Contributions of the effects: bladder, friction, pressure gain, ends.
 fn effects(pressure: f64, contraction: f64, direction: f64) -> [f64; 4] {
     [
         -60.0 * (1.0 - (1.0 - contraction).powi(2)) - 18.0,
@@ -80,7 +80,7 @@ fn effects(pressure: f64, contraction: f64, direction: f64) -> [f64; 4] {
     ]
 }
 
-/// Repeatable noise of about the given deviation.
+/// Repeatable noise with about the given standard deviation.
 fn noise(state: &mut u64, sd: f64) -> f64 {
     let mut uniform = || {
         *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
@@ -217,7 +217,7 @@ fn maps(rows: &[Row], recipe: &Recipe) -> Vec<ResidualMap> {
                 r.direction == sign && r.pressure == p && part(r.contraction, 0.005, 0.255, columns) == c
             });
             let errors: Vec<f64> = of.map(error).collect();
-            // The weakest pressure doesn't reach the largest contraction.
+            // At the lowest pressure the largest contraction isn't reached.
             let is_reached = i / columns > 0 || c < columns - 3;
             (is_reached && !errors.is_empty()).then(|| mean(errors.into_iter()))
         };
@@ -301,7 +301,7 @@ fn stacks(recipe: &Recipe) -> Vec<Stack> {
     recipe.pressures_pa.iter().map(|p| stack(*p)).collect()
 }
 
-/// A fitted number that nothing is wrong with.
+/// A fitted parameter without remarks.
 pub(crate) fn fitted(
     effect: &str,
     name: &str,
@@ -459,7 +459,7 @@ fn rivals() -> Vec<Rival> {
     rivals
 }
 
-/// The rows of a comparison that was made from this recipe, with the force of each of its rungs.
+/// The rows of a comparison created from this recipe, with the force of each of its rungs.
 pub(crate) fn rows(recipe: &Recipe, comparison: &Comparison) -> Rows {
     let rows = simulate(recipe);
     let sweeps = comparison.data.sweeps;
@@ -470,7 +470,7 @@ pub(crate) fn rows(recipe: &Recipe, comparison: &Comparison) -> Rows {
         rows.iter().map(|r| r.first + share * (r.last - r.first)).collect()
     };
     let place = |value: usize| u32::try_from(value).unwrap_or(u32::MAX);
-    // Every fiftieth row doesn't count, and every second of those was excluded by hand.
+    // Every fiftieth row doesn't count; every second of those was excluded by hand.
     let is_out = |row: usize| row % 50 == 49;
     Rows {
         files: comparison.data.files.clone(),
@@ -564,7 +564,7 @@ pub(crate) fn rich(recipe: &Recipe) -> Comparison {
     }
 }
 
-/// Two loads, each filled and vented.
+/// Two loads, each during filling and venting.
 fn held_loads() -> Vec<HeldLoad> {
     [100.0, 300.0]
         .map(|load_n| {
@@ -665,7 +665,7 @@ pub(crate) fn crowded() -> Comparison {
     all
 }
 
-/// Names that are no markup but look like it.
+/// Names that look like markup but are text.
 pub(crate) fn hostile() -> Comparison {
     let name = HOSTILE;
     let mut all = rich(&Recipe::hostile());

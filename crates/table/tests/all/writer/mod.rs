@@ -1,4 +1,5 @@
-//! Tables for the tests, written from nothing but the documentation of the format, and what they hold, by dual numbers.
+//! Tables for the tests, written only from the documentation of the format, and their expected values by dual
+//! numbers.
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
@@ -8,7 +9,7 @@ use std::ops::{Add, Mul, Sub};
 /// Bytes of the header, of an axis and of an output.
 pub(crate) const RECORDS: [usize; 3] = [64, 96, 104];
 
-/// One axis; linear where its pole is infinite.
+/// One axis; linear if its pole is infinite.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Axis {
     pub(crate) low: f64,
@@ -25,9 +26,9 @@ pub(crate) struct Draft {
     pub(crate) is_single: bool,
     pub(crate) is_root: bool,
     pub(crate) axes: Vec<Axis>,
-    /// k and j of each output.
+    /// Exponents k and j of each output.
     pub(crate) factors: Vec<[bool; 2]>,
-    /// 1/Q and c of a fitted edge at each of its places; empty without.
+    /// 1/Q and c of a fitted edge at each of its nodes; empty without one.
     pub(crate) edge: Vec<f64>,
     pub(crate) coefficients: Vec<f64>,
     pub(crate) text: &'static str,
@@ -46,7 +47,7 @@ impl Draft {
         if axis.pole.is_infinite() { 1.0 / s } else { (s + axis.pole) / s }
     }
 
-    /// Places of the edge, the coefficients and the text.
+    /// Offsets of the edge, the coefficients and the text.
     pub(crate) fn places(&self) -> [usize; 3] {
         let edge = RECORDS[0] + RECORDS[1] * self.axes.len() + RECORDS[2] * self.factors.len();
         let data = edge + 8 * self.edge.len();
@@ -99,7 +100,8 @@ impl Draft {
         sealed(bytes)
     }
 
-    /// Fills in the coefficients of polynomials of the coordinates, of at most third degree in each: those of the outputs, and 1/Q and c.
+    /// Fills in the coefficients of polynomials in the coordinates, of at most third degree in each: the
+    /// outputs, and 1/Q and c.
     pub(crate) fn fill(&mut self, outputs: &[Polynomial], edge: &[Polynomial]) {
         let nodes: Vec<usize> = self.axes.iter().map(|axis| axis.nodes).collect();
         self.coefficients = tensor(self.is_spline, &nodes, 0, outputs);
@@ -107,7 +109,7 @@ impl Draft {
         self.edge = if edge.is_empty() { Vec::new() } else { tensor(true, &nodes, 1, edge) };
     }
 
-    /// Values and gradients at a point, straight from the polynomials.
+    /// Values and gradients at a point, evaluated directly from the polynomials.
     pub(crate) fn expected(&self, outputs: &[Polynomial], edge: &[Polynomial], point: &[f64]) -> Vec<Dual> {
         let mut at = [Dual::ZERO; 4];
         for i in (0..self.axes.len()).rev() {
@@ -135,7 +137,7 @@ impl Draft {
     }
 }
 
-/// As it is stored in single precision.
+/// The number rounded to single precision, as it is stored.
 #[expect(clippy::cast_possible_truncation, reason = "what single precision means")]
 pub(crate) fn single(number: f64) -> f32 {
     number as f32
@@ -148,7 +150,7 @@ fn named(bytes: &mut Vec<u8>, name: &str) {
     bytes.extend(field);
 }
 
-/// Puts the checksum right: CRC-64/XZ bit by bit, as its definition says.
+/// Corrects the checksum: CRC-64/XZ bit by bit, by its definition.
 pub(crate) fn sealed(mut bytes: Vec<u8>) -> Vec<u8> {
     let body = bytes.len() - 8;
     let mut rest = u64::MAX;
@@ -162,7 +164,7 @@ pub(crate) fn sealed(mut bytes: Vec<u8>) -> Vec<u8> {
     bytes
 }
 
-/// The coefficients over the axes from `first` on, the last one fastest, and of all polynomials at each place.
+/// The coefficients over the axes from `first` on, the last one fastest, with all polynomials at each index.
 fn tensor(is_spline: bool, nodes: &[usize], first: usize, polynomials: &[Polynomial]) -> Vec<f64> {
     let count: usize = nodes[first..].iter().product();
     let mut all = Vec::new();
@@ -189,7 +191,8 @@ fn tensor(is_spline: bool, nodes: &[usize], first: usize, polynomials: &[Polynom
     all
 }
 
-/// Coefficient `j` of v^p as a spline: its blossom at the three knots inside the B-spline, whose middle is the knot j - 1.
+/// Coefficient `j` of v^p as a spline: its blossom at the three knots inside the B-spline, whose middle is
+/// the knot j - 1.
 fn of_spline(nodes: usize, j: usize, p: usize) -> f64 {
     let [a, b, c] = [0.0, 1.0, 2.0].map(|k| (j as f64 - 2.0 + k) / (nodes as f64 - 3.0));
     [1.0, (a + b + c) / 3.0, (a * b + b * c + c * a) / 3.0, a * b * c][p]
@@ -202,7 +205,7 @@ fn of_chebyshev(j: usize, p: usize) -> f64 {
     rows[p].get(j).map_or(0.0, |number| number / 32.0)
 }
 
-/// A polynomial of the coordinates: factors with their powers.
+/// A polynomial in the coordinates: factors with their powers.
 #[derive(Debug, Clone)]
 pub(crate) struct Polynomial(pub(crate) Vec<(f64, [usize; 4])>);
 
@@ -288,7 +291,7 @@ impl Mul for Dual {
     }
 }
 
-/// SplitMix64: the same numbers every time.
+/// SplitMix64: the same numbers in every run.
 #[derive(Debug)]
 pub(crate) struct Random(pub(crate) u64);
 
@@ -309,7 +312,7 @@ impl Random {
     }
 }
 
-/// A table of a kind with what is in it.
+/// A table of one kind with its contents.
 #[derive(Debug)]
 pub(crate) struct Known {
     pub(crate) draft: Draft,
@@ -317,7 +320,7 @@ pub(crate) struct Known {
     pub(crate) edge: Vec<Polynomial>,
 }
 
-/// What a table is like. A fitted edge needs two axes.
+/// The properties of a table. A fitted edge needs two axes.
 #[derive(Debug, Clone, Copy)]
 #[expect(clippy::struct_excessive_bools, reason = "all combinations are tested")]
 pub(crate) struct Kind {
@@ -332,7 +335,7 @@ pub(crate) struct Kind {
 }
 
 impl Kind {
-    /// All kinds with at most so many axes and outputs.
+    /// All kinds with at most this many axes and outputs.
     pub(crate) fn all(axes: usize, outputs: usize) -> Vec<Self> {
         let mut kinds = Vec::new();
         for axes in 1..=axes {
@@ -361,7 +364,7 @@ impl Kind {
     pub(crate) fn table(self, random: &mut Random) -> Known {
         let linear = random.below(self.axes + 1);
         let axis = |i| {
-            // Next to zero alone are there numbers at tiny distances.
+            // Only near zero do numbers at tiny distances exist.
             let low = if random.below(2) == 0 { 0.0 } else { random.between(-2.0, 2.0) };
             Axis {
                 low,
