@@ -1,9 +1,13 @@
-//! Physical effects of one's own: a TOML file with a formula for the force and the parameters in it.
+//! Physical effects of one's own: a TOML file with a formula and the parameters in it. The formula is a force that is added, or it changes the shape: the
+//! energy of the wall, the area on which the pressure acts, or the turn of the fibres.
 
 mod act;
 mod quantity;
 mod reader;
+mod shape;
 mod value;
+
+pub use shape::{ShapeFormula, ShapeQuantity};
 
 use crate::expression::Expression;
 use crate::mechanism::{Form, Mechanism};
@@ -29,7 +33,36 @@ parameters.k = { unit = \"N\", typical = \"50 N\", low = \"0 N\", high = \"500 N
 parameters.eps_free = { unit = \"1\", typical = 0.1, low = -0.1, high = 0.4 }
 ";
 
-/// A physical effect that a file states: a force that is added to that of the muscle.
+/// A rubber of one's own in the wall of a braid: neo-Hookean, the energy per area at rest by the stretches l1 along the meridian and l2 around it.
+pub const SHAPE_EXAMPLE: &str = "\
+[effects.my-rubber]
+title = \"Neo-Hookean rubber\"
+energy = \"h * c10 * (l1^2 + l2^2 + 1/(l1*l2)^2 - 3)\"          # in N/m: J per m^2 of the wall at rest
+parameters.c10 = { unit = \"MPa\", typical = \"0.3 MPa\", low = \"0 MPa\", high = \"3 MPa\" }
+parameters.h = { unit = \"mm\", typical = \"2 mm\", low = \"0.5 mm\", high = \"5 mm\" }
+";
+
+/// What the formula of such an effect is.
+#[derive(Debug, Clone, PartialEq)]
+pub enum UserFormula {
+    /// A force that is added to that of the muscle \[N\], over the variables of [`crate::expression::VARIABLES`].
+    Force(Expression),
+    /// A change of the shape, over the variables of [`crate::expression::SHAPE_VARIABLES`].
+    Shape(ShapeFormula),
+}
+
+impl UserFormula {
+    /// The formula itself.
+    #[must_use]
+    pub fn expression(&self) -> &Expression {
+        match self {
+            Self::Force(expression) => expression,
+            Self::Shape(formula) => &formula.expression,
+        }
+    }
+}
+
+/// A physical effect that a file states by a formula.
 #[derive(Debug, Clone, PartialEq)]
 pub struct UserEffect {
     /// Its name: lower-case words with hyphens.
@@ -48,8 +81,8 @@ pub struct UserEffect {
     pub form: Form,
     /// Names of effects that a measurement may confuse with it.
     pub twins: Vec<String>,
-    /// The force (N), over the variables of [`crate::expression::VARIABLES`] and the parameters in their order.
-    pub force: Expression,
+    /// What it does, over the parameters in their order.
+    pub formula: UserFormula,
     /// Its parameters, from 1 to [`MAX_PARAMETERS`], in the order of the file.
     pub parameters: Vec<UserParameter>,
 }

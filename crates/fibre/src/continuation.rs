@@ -75,7 +75,7 @@ pub(crate) fn drawn_taut(net: &Net<f64>) -> Option<(f64, Unknowns)> {
     if net.turn == 0.0 {
         return None;
     }
-    let radius = drawn_out(&Net { compliance: 0.0, ..*net }).0;
+    let radius = drawn_out(&Net { compliance: 0.0, ..net.clone() }).0;
     let end = net.acting_at(radius);
     let cylinder = end.balancing_tension(radius, end.push(radius), 0.0)?;
     let alone = end.push(radius) / end.local(radius, cylinder).hoop_t;
@@ -132,7 +132,7 @@ pub(crate) fn continuation(
     }
     // d(unknowns)/d ln(part) of a shallow bulge, where B, k and 1/T grow with the root of the contraction.
     let first = match (is_limited(net, at.side), net.turn == 0.0) {
-        (true, _) if net.bladder.is_some() => 0.0,
+        (true, _) if net.has_wall() => 0.0,
         (true, true) => -1.0,
         (true, false) => -0.5,
         (false, _) => 0.5,

@@ -91,9 +91,9 @@ impl<D: Real> Net<D> {
         // Rubber may carry more than the pressure: what fibres that can be pushed would do there tells when they become slack.
         let holds = if self.compliance.value() != 0.0 {
             true
-        } else if self.bladder.is_some() {
+        } else if self.has_wall() {
             let pull = self.cloth.map_or(D::from(0.0), |cloth| cloth.energy(r));
-            (Net { cloth: None, ..*self }.local(r, tension).force + pull).value() > 0.0
+            (self.without_cloth().local(r, tension).force + pull).value() > 0.0
         } else {
             tension.value() > 0.0
         };
@@ -103,7 +103,7 @@ impl<D: Real> Net<D> {
     /// The same with whatever sign of tension and meridional force, as rubber that is wide makes it.
     pub(crate) fn balancing_tension(&self, r: D, push: D, curvature: D) -> Option<D> {
         // The cloth's force acts, and its hoop term is in the push.
-        let bare = Net { cloth: None, ..*self };
+        let bare = self.without_cloth();
         let pull = self.cloth.map_or(D::from(0.0), |cloth| cloth.energy(r));
         let gap = |tension: D| {
             let local = bare.local(r, tension);
@@ -115,7 +115,7 @@ impl<D: Real> Net<D> {
         if self.compliance.value() == 0.0 {
             return linear.value().is_finite().then_some(linear);
         }
-        if linear.value() <= 0.0 && self.bladder.is_some() {
+        if linear.value() <= 0.0 && self.has_wall() {
             return pushed(gap, linear);
         }
         // Stretching makes the true tension smaller than the linear estimate by up to a power of the stretch.
@@ -170,7 +170,7 @@ impl Net<f64> {
     pub(crate) fn undulates(&self, contraction: f64) -> bool {
         let sigma = self.cos_rest * (1.0 - contraction);
         let radius = (1.0 - sigma * sigma).sqrt() / self.turn;
-        let holds_otherwise = self.bladder.is_some() || self.cloth.is_some();
+        let holds_otherwise = self.has_wall() || self.cloth.is_some();
         if holds_otherwise || self.depth >= 0.0 || radius.is_nan() || radius + self.depth <= 0.0 {
             return false;
         }
@@ -184,7 +184,7 @@ impl Net<f64> {
     /// Whether fibres are slack somewhere between mid-length and the fitting. With the tension T and f = sigma w_1 - w of the walls on fibres
     /// of their own length, H = sigma N - w is the same all along, and T has the sign of H - f. They count as slack up to a `part` of sigma N.
     pub(crate) fn is_slack(&self, mid_radius: f64, mid_tension: f64, part: f64) -> bool {
-        if self.bladder.is_none() {
+        if !self.has_wall() {
             return false;
         }
         let middle = self.acting_at(mid_radius);

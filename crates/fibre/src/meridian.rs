@@ -59,7 +59,7 @@ pub(crate) struct Trajectory<D> {
 }
 
 /// A net with the radius at mid-length fixed: the right-hand side of the ODE.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 struct Flow<D> {
     net: Net<D>,
     mid_radius: D,
@@ -191,7 +191,7 @@ impl<D: Real> Middle<D> {
         if self.straight.value() == 0.0 {
             return end;
         }
-        let middle = Flow { net: *net, mid_radius: net.end_radius + self.bulge };
+        let middle = Flow { net: net.clone(), mid_radius: net.end_radius + self.bulge };
         let rates = middle.slope(&self.state());
         end[SHORTENING] += rates[SHORTENING] * self.straight;
         end[VOLUME] += rates[VOLUME] * self.straight;
@@ -214,7 +214,7 @@ pub(crate) fn trajectory<D: Real>(
     let mid_radius = net.end_radius + bulge;
     let mut y = middle.state();
     let at_middle = net.acting_at(mid_radius.value());
-    let mut flow = Flow { net: at_middle, mid_radius };
+    let mut flow = Flow { net: at_middle.as_ref().clone(), mid_radius };
     let mut slope = flow.slope(&y);
     let mid = at_middle.local(mid_radius, mid_tension);
     let force = mid.force - at_middle.area(mid_radius);
@@ -250,7 +250,7 @@ pub(crate) fn trajectory<D: Real>(
             }
             next += 1;
             let between = 0.5 * (target.value() + targets[next].value());
-            flow.net = net.acting_at(mid_radius.value() - between);
+            flow.net = net.acting_at(mid_radius.value() - between).into_owned();
             slope = flow.slope(&y);
         }
         if run.accepted > MAX_STEPS || y[COS].value() < -0.999 {
@@ -305,7 +305,7 @@ pub(crate) fn stations(
     pieces: usize,
 ) -> Result<(Vec<Station>, f64), NoTrajectory> {
     let (mut y, mid_radius, tension) = (middle.state(), net.end_radius + middle.bulge, middle.tension);
-    let flow_at = |y: &State<f64>| Flow { net: net.acting_at(mid_radius - y[RHO]), mid_radius };
+    let flow_at = |y: &State<f64>| Flow { net: net.acting_at(mid_radius - y[RHO]).into_owned(), mid_radius };
     let mut f = |y: &State<f64>| flow_at(y).slope(y);
     let mut slope = f(&y);
     let mid_force = flow_at(&y).net.local(mid_radius, tension).force;

@@ -24,12 +24,16 @@
 //! Everything is dimensionless: lengths in the reference radius R, forces in p R^2.
 
 use bulge_numerics::{Dual, Real};
+use std::borrow::Cow;
 use std::f64::consts::PI;
 
+use crate::formulas::Formulas;
 use crate::lobes::{Lobes, Section};
 
-/// Numbers of a net, at most: with lobes, bladder and cloth.
-pub(crate) const NUMBERS: usize = 17;
+/// Numbers of a net without formulas, at most: with lobes, bladder and cloth.
+const OWN_NUMBERS: usize = 17;
+/// Numbers of a net, at most.
+pub(crate) const NUMBERS: usize = OWN_NUMBERS + Formulas::<f64>::NUMBERS;
 
 /// Rubber bladder that follows the net point by point: Mooney-Rivlin W = c10 (I1 - 3) + c01 (I2 - 3), incompressible, plane stress,
 /// stretches l1 = sigma/cos(alpha0) along the meridian and l2 = r/r0 around it.
@@ -53,7 +57,7 @@ pub(crate) struct Cloth<D> {
 }
 
 /// A dimensionless fibre net under unit pressure between rigid fittings.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(crate) struct Net<D> {
     /// Radius at the fittings.
     pub(crate) end_radius: D,
@@ -77,16 +81,18 @@ pub(crate) struct Net<D> {
     pub(crate) bladder: Option<Bladder<D>>,
     /// Cloth with limited unfolding, if any.
     pub(crate) cloth: Option<Cloth<D>>,
+    /// Formulas of a user's own, if any: for the energy of the wall, for the area.
+    pub(crate) formulas: Option<Box<Formulas<D>>>,
 }
 
 /// Derivatives of the stored energy of bladder and cloth: w_1 = d/dsigma, w_2 = d/dr.
 pub(crate) struct Wall<D> {
     pub(crate) w: D,
     pub(crate) w_1: D,
-    w_2: D,
-    w_11: D,
-    w_12: D,
-    w_22: D,
+    pub(crate) w_2: D,
+    pub(crate) w_11: D,
+    pub(crate) w_12: D,
+    pub(crate) w_22: D,
 }
 
 /// The net at one radius with one tension.
@@ -109,10 +115,36 @@ pub(crate) struct Local<D> {
 
 impl<D: Real> Net<D> {
     /// The net as it is at radius `r`, one smooth law: without the cloth where that is slack, with lobes that touch or that don't.
-    pub(crate) fn acting_at(&self, r: f64) -> Self {
+    pub(crate) fn acting_at(&self, r: f64) -> Cow<'_, Self> {
+        if self.cloth.is_none() && self.lobes.is_none() {
+            return Cow::Borrowed(self);
+        }
         let cloth = self.cloth.filter(|cloth| r > cloth.radius.value());
         let lobes = self.lobes.map(|lobes| lobes.acting_at(r + self.depth.value()));
-        Self { lobes, cloth, ..*self }
+        Cow::Owned(Self { lobes, cloth, ..self.clone() })
+    }
+
+    /// The same net without cloth that limits the unfolding.
+    pub(crate) fn without_cloth(&self) -> Cow<'_, Self> {
+        match self.cloth {
+            None => Cow::Borrowed(self),
+            Some(_) => Cow::Owned(Self { cloth: None, ..self.clone() }),
+        }
+    }
+
+    /// Whether something besides the fibres stores energy all along the meridian: rubber, or a formula.
+    pub(crate) fn has_wall(&self) -> bool {
+        self.bladder.is_some() || self.has_energy()
+    }
+
+    /// Whether a formula of a user's own is the energy of the wall.
+    pub(crate) fn has_energy(&self) -> bool {
+        self.formulas.as_ref().is_some_and(|formulas| formulas.energy.is_some())
+    }
+
+    /// Whether a formula of a user's own is the area.
+    pub(crate) fn has_area(&self) -> bool {
+        self.formulas.as_ref().is_some_and(|formulas| formulas.area.is_some())
     }
 
     /// The radii at which the law changes: one at which cloth becomes taut, one at which lobes cease to touch.
@@ -124,6 +156,9 @@ impl<D: Real> Net<D> {
     /// The cross-section: the area A(r) on which the pressure acts, and its derivatives.
     #[inline]
     pub(crate) fn section(&self, r: D) -> Section<D> {
+        if let Some(section) = self.formulas.as_ref().and_then(|formulas| formulas.section(r)) {
+            return section;
+        }
         let r = r + self.depth;
         if let Some(lobes) = &self.lobes {
             return lobes.section(r);
@@ -133,15 +168,20 @@ impl<D: Real> Net<D> {
         Section { area: area_r * r * 0.5, area_r, area_rr }
     }
 
-    /// The area of the reported volume: that of a circle, or of the lobes.
+    /// Whether the reported volume is that on which the pressure acts: lobes, or a formula.
+    fn is_whole(&self) -> bool {
+        self.lobes.is_some() || self.has_area()
+    }
+
+    /// The area of the reported volume: that of a circle, or the one on which the pressure acts.
     #[inline]
     pub(crate) fn volume_section(&self, r: D, section: &Section<D>) -> D {
-        if self.lobes.is_some() { section.area } else { (r + self.depth).squared() * PI }
+        if self.is_whole() { section.area } else { (r + self.depth).squared() * PI }
     }
 
     /// Volume on which the pressure acts over the reported one.
     pub(crate) fn volume_factor(&self) -> D {
-        if self.lobes.is_some() { D::from(1.0) } else { self.area_factor }
+        if self.is_whole() { D::from(1.0) } else { self.area_factor }
     }
 
     /// Area enclosed by a cross-section, A(r).
@@ -163,6 +203,9 @@ impl<D: Real> Net<D> {
         if let Some(cloth) = &self.cloth {
             cloth.add(&mut wall, sigma, r);
         }
+        if let Some(formulas) = &self.formulas {
+            formulas.add(&mut wall, sigma, r, self.cos_rest);
+        }
         wall
     }
 
@@ -173,12 +216,12 @@ impl<D: Real> Net<D> {
 
     /// Straight fibres and nothing else: the general formulas reduce to N = T, h = 0.
     fn is_plain(&self) -> bool {
-        self.turn.value() == 0.0 && self.bladder.is_none() && self.cloth.is_none()
+        self.turn.value() == 0.0 && !self.has_wall() && self.cloth.is_none()
     }
 
     /// An angle and nothing else, the usual braid.
     fn is_trellis(&self) -> bool {
-        self.compliance.value() == 0.0 && self.bladder.is_none() && self.cloth.is_none()
+        self.compliance.value() == 0.0 && !self.has_wall() && self.cloth.is_none()
     }
 
     /// All local quantities at radius `r` and tension `tension` of all fibres.
@@ -269,6 +312,10 @@ impl<D: Real> Net<D> {
             lobes: self.lobes.map(|lobes| lobes.map(|i, d| f(8 + i, d))),
             bladder: self.bladder.map(|b| Bladder { c10: f(13, b.c10), c01: f(14, b.c01) }),
             cloth: self.cloth.map(|c| Cloth { stiffness: f(15, c.stiffness), radius: f(16, c.radius) }),
+            formulas: self
+                .formulas
+                .as_ref()
+                .map(|formulas| Box::new(formulas.map(|i, d| f(OWN_NUMBERS + i, d)))),
         }
     }
 
@@ -298,6 +345,7 @@ impl Net<f64> {
             lobes: None,
             bladder: None,
             cloth: None,
+            formulas: None,
         }
     }
 
@@ -315,18 +363,8 @@ impl Net<f64> {
     pub(crate) fn with_walls(&self, part: f64) -> Self {
         let bladder = self.bladder.map(|b| Bladder { c10: part * b.c10, c01: part * b.c01 });
         let cloth = self.cloth.map(|c| Cloth { stiffness: part * c.stiffness, ..c });
-        Self { bladder, cloth, ..*self }
-    }
-
-    /// The same net at a pressure that is the variable number 2: what the dimensionless groups make of it.
-    pub(crate) fn with_pressure(&self, pressure: f64) -> Net<Dual<3>> {
-        let ratio = Dual::<3>::variable(pressure, 2) / pressure;
-        let inverse = Dual::from(1.0) / ratio;
-        let mut net = self.lift::<3>();
-        net.compliance = net.compliance * ratio;
-        net.bladder = net.bladder.map(|b| Bladder { c10: b.c10 * inverse, c01: b.c01 * inverse });
-        net.cloth = net.cloth.map(|c| Cloth { stiffness: c.stiffness * inverse, ..c });
-        net
+        let formulas = self.formulas.as_ref().map(|formulas| Box::new(formulas.with_part(part)));
+        Self { bladder, cloth, formulas, ..self.clone() }
     }
 }
 

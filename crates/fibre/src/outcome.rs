@@ -95,8 +95,10 @@ impl Problem {
         let net = &self.net;
         if net.turn != 0.0 {
             Some("its fibres run at an angle")
-        } else if net.bladder.is_some() {
-            Some("it has a bladder")
+        } else if net.has_wall() {
+            Some("its wall stores energy")
+        } else if net.has_area() {
+            Some("its area is a formula")
         } else if net.cloth.is_some() {
             Some("its cloth stops unfolding")
         } else if net.lobes.is_some() {

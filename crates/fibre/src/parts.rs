@@ -8,6 +8,7 @@ use bulge_numerics::{Dual, Real};
 use std::f64::consts::PI;
 
 use crate::FibreError;
+use crate::formulas::{Formula, Formulas, MOST_PARAMETERS};
 use crate::lobes::Lobes;
 use crate::net::{Bladder, Cloth, Net};
 use crate::problem::{
@@ -21,7 +22,7 @@ pub const LANES: usize = 8;
 pub type Jet = Dual<LANES>;
 
 /// Numbers of [`Parts`], at most.
-pub(crate) const PARTS: usize = 14;
+pub(crate) const PARTS: usize = 14 + 3 * MOST_PARAMETERS;
 
 /// What a fibre net is made of, in SI; with [`Jet`]s, and how each number depends on the variables of whoever made it.
 ///
@@ -69,6 +70,12 @@ pub struct Parts<D = f64> {
     pub rubber: Option<Rubber<D>>,
     /// Cloth that stops unfolding.
     pub cloth: Option<TautCloth<D>>,
+    /// A formula for the energy of the wall per area at rest \[N/m\], besides the rubber.
+    pub energy: Option<Formula<D>>,
+    /// A formula for the area on which the pressure acts \[m^2\], instead of polygon, circle and depth.
+    pub area: Option<Formula<D>>,
+    /// A formula for the turn of the fibres about the axis per fibre length \[rad/m\], instead of sin(alpha0)/r0.
+    pub twist: Option<Formula<D>>,
 }
 
 /// A rubber tube that follows the net: W = c10 (I1 - 3) + c01 (I2 - 3), incompressible (Mooney and Rivlin).
@@ -133,6 +140,9 @@ impl<D: Real> Parts<D> {
             lobes: get(Parameter::ClothCircumference),
             rubber,
             cloth: cloth.map(|(stiffness, radius)| TautCloth { stiffness, radius }),
+            energy: None,
+            area: None,
+            twist: None,
         }
     }
 }
@@ -244,7 +254,7 @@ impl Parts {
     }
 }
 
-impl<D: Copy> Parts<D> {
+impl<D: Real> Parts<D> {
     /// The same with every number changed, in a fixed order; the names are those of the fields.
     pub fn map<E>(&self, mut f: impl FnMut(&'static str, D) -> E) -> Parts<E> {
         let fitting = |f: &mut dyn FnMut(&'static str, D) -> E| self.fitting.map(|d| f("fitting", d));
@@ -270,6 +280,9 @@ impl<D: Copy> Parts<D> {
                 stiffness: f("cloth.stiffness", cloth.stiffness),
                 radius: f("cloth.radius", cloth.radius),
             }),
+            energy: self.energy.as_ref().map(|formula| formula.map(|number| f("energy", number))),
+            area: self.area.as_ref().map(|formula| formula.map(|number| f("area", number))),
+            twist: self.twist.as_ref().map(|formula| formula.map(|number| f("twist", number))),
         }
     }
 
@@ -330,6 +343,11 @@ impl<D: Real> Parts<D> {
         self.map(|_, number| number.value())
     }
 
+    /// Whether a formula may depend on the pressure.
+    pub(crate) fn follows_pressure(&self) -> bool {
+        self.twist.is_some() || self.area.is_some()
+    }
+
     /// Number of fibres over which tension and stiffness are counted; 1 where the muscle doesn't say or is continuous.
     pub(crate) fn fibre_number(&self) -> D {
         self.fibres.unwrap_or(D::from(1.0))
@@ -351,6 +369,22 @@ impl<D: Real> Parts<D> {
             compliance: pressure * radius * radius * self.compliance,
             ..Net::plain().lift_to()
         };
+        if let Some(twist) = &self.twist {
+            let none = D::from(f64::NAN);
+            let [turn] = twist.run([none, none, none, radius, pressure, self.angle, self.length]);
+            net.turn = turn * radius;
+        }
+        if self.energy.is_some() || self.area.is_some() {
+            net.formulas = Some(Box::new(Formulas {
+                energy: self.energy.clone(),
+                area: self.area.clone(),
+                scale: cos * (2.0 * PI) / (radius * pressure),
+                radius,
+                pressure,
+                angle: self.angle,
+                length: self.length,
+            }));
+        }
         if let Some(n) = self.fibres.filter(|_| self.is_polygon) {
             net.area_factor = n * (D::from(2.0 * PI) / n).sin_cos().0 / (2.0 * PI);
             net.lobes = self.lobes.map(|circumference| Lobes::new(n, circumference / radius));

@@ -131,7 +131,7 @@ fn seeds(net: &Net<f64>) -> Vec<(f64, f64)> {
     let slack = net.cloth.map_or(most, |cloth| (cloth.radius - net.end_radius).min(most));
     let mut rooms = vec![(1.0, 0.0, slack), (1.0, slack, most - slack)];
     if !is_straight {
-        let (narrowest, _) = drawn_out(&Net { compliance: 0.0, ..*net });
+        let (narrowest, _) = drawn_out(&Net { compliance: 0.0, ..net.clone() });
         rooms.push((-1.0, 0.0, net.end_radius - narrowest));
     }
     let of_room = |(side, from, room): (f64, f64, f64)| {

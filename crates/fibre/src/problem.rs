@@ -88,7 +88,8 @@ impl Problem {
     /// Whether shape, force/p and volume are the same at every pressure.
     #[must_use]
     pub fn is_scale_free(&self) -> bool {
-        self.net.compliance == 0.0 && self.net.bladder.is_none() && self.net.cloth.is_none()
+        let net = &self.net;
+        net.compliance == 0.0 && !net.has_wall() && net.cloth.is_none() && !self.parts.follows_pressure()
     }
 
     /// Whether the braid is the textbook cylinder.

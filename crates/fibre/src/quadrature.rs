@@ -63,14 +63,19 @@ const LEAST_RATIO: f64 = 0.1;
 /// Largest 1 - cos(chi), as in the integration of the ODE.
 const MOST_TURNED: f64 = 1.999;
 
-/// Whether the meridians of a net are quadratures: without lobes.
+/// Whether the meridians of a net are quadratures: without lobes, and without a formula for the area.
 pub(crate) fn suits<D: Real>(net: &Net<D>) -> bool {
-    net.lobes.is_none()
+    net.lobes.is_none() && !net.has_area()
+}
+
+/// Whether the tension follows from the energy of rubber in closed form; else it is interpolated as that of fibres that stretch.
+fn is_explicit(net: &Net<f64>) -> bool {
+    net.compliance == 0.0 && !net.has_energy()
 }
 
 /// Makes, once in a process, what the meridians of a net are interpolated with: a solve then allocates nothing.
 pub(crate) fn prepare(net: &Net<f64>) {
-    if net.compliance != 0.0 {
+    if !is_explicit(net) {
         LazyLock::force(&GRIDS);
     }
 }
@@ -375,7 +380,7 @@ pub(crate) fn trajectory<D: Real>(net: &Net<D>, middle: Middle<D>) -> Result<Tra
     };
     let plain = net.constant();
     let mut plan = Plan { points: ArrayVec::new(), evaluations: 0 };
-    if plain.compliance == 0.0 {
+    if is_explicit(&plain) {
         plan.fill(&Inextensible::of(&plain, &values))?;
         return along(net, &middle, &Inextensible::of(net, &middle), &plan);
     }

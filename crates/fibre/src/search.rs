@@ -147,7 +147,7 @@ impl<E: Fn(&Found) -> f64> Walk<'_, E> {
     /// Drawn out far enough the fibres are nearly straight, carry far more than the pressure, and any muscle has an equilibrium.
     fn drawn_out(&mut self, start: f64) -> Option<(f64, f64)> {
         let net = &self.problem.net;
-        let longest = start::longest(&Net { compliance: 0.0, ..*net });
+        let longest = start::longest(&Net { compliance: 0.0, ..net.clone() });
         let stretched = STRETCHED.iter().filter(|_| net.compliance > 0.0).map(|part| longest - part);
         let places = DRAWN_OUT.iter().map(|part| longest + part * (start - longest)).chain(stretched);
         for place in places.collect::<Vec<_>>() {

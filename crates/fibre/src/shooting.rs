@@ -169,7 +169,7 @@ pub(crate) fn solve(
     let found = match direct {
         Some(found) => Ok(found),
         None => match continuation(net, contraction, &mut effort) {
-            Err(FibreError::NotConverged { .. }) if net.cloth.is_some() || net.bladder.is_some() => {
+            Err(FibreError::NotConverged { .. }) if net.cloth.is_some() || net.has_wall() => {
                 let mut more = Effort::of_at_most(ending.most);
                 let found = stiffening(net, contraction, &mut more);
                 effort.iterations += more.iterations;

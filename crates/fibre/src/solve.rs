@@ -332,11 +332,14 @@ impl Problem {
             let outcome = self.outcome(method, contraction, &self.net.lift::<2>(), from)?;
             return Ok(self.found(contraction, &outcome));
         }
-        let outcome = self.outcome(method, contraction, &self.net.with_pressure(self.pressure), from)?;
+        // The pressure is the variable number 2 of what the dimensionless groups make of it.
+        let parts: Parts<Dual<3>> = self.parts.map(|_, number| Dual::from(number));
+        let net = parts.net(Dual::variable(self.pressure, 2));
+        let outcome = self.outcome(method, contraction, &net, from)?;
         Ok(self.found(contraction, &outcome))
     }
 
-    /// The response in SI. The place 2 of the derivatives, if there is one, is by the pressure at constant p R^2 (see [`Net::with_pressure`]).
+    /// The response in SI. The place 2 of the derivatives, if there is one, is by the pressure at constant p R^2 .
     fn found<const N: usize>(&self, contraction: f64, outcome: &Outcome<N>) -> Found {
         let p = self.pressure;
         let radius = self.parts.radius;

@@ -29,7 +29,7 @@ impl Unknowns {
         let bulge = ln_bulge.exp().min(OPEN * net.most_bulge());
         let r = net.end_radius + bulge;
         let slope = net.acting_at(r).push(r) / bulge;
-        let first = match (net.bladder.is_some(), net.turn == 0.0) {
+        let first = match (net.has_wall(), net.turn == 0.0) {
             (true, _) => (0.5 * slope).asinh(),
             (false, true) => slope.ln() - second,
             (false, false) => slope.ln(),
@@ -62,7 +62,7 @@ impl Unknowns {
     fn curved<D: Real>(&self, net: &Net<D>, logs: [D; 2]) -> Option<Middle<D>> {
         let (second, straight) = (logs[1].exp(), D::from(0.0));
         if is_limited(net, self.side) {
-            let slope = match (net.bladder.is_some(), net.turn.value() == 0.0) {
+            let slope = match (net.has_wall(), net.turn.value() == 0.0) {
                 (true, _) => logs[0].exp() - (-logs[0]).exp(),
                 (false, true) => (logs[0] + logs[1]).exp(),
                 (false, false) => logs[0].exp(),
@@ -84,14 +84,14 @@ impl Unknowns {
             return Some(Middle { bulge, curvature: second, tension, straight });
         }
         // A waist is taut where a cylinder of its radius would not be.
-        let cylinder = if net.bladder.is_some() {
+        let cylinder = if net.has_wall() {
             net.balancing_tension(r, push, D::from(0.0))?
         } else {
             net.tension_at_equator(r, push, D::from(0.0))?
         };
         let at_cylinder = net.local(r, cylinder);
         // The tension of a cylinder without rubber, which may carry more than all of the pressure.
-        let unit = if net.bladder.is_some() { push / at_cylinder.hoop_t } else { cylinder };
+        let unit = if net.has_wall() { push / at_cylinder.hoop_t } else { cylinder };
         let excess = unit * second;
         let tension = cylinder + excess;
         let local = net.local(r, tension);
@@ -115,7 +115,7 @@ impl Unknowns {
     /// Whether fibres are slack somewhere, or as good as: they carry less than a part of the meridional force.
     pub(crate) fn is_slack_within(&self, net: &Net<f64>, part: f64) -> bool {
         let slack = |middle: Middle<f64>| net.is_slack(net.end_radius + middle.bulge, middle.tension, part);
-        net.bladder.is_some() && self.middle(net, |value, _| value).is_some_and(slack)
+        net.has_wall() && self.middle(net, |value, _| value).is_some_and(slack)
     }
 
     pub(crate) fn seeded<const N: usize>(&self, net: &Net<Dual<N>>) -> Option<Middle<Dual<N>>> {

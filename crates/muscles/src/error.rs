@@ -114,6 +114,14 @@ pub enum MuscleError {
         /// The family that has it.
         owner: Kind,
     },
+    /// Two formulas for one quantity of the shape.
+    #[error(
+        "two effects state a formula for the {what} of the wall: write their sum as one formula, or leave one out"
+    )]
+    TwoFormulas {
+        /// The quantity.
+        what: &'static str,
+    },
     /// A bladder in a pleated muscle.
     #[error("a pleated muscle has no bladder: `bladder-elasticity` belongs to a braided muscle")]
     BladderInPleated,
@@ -173,7 +181,7 @@ impl MuscleError {
             Self::OtherKind { parameter, .. }
             | Self::NoWidth { parameter }
             | Self::NegativeWidth { parameter, .. } => parameter.key(),
-            Self::Learnt { .. } | Self::EffectOfOtherKind { .. } => "effects",
+            Self::Learnt { .. } | Self::EffectOfOtherKind { .. } | Self::TwoFormulas { .. } => "effects",
             Self::SpecimenName { .. } => "specimens",
             Self::NoSpread => "instruments",
         }

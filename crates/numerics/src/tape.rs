@@ -550,7 +550,8 @@ mod tests {
             };
             (tape, place)
         };
-        let operators = [Operator::Add, Operator::Subtract, Operator::Multiply, Operator::Divide, Operator::Power];
+        let operators =
+            [Operator::Add, Operator::Subtract, Operator::Multiply, Operator::Divide, Operator::Power];
         let mut tapes: Vec<(String, Builder, Place)> = Vec::new();
         for function in [
             Function::Sqrt,
@@ -603,7 +604,10 @@ mod tests {
                 (yy, by_y.gradient()[1]),
             ];
             for (i, (symbolic, dual)) in pairs.into_iter().enumerate() {
-                assert!((symbolic - dual).abs() <= 1e-13 * (1.0 + dual.abs()), "{name} {i}: {symbolic} {dual}");
+                assert!(
+                    (symbolic - dual).abs() <= 1e-13 * (1.0 + dual.abs()),
+                    "{name} {i}: {symbolic} {dual}"
+                );
             }
         }
     }

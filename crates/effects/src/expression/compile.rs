@@ -181,7 +181,12 @@ impl Compiler<'_> {
     fn call(&self, called: Function, operands: &[Operand]) -> Result<Option<Dimension>, ExpressionError> {
         let together = |a: &Operand, b: &Operand| {
             self.agree(a, b, || {
-                format!("{} and {} cannot stand in one `{}`", self.named(a), self.named(b), function::name(called))
+                format!(
+                    "{} and {} cannot stand in one `{}`",
+                    self.named(a),
+                    self.named(b),
+                    function::name(called)
+                )
             })
         };
         match (called, operands) {

@@ -17,12 +17,7 @@ enum Tightness {
 }
 
 /// Writes the parts; reading the text gives the same parts.
-pub(crate) fn written(
-    text: &str,
-    nodes: &[Node],
-    variables: &[Variable],
-    parameters: &[String],
-) -> String {
+pub(crate) fn written(text: &str, nodes: &[Node], variables: &[Variable], parameters: &[String]) -> String {
     let mut operands: Vec<(String, Tightness)> = Vec::new();
     for node in nodes {
         let first = operands.len().saturating_sub(node.part.arity());

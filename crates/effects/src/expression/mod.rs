@@ -202,9 +202,7 @@ pub fn check_name(name: &str, variables: &[Variable]) -> Result<(), String> {
 
 impl PartialEq for Expression {
     fn eq(&self, other: &Self) -> bool {
-        self.parameters == other.parameters
-            && self.dimension == other.dimension
-            && self.tape == other.tape
+        self.parameters == other.parameters && self.dimension == other.dimension && self.tape == other.tape
     }
 }
 

@@ -358,8 +358,11 @@ mod tests {
     #[test]
     fn each_part_knows_its_place() {
         let text = "a + max(b, 2 [N]) * c";
-        let spans: Vec<_> =
-            parse(text, &super::super::VARIABLES, &["a", "b", "c"]).unwrap().iter().map(|n| &text[n.span.clone()]).collect();
+        let spans: Vec<_> = parse(text, &super::super::VARIABLES, &["a", "b", "c"])
+            .unwrap()
+            .iter()
+            .map(|n| &text[n.span.clone()])
+            .collect();
         assert_eq!(spans, ["a", "b", "2 [N]", "max(b, 2 [N])", "c", "max(b, 2 [N]) * c", text]);
     }
 }

@@ -52,7 +52,11 @@ pub const SHAPE_VARIABLES: [Variable; 7] = [
     variable("l1", Dimension::NONE, "stretch along the meridian"),
     variable("l2", Dimension::NONE, "stretch around the axis, r/r0"),
     variable("r", Dimension::LENGTH, "radius of the fibres"),
-    variable("r0", Dimension::LENGTH, "reference radius: pleated of the fibres at the fittings, braided of the braid at rest"),
+    variable(
+        "r0",
+        Dimension::LENGTH,
+        "reference radius: pleated of the fibres at the fittings, braided of the braid at rest",
+    ),
     also("pressure", variable("p", Dimension::PRESSURE, "gauge pressure of the gas")),
     also("braid_angle", variable("alpha0", Dimension::NONE, "angle between fibre and axis at rest, in rad")),
     variable("l0", Dimension::LENGTH, "length at rest"),

@@ -1,9 +1,11 @@
 //! A user's own effect as an effect like any other: its expression is evaluated at the load, with exact derivatives.
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature};
-use crate::effect::{Action, Balance, Effect, Jet, LoadEffect, Moment, Row, Setting};
+use crate::effect::{Action, Balance, Effect, Jet, LoadEffect, Moment, Row, Setting, ShapeEffect};
 use crate::expression::{VARIABLES, variable_index};
-use crate::user::{UserEffect, UserParameter};
+use crate::user::{ShapeFormula, ShapeQuantity, UserEffect, UserFormula, UserParameter};
+use bulge_fibre::Parts;
+use bulge_muscles::MuscleError;
 
 /// Columns that a variable needs.
 const NEEDS: &[(&str, Needs)] = &[
@@ -17,7 +19,10 @@ const NEEDS: &[(&str, Needs)] = &[
 
 impl UserEffect {
     fn uses(&self, name: &str) -> bool {
-        variable_index(name).is_some_and(|i| self.force.uses_variable(i))
+        match &self.formula {
+            UserFormula::Force(force) => variable_index(name).is_some_and(|i| force.uses_variable(i)),
+            UserFormula::Shape(_) => false,
+        }
     }
 }
 
@@ -56,10 +61,14 @@ impl Effect for UserEffect {
             form: self.form,
             title: &self.title,
             about: self.about.as_deref().unwrap_or("An effect of your own."),
-            equation: self.force.text(),
+            equation: self.formula.expression().text(),
             source: self.source.as_deref().unwrap_or("your own file"),
             evidence: Evidence::User,
-            group: Group::Load,
+            group: match &self.formula {
+                UserFormula::Force(_) => Group::Load,
+                UserFormula::Shape(ShapeFormula { quantity: ShapeQuantity::Energy, .. }) => Group::Material,
+                UserFormula::Shape(_) => Group::Geometry,
+            },
             kind: None,
             signature: Signature {
                 pressure: if self.uses("p") { "1" } else { "0" },
@@ -77,13 +86,27 @@ impl Effect for UserEffect {
     }
 
     fn action(&self) -> Action<'_> {
-        Action::Load(self)
+        match self.formula {
+            UserFormula::Force(_) => Action::Load(self),
+            UserFormula::Shape(_) => Action::Shape(self),
+        }
+    }
+}
+
+impl ShapeEffect for UserEffect {
+    fn reshape(&self, theta: &[Jet], parts: &mut Parts<Jet>) -> Result<(), MuscleError> {
+        match &self.formula {
+            UserFormula::Shape(formula) => formula.reshape(theta, parts),
+            UserFormula::Force(_) => Ok(()),
+        }
     }
 }
 
 impl LoadEffect for UserEffect {
     fn act(&self, Row { moment, setting, theta, .. }: Row<'_>, balance: &Balance, force: &mut Jet) {
-        *force += self.force.evaluate(&variables(moment, setting, balance), theta);
+        if let UserFormula::Force(formula) = &self.formula {
+            *force += formula.evaluate(&variables(moment, setting, balance), theta);
+        }
     }
 }
 

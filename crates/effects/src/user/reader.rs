@@ -2,9 +2,14 @@
 
 use super::quantity::Quantity;
 use super::value::{Entry, Table};
-use super::{EXAMPLE, EffectFileError, MAX_PARAMETERS, UserEffect, UserParameter};
+use super::{
+    EXAMPLE, EffectFileError, MAX_PARAMETERS, ShapeFormula, ShapeQuantity, UserEffect, UserFormula,
+    UserParameter,
+};
 use crate::catalogue::Catalogue;
-use crate::expression::{Expression, VARIABLES, check_name, nearest, quoted};
+use crate::expression::{
+    Expression, ExpressionError, SHAPE_VARIABLES, VARIABLES, Variable, check_name, nearest, quoted,
+};
 use crate::mechanism::{Form, Mechanism};
 use bulge_muscles::Dimension;
 use bulge_muscles::units;
@@ -12,8 +17,20 @@ use std::ops::Range;
 use toml::de::{DeTable, DeValue};
 
 /// Keys of an effect, and of a parameter.
-const EFFECT_KEYS: [&str; 9] =
-    ["title", "force", "about", "source", "family", "mechanism", "form", "twins", "parameters"];
+const EFFECT_KEYS: [&str; 12] = [
+    "title",
+    "force",
+    "energy",
+    "area",
+    "twist",
+    "about",
+    "source",
+    "family",
+    "mechanism",
+    "form",
+    "twins",
+    "parameters",
+];
 const PARAMETER_KEYS: [&str; 6] = ["unit", "typical", "low", "high", "prior", "about"];
 
 const TITLE: &str = "title = \"Hose pulls on the muscle\"";
@@ -69,18 +86,27 @@ fn effect(all: &Table<'_>, entry: &Entry<'_>) -> Result<UserEffect, EffectFileEr
     let form = form(&table)?;
     let twins = twins(&table, name)?;
     let title = title.ok_or_else(|| table.missing("title", TITLE))?;
-    let Some((force, force_place)) = table.words("force", FORCE)? else {
+    let (key, shape) = formula_key(&table)?;
+    let Some((formula_text, formula_place)) = table.words(key, FORCE)? else {
         return Err(table.missing("force", FORCE));
     };
-    let (parameters, places) = parameters(&table)?;
+    let variables: &'static [Variable] = if shape.is_some() { &SHAPE_VARIABLES } else { &VARIABLES };
+    let (parameters, places) = parameters(&table, variables)?;
     let known: Vec<(&str, Dimension)> = parameters.iter().map(|p| (p.name.as_str(), p.dimension)).collect();
-    let formula = Expression::parse(force, &known, Dimension::FORCE).map_err(|error| {
-        table.error(table.inside(force, &force_place, error.span()), error.what(), error.instead())
-    })?;
+    let at = |error: ExpressionError| {
+        let place = table.inside(formula_text, &formula_place, error.span());
+        table.error(place, error.what(), error.instead())
+    };
+    let formula = match shape {
+        None => UserFormula::Force(Expression::parse(formula_text, &known, Dimension::FORCE).map_err(at)?),
+        Some(quantity) => {
+            UserFormula::Shape(ShapeFormula::parse(quantity, formula_text, &known).map_err(at)?)
+        }
+    };
     for (index, (parameter, place)) in parameters.iter().zip(places).enumerate() {
-        if !formula.uses_parameter(index) {
+        if !formula.expression().uses_parameter(index) {
             let name = &parameter.name;
-            let what = format!("the parameter `{name}` does not occur in `force`");
+            let what = format!("the parameter `{name}` does not occur in `{key}`");
             return Err(table.error(
                 place,
                 what,
@@ -97,9 +123,25 @@ fn effect(all: &Table<'_>, entry: &Entry<'_>) -> Result<UserEffect, EffectFileEr
         mechanism,
         form,
         twins,
-        force: formula,
+        formula,
         parameters,
     })
+}
+
+/// The key of the formula, and of which quantity of the shape it is; `force` if there is none.
+fn formula_key(table: &Table<'_>) -> Result<(&'static str, Option<ShapeQuantity>), EffectFileError> {
+    let shapes = ShapeQuantity::ALL.map(|quantity| (quantity.key(), Some(quantity)));
+    let all = std::iter::once(("force", None)).chain(shapes);
+    let mut stated = all.filter(|(key, _)| table.get(key).is_some());
+    let first = stated.next().unwrap_or(("force", None));
+    match stated.next() {
+        None => Ok(first),
+        Some((other, _)) => {
+            let span = table.get(other).map_or(table.span.clone(), toml::Spanned::span);
+            let what = format!("{} has a formula for `{}` and one for `{other}`", table.title, first.0);
+            Err(table.error(span, what, "write two effects, one for each"))
+        }
+    }
 }
 
 /// Lower-case words with hyphens: "hose-stiffness".
@@ -195,7 +237,10 @@ fn twins(table: &Table<'_>, own: &str) -> Result<Vec<String>, EffectFileError> {
 }
 
 /// The parameters, with the places of their names.
-fn parameters(table: &Table<'_>) -> Result<(Vec<UserParameter>, Vec<Range<usize>>), EffectFileError> {
+fn parameters(
+    table: &Table<'_>,
+    variables: &[Variable],
+) -> Result<(Vec<UserParameter>, Vec<Range<usize>>), EffectFileError> {
     let none = |place| {
         let what = format!("{} has no parameter, so there is nothing to learn about it", table.title);
         table.error(place, what, format!("add `{PARAMETER}` and use it in the formula"))
@@ -214,16 +259,21 @@ fn parameters(table: &Table<'_>) -> Result<(Vec<UserParameter>, Vec<Range<usize>
             Err(table.error(place, what, "write numbers for those that are known, or several effects"))
         }
         _ => {
-            let read = entries.iter().map(|entry| parameter(&list, entry)).collect::<Result<_, _>>()?;
+            let read =
+                entries.iter().map(|entry| parameter(&list, entry, variables)).collect::<Result<_, _>>()?;
             Ok((read, entries.into_iter().map(|(_, place, _)| place).collect()))
         }
     }
 }
 
-fn parameter(list: &Table<'_>, entry: &Entry<'_>) -> Result<UserParameter, EffectFileError> {
+fn parameter(
+    list: &Table<'_>,
+    entry: &Entry<'_>,
+    variables: &[Variable],
+) -> Result<UserParameter, EffectFileError> {
     let (name, place, _) = entry;
-    check_name(name, &VARIABLES).map_err(|what| {
-        let taken = VARIABLES.iter().any(|known| known.name == *name || known.alias == Some(name));
+    check_name(name, variables).map_err(|what| {
+        let taken = variables.iter().any(|known| known.name == *name || known.alias == Some(name));
         let instead = if taken {
             "rename the parameter, or delete it and use the variable".to_owned()
         } else {

@@ -27,8 +27,8 @@ fn the_example() {
     assert_eq!((effect.name.as_str(), effect.title.as_str()), ("hose-stiffness", "Hose pulls on the muscle"));
     assert_eq!((&effect.about, &effect.source, &effect.family, effect.twins.len()), (&None, &None, &None, 0));
     assert_eq!((effect.mechanism, effect.form), (Mechanism::User, Form::Loose));
-    assert_eq!(effect.force.text(), "-k * (eps - eps_free)");
-    assert_eq!(effect.force.parameters(), ["k", "eps_free"]);
+    assert_eq!(effect.formula.expression().text(), "-k * (eps - eps_free)");
+    assert_eq!(effect.formula.expression().parameters(), ["k", "eps_free"]);
     let expected =
         [("k", "N", 1.0, 50.0, 0.0, 500.0, Some((50.0, 30.0))), ("eps_free", "1", 1.0, 0.1, -0.1, 0.4, None)];
     for (found, (name, unit, factor, typical, low, high, prior)) in effect.parameters.iter().zip(expected) {
@@ -37,7 +37,7 @@ fn the_example() {
     }
     let mut state = [0.0; crate::expression::VARIABLES.len()];
     state[1] = 0.3;
-    assert!((effect.force.evaluate(&state, &[50.0, 0.1]) + 10.0).abs() < 1e-12);
+    assert!((effect.formula.expression().evaluate(&state, &[50.0, 0.1]) + 10.0).abs() < 1e-12);
 }
 
 #[test]
@@ -111,7 +111,7 @@ fn what_an_effect_needs() {
     refused("[effects.hose]\n", (1, 10), &["the effect `hose` needs `title`", "add `title = "]);
     refused(&with("force =", "# force ="), (1, 10), &["needs `force`", "add `force = "]);
     refused(&with("force =", "forces ="), (3, 1), &["unknown key `forces`", "did you mean `force`?"]);
-    refused(&with("title =", "colour = 1\ntitle ="), (2, 1), &["known here: title, force, about"]);
+    refused(&with("title =", "colour = 1\ntitle ="), (2, 1), &["known here: title, force, energy, area, twist, about"]);
     refused(
         &with("\"Hose pulls on the muscle\"", "3"),
         (2, 9),

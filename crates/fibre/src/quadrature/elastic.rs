@@ -13,6 +13,7 @@
 
 use arrayvec::ArrayVec;
 use bulge_numerics::Real;
+use std::borrow::Cow;
 
 use super::chebyshev::{GRIDS, Grid, INTERVALS, MOST};
 use super::{Ends, Local, Meridian, Point};
@@ -175,7 +176,7 @@ impl<D: Real> Elastic<D> {
     /// At mid-length.
     fn begun(net: &Net<D>, middle: &Middle<D>) -> Self {
         let ends = Ends::of(net, middle);
-        let net = net.acting_at(ends.r_m.value());
+        let net = net.acting_at(ends.r_m.value()).into_owned();
         let force = net.local(ends.r_m, middle.tension).force;
         let zero = D::from(0.0);
         Self {
@@ -192,8 +193,8 @@ impl<D: Real> Elastic<D> {
         }
     }
 
-    fn law(&self, span: &Span) -> Net<D> {
-        if span.slack { Net { cloth: None, ..self.net } } else { self.net }
+    fn law(&self, span: &Span) -> Cow<'_, Net<D>> {
+        if span.slack { self.net.without_cloth() } else { Cow::Borrowed(&self.net) }
     }
 
     fn radius(&self, part: f64) -> D {

@@ -1,0 +1,348 @@
+//! A user's own effect of the shape: a formula that the equilibrium of the net is solved with.
+
+use bulge_fibre::{Formula, FormulaInput, Jet, MOST_PARAMETERS, Parts};
+use bulge_muscles::{Dimension, MuscleError};
+use bulge_numerics::Real;
+use bulge_numerics::tape::{Builder, Operator, Place, Tape};
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+use crate::expression::{Expression, ExpressionError, SHAPE_VARIABLES};
+
+/// What a formula of the shape says.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ShapeQuantity {
+    /// Stored energy of the wall per area at rest \[N/m\], besides that of the muscle's own bladder and cloth.
+    Energy,
+    /// Area on which the pressure acts at a radius \[m^2\], instead of that of the polygon or circle.
+    Area,
+    /// Turn of the fibres about the axis per length of fibre \[1/m\], instead of sin(alpha0)/r0.
+    Twist,
+}
+
+impl ShapeQuantity {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Energy, Self::Area, Self::Twist];
+
+    /// Its key in a file.
+    #[must_use]
+    pub const fn key(self) -> &'static str {
+        match self {
+            Self::Energy => "energy",
+            Self::Area => "area",
+            Self::Twist => "twist",
+        }
+    }
+
+    fn dimension(self) -> Dimension {
+        match self {
+            Self::Energy => Dimension::LINE_STIFFNESS,
+            Self::Area => Dimension::AREA,
+            Self::Twist => Dimension::NONE.over(Dimension::LENGTH).unwrap_or_default(),
+        }
+    }
+
+    /// The variables that it can't depend on.
+    const fn without(self) -> &'static [FormulaInput] {
+        match self {
+            Self::Energy => &[],
+            Self::Area => &[FormulaInput::AlongMeridian],
+            Self::Twist => &[FormulaInput::AlongMeridian, FormulaInput::AroundAxis, FormulaInput::Radius],
+        }
+    }
+}
+
+/// A formula of the shape, differentiated.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ShapeFormula {
+    /// What it says.
+    pub quantity: ShapeQuantity,
+    /// As it was written.
+    pub expression: Expression,
+    /// With the derivatives that the equilibrium needs.
+    tape: Arc<Tape>,
+}
+
+impl ShapeFormula {
+    /// Reads a formula over [`SHAPE_VARIABLES`] and these parameters, and differentiates it: an energy twice by the stretches, an area twice by the radius.
+    ///
+    /// # Errors
+    /// As [`Expression::parse`]; also if it has more than [`MOST_PARAMETERS`] parameters, depends on what it can't depend on, or is too long.
+    pub fn parse(
+        quantity: ShapeQuantity,
+        text: &str,
+        parameters: &[(&str, Dimension)],
+    ) -> Result<Self, ExpressionError> {
+        let refused = |what: String, instead: &str| ExpressionError::new(text, 0..0, what, instead);
+        let expression = Expression::parse_over(text, &SHAPE_VARIABLES, parameters, quantity.dimension())?;
+        if parameters.len() > MOST_PARAMETERS {
+            let what = format!(
+                "`{}` has {} parameters, but at most {MOST_PARAMETERS} are solved with",
+                quantity.key(),
+                parameters.len()
+            );
+            return Err(refused(what, "write numbers for those that are known"));
+        }
+        if let Some(input) =
+            quantity.without().iter().find(|input| expression.uses_variable(**input as usize))
+        {
+            let name = SHAPE_VARIABLES[*input as usize].name;
+            let what = format!("`{}` can't depend on `{name}`", quantity.key());
+            return Err(refused(what, "write it by the other variables and by parameters"));
+        }
+        let (mut tape, place) = expression.steps();
+        let outputs = match quantity {
+            ShapeQuantity::Energy => {
+                let by_1 = tape.derivative(place, FormulaInput::AlongMeridian as usize);
+                let by_2 = by_circumference(&mut tape, place);
+                let by_11 = tape.derivative(by_1, FormulaInput::AlongMeridian as usize);
+                let (by_12, by_22) = (by_circumference(&mut tape, by_1), by_circumference(&mut tape, by_2));
+                vec![place, by_1, by_2, by_11, by_12, by_22]
+            }
+            ShapeQuantity::Area => {
+                let by_r = by_radius(&mut tape, place);
+                let by_rr = by_radius(&mut tape, by_r);
+                vec![place, by_r, by_rr]
+            }
+            ShapeQuantity::Twist => vec![place],
+        };
+        let tape = tape.finish(&outputs).ok_or_else(|| {
+            let what = format!("`{}` and its derivatives need too many numbers at a time", quantity.key());
+            refused(what, "write a shorter formula")
+        })?;
+        Ok(Self { quantity, expression, tape: Arc::new(tape) })
+    }
+
+    /// Puts the formula into the parts of a muscle, with its parameters; where it changes nothing (a stiffness of 0) and nothing moves with it, the parts stay
+    /// what they are.
+    pub(crate) fn reshape(&self, theta: &[Jet], parts: &mut Parts<Jet>) -> Result<(), MuscleError> {
+        let moves = theta.iter().any(|number| number.gradient().iter().any(|slope| *slope != 0.0));
+        if !moves && self.changes_nothing(theta, parts) {
+            return Ok(());
+        }
+        let formula = Formula { tape: Arc::clone(&self.tape), parameters: theta.to_vec() };
+        let place = match self.quantity {
+            ShapeQuantity::Energy => &mut parts.energy,
+            ShapeQuantity::Area => &mut parts.area,
+            ShapeQuantity::Twist => &mut parts.twist,
+        };
+        if place.is_some() {
+            return Err(MuscleError::TwoFormulas { what: self.quantity.key() });
+        }
+        *place = Some(formula);
+        Ok(())
+    }
+
+    /// Whether it says what is said without it, at some stretches, radii and pressures.
+    fn changes_nothing(&self, theta: &[Jet], parts: &Parts<Jet>) -> bool {
+        let of = |[l1, l2, p]: [f64; 3]| {
+            let (r0, angle) = (parts.radius.value(), parts.angle.value());
+            let inputs = [l1, l2, l2 * r0, r0, p, angle, parts.length.value()];
+            let parameter = |i: usize| theta.get(i - inputs.len()).map_or(f64::NAN, |number| number.value());
+            self.tape.run_on::<f64, 1>(|i| inputs.get(i).copied().unwrap_or_else(|| parameter(i)))[0]
+        };
+        let near = |a: f64, b: f64| (a - b).abs() <= 1e-14 * b.abs();
+        [[0.9, 1.2, 1e5], [1.1, 0.8, 3e5], [0.75, 1.7, 6e5]].into_iter().all(|at| match self.quantity {
+            ShapeQuantity::Energy => of(at) == 0.0,
+            ShapeQuantity::Area => {
+                let r = at[1] * parts.radius.value() + parts.depth.value();
+                !parts.is_polygon && near(of(at), PI * r * r)
+            }
+            ShapeQuantity::Twist => near(of(at), parts.angle.value().sin() / parts.radius.value()),
+        })
+    }
+}
+
+/// The derivative by l2, with r = l2 r0 moving along.
+fn by_circumference(tape: &mut Builder, of: Place) -> Place {
+    let [by_stretch, by_radius] =
+        [FormulaInput::AroundAxis, FormulaInput::Radius].map(|input| tape.derivative(of, input as usize));
+    let reference = tape.input(FormulaInput::ReferenceRadius as usize);
+    let along = tape.operate(Operator::Multiply, reference, by_radius);
+    tape.operate(Operator::Add, by_stretch, along)
+}
+
+/// The derivative by r, with l2 = r/r0 moving along.
+fn by_radius(tape: &mut Builder, of: Place) -> Place {
+    let by_stretch = by_circumference(tape, of);
+    let reference = tape.input(FormulaInput::ReferenceRadius as usize);
+    tape.operate(Operator::Divide, by_stretch, reference)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effect::Effect;
+    use crate::geometry::bench::{cylinder, force};
+    use crate::user::{MAX_PARAMETERS, SHAPE_EXAMPLE, from_toml};
+    use bulge_fibre::{Approach, Given, Problem};
+    use bulge_muscles::{Muscle, Parameter, Pressure, preset};
+
+    fn own(text: &str) -> Box<dyn Effect> {
+        Box::new(from_toml(text, "own.toml").unwrap().remove(0))
+    }
+
+    fn clamped() -> Muscle {
+        preset("dmsp-20-250").unwrap().with(Parameter::Wall, 0.002).unwrap()
+    }
+
+    fn stated(muscle: &Muscle, c10: f64) -> Parts {
+        Parts::of(&muscle.with(Parameter::C10, c10).unwrap())
+    }
+
+    /// The bladder of the catalogue as a formula: the same force, stiffness, volume and derivatives, with the ODE and by quadrature.
+    #[test]
+    fn the_shipped_bladder_as_a_formula_is_the_same() {
+        for muscle in [clamped(), cylinder().with(Parameter::Wall, 0.002).unwrap()] {
+            let formula = own(SHAPE_EXAMPLE).reshaped(&[3e5, 0.002], &muscle).unwrap();
+            let shipped = stated(&muscle, 3e5);
+            let mut tried = 0;
+            for bar in [1.0, 2.0, 4.0] {
+                for contraction in [-0.02, 0.01, 0.05, 0.12, 0.2] {
+                    let [a, b] =
+                        [&shipped, &formula].map(|parts| Problem::new(parts, Pressure::bar(bar)).unwrap());
+                    let found = [&a, &b].map(|problem| problem.follow(contraction, Approach::Auto));
+                    let [Ok(one), Ok(other)] = found else { continue };
+                    let size = 1e5 * bar * 1e-4;
+                    assert!(
+                        (one.force_n - other.force_n).abs() < 1e-12 * (one.force_n.abs() + size),
+                        "{one:?} {other:?}"
+                    );
+                    let relative = |x: f64, y: f64| (x / y - 1.0).abs();
+                    assert!(relative(one.volume_m3, other.volume_m3) < 1e-12);
+                    assert!(relative(one.stiffness_n_per_m, other.stiffness_n_per_m) < 1e-10);
+                    assert!(
+                        relative(one.stiffness_adiabatic_n_per_m, other.stiffness_adiabatic_n_per_m) < 1e-10
+                    );
+                    // With derivatives, as fits ask for it: by c10.
+                    let mut moving = [shipped.still(), formula.still()];
+                    let c10 = Jet::variable(3e5, 0);
+                    moving[0].rubber.as_mut().unwrap().c10 = c10;
+                    moving[1].energy.as_mut().unwrap().parameters[0] = c10;
+                    let one = a.linearised(contraction, &moving[0], Approach::Auto).unwrap();
+                    let other = b.linearised(contraction, &moving[1], Approach::Auto).unwrap();
+                    let (one, other) = (one.force_n, other.force_n);
+                    assert!(
+                        (one.value - other.value).abs() < 1e-11 * (one.value.abs() + size),
+                        "{one:?} {other:?}"
+                    );
+                    assert!(relative(one.by_lane[0], other.by_lane[0]) < 1e-7, "{one:?} {other:?}");
+                    assert!(relative(one.by_pressure, other.by_pressure) < 1e-7, "{one:?} {other:?}");
+                    tried += 1;
+                }
+            }
+            assert!(tried > 8, "{tried}");
+        }
+    }
+
+    const GENT: &str = "[effects.gent]\ntitle = \"Gent\"\nenergy = \"-h*mu*jm/2*ln(1 - (l1^2 + l2^2 + 1/(l1*l2)^2 - 3)/jm)\"\n\
+        parameters.mu = { unit = \"MPa\", typical = \"0.6 MPa\", low = \"0 MPa\", high = \"6 MPa\" }\n\
+        parameters.jm = { unit = \"1\", typical = 30, low = 5, high = 1e9 }\n\
+        parameters.h = { unit = \"mm\", typical = \"2 mm\", low = \"0.5 mm\", high = \"5 mm\" }\n";
+    const OGDEN: &str = "[effects.ogden]\ntitle = \"Ogden\"\nenergy = \"h*mu/a*(l1^a + l2^a + (l1*l2)^(-a) - 3)\"\n\
+        parameters.mu = { unit = \"MPa\", typical = \"0.6 MPa\", low = \"0 MPa\", high = \"6 MPa\" }\n\
+        parameters.a = { unit = \"1\", typical = 1.3, low = 0.5, high = 8 }\n\
+        parameters.h = { unit = \"mm\", typical = \"2 mm\", low = \"0.5 mm\", high = \"5 mm\" }\n";
+
+    /// dF = 2 pi r0 (W_1 - W_2 l1 cot^2(alpha0)/l2) of a cylinder, W per area at rest.
+    #[test]
+    fn gent_and_ogden_pull_as_their_energies_say() {
+        let (muscle, contraction) = (cylinder(), 0.15);
+        let (s, c) = 25.0_f64.to_radians().sin_cos();
+        let l1: f64 = 1.0 - contraction;
+        let l2 = (1.0 - (l1 * c).powi(2)).sqrt() / s;
+        let (mu, h, jm, a) = (6e5, 0.002, 30.0, 1.3);
+        let i1 = l1 * l1 + l2 * l2 + 1.0 / (l1 * l2).powi(2);
+        let gent = |x: f64, y: f64| h * mu * jm / (jm - (i1 - 3.0)) * (x - 1.0 / (x.powi(3) * y * y));
+        let ogden = |x: f64, y: f64| h * mu * (x.powf(a) - (x * y).powf(-a)) / x;
+        for (text, theta, slopes) in [
+            (GENT, [mu, jm, h], [gent(l1, l2), gent(l2, l1)]),
+            (OGDEN, [mu, a, h], [ogden(l1, l2), ogden(l2, l1)]),
+        ] {
+            let parts = own(text).reshaped(&theta, &muscle).unwrap();
+            let expected = 2.0 * PI * 0.01 * (slopes[0] - slopes[1] * l1 * (c / s).powi(2) / l2);
+            let found = force(&parts, 4.0, contraction) - force(&muscle, 4.0, contraction);
+            assert!((found / expected - 1.0).abs() < 1e-8, "{found} {expected}");
+        }
+        // Both are neo-Hookean in their limits: c10 = mu/2.
+        let neo = force(&stated(&clamped(), 3e5), 3.0, 0.1);
+        for (text, theta) in [(GENT, [6e5, 1e9, 0.002]), (OGDEN, [6e5, 2.0, 0.002])] {
+            let limit = force(&own(text).reshaped(&theta, &clamped()).unwrap(), 3.0, 0.1);
+            assert!((limit / neo - 1.0).abs() < 1e-6, "{limit} {neo}");
+        }
+    }
+
+    /// The gas on the inner face of a wall, and fibres that turn as in another braid, as formulas: what the catalogue computes.
+    #[test]
+    fn area_and_twist_are_those_of_the_net() {
+        let muscle = clamped();
+        let area = "[effects.inside]\ntitle = \"Inside\"\narea = \"pi*(r - t)^2\"\n\
+            parameters.t = { unit = \"mm\", typical = \"1 mm\", low = \"0 mm\", high = \"5 mm\" }\n";
+        let inside = own(area).reshaped(&[0.001], &muscle).unwrap();
+        let wall = Parts::of(&muscle.with(Parameter::GasWall, 0.001).unwrap());
+        let twist = "[effects.turn]\ntitle = \"Turn\"\ntwist = \"sin(alpha0)/r0*(1 + k*p)\"\n\
+            parameters.k = { unit = \"1/MPa\", typical = 0.05, low = -1, high = 1 }\n"
+            .replace(
+                "typical = 0.05, low = -1, high = 1",
+                "typical = \"0.05 1/MPa\", low = \"-1 1/MPa\", high = \"1 1/MPa\"",
+            );
+        let turned = own(&twist);
+        for contraction in [0.02, 0.1, 0.2] {
+            let (a, b) = (force(&inside, 3.0, contraction), force(&wall, 3.0, contraction));
+            assert!((a / b - 1.0).abs() < 1e-10, "{a} {b}");
+            // 5 % more turn at 2 bar is 1.25 % at 0.5 bar: only the product counts.
+            let at = |k: f64, bar: f64| {
+                let parts = turned.reshaped(&[k], &muscle).unwrap();
+                force(&parts, bar, contraction) / bar
+            };
+            let (a, b) = (at(0.25e-6, 2.0), at(1e-6, 0.5));
+            assert!((a / b - 1.0).abs() < 1e-10 && (a / at(0.0, 2.0) - 1.0).abs() > 1e-3, "{a} {b}");
+        }
+        // Nothing changes at 0.
+        assert_eq!(own(area).reshaped(&[0.0], &muscle).unwrap(), Parts::of(&muscle));
+        assert_eq!(turned.reshaped(&[0.0], &muscle).unwrap(), Parts::of(&muscle));
+        assert_eq!(own(SHAPE_EXAMPLE).reshaped(&[0.0, 0.002], &muscle).unwrap(), Parts::of(&muscle));
+    }
+
+    /// F = dU/dl at constant pressure: the force of a muscle with a formula is the slope of its potential, here dF/dp = -dV/dl.
+    #[test]
+    fn formulas_obey_maxwell() {
+        let parts = own(GENT).reshaped(&[6e5, 20.0, 0.002], &clamped()).unwrap();
+        let problem = Problem::new(&parts, Pressure::bar(3.0)).unwrap();
+        for contraction in [0.02, 0.1, 0.18] {
+            let gradient = problem.gradient(contraction, Approach::Auto).unwrap();
+            let volume = gradient.by_contraction[1] / parts.length;
+            assert!((gradient.by_pressure[0] / volume - 1.0).abs() < 1e-8);
+        }
+        let limit = problem.contraction_limit(Approach::Auto).unwrap();
+        assert!(problem.solve(Given::Force(0.0), Approach::Auto).unwrap().contraction - limit < 1e-9);
+    }
+
+    #[test]
+    fn what_cannot_be_is_refused() {
+        let two = own(SHAPE_EXAMPLE);
+        let mut parts = two.reshaped(&[3e5, 0.002], &clamped()).unwrap().still();
+        let theta = [3e5, 0.002].map(Jet::from);
+        let message = two.reshape(&theta, &mut parts).unwrap_err().to_string();
+        assert!(message.contains("energy") && message.contains("sum"), "{message}");
+        for (formula, part) in [
+            ("area = \"pi*r^2*l1*t/t\"", "can't depend on `l1`"),
+            ("twist = \"1/r*t/t\"", "can't depend on `r`"),
+            ("energy = \"t\"", "(m)"),
+            ("energy = \"t*eps*1 [Pa]\"", "unknown name `eps`"),
+            ("energy = \"t*1 [Pa]\"\nforce = \"t*1 [N/m]\"", "one for"),
+        ] {
+            let text = format!(
+                "[effects.x]\ntitle = \"x\"\n{formula}\nparameters.t = {{ unit = \"mm\", typical = \"1 mm\", low = \"0 mm\", high = \"5 mm\" }}\n"
+            );
+            let message = from_toml(&text, "own.toml").unwrap_err().to_string();
+            assert!(message.contains(part), "{message}");
+        }
+        let names: Vec<String> = (0..=MOST_PARAMETERS).map(|i| format!("a{i}")).collect();
+        let known: Vec<(&str, Dimension)> =
+            names.iter().map(|name| (name.as_str(), Dimension::LINE_STIFFNESS)).collect();
+        let sum = names.join(" + ");
+        let error = ShapeFormula::parse(ShapeQuantity::Energy, &sum, &known).unwrap_err();
+        assert!(error.what().contains("at most 6") && MOST_PARAMETERS < MAX_PARAMETERS);
+    }
+}

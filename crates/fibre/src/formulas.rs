@@ -1,0 +1,136 @@
+//! Formulas of a user's own in a net: the energy of its wall and the area on which the pressure acts, each with its derivatives on one tape.
+
+use bulge_numerics::Real;
+use bulge_numerics::tape::Tape;
+use std::sync::Arc;
+
+use crate::lobes::Section;
+use crate::net::Wall;
+
+/// Parameters of one formula, at most.
+pub const MOST_PARAMETERS: usize = 6;
+
+/// A formula of one quantity, with its parameters.
+///
+/// The tape takes the inputs in the order of [`FormulaInput`], then the parameters. Of an energy it gives W, dW/dl1, dW/dl2, d2W/dl1^2, d2W/dl1 dl2 and
+/// d2W/dl2^2 (by l2 with r = l2 r0 moving along), of an area A, dA/dr and d2A/dr^2, of a twist its value.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Formula<D = f64> {
+    /// What computes it.
+    pub tape: Arc<Tape>,
+    /// Its parameters in SI, at most [`MOST_PARAMETERS`].
+    pub parameters: Vec<D>,
+}
+
+/// What a formula of the shape may depend on, by its place among the inputs of the tape.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FormulaInput {
+    /// Stretch along the meridian.
+    AlongMeridian,
+    /// Stretch around the axis, r/r0.
+    AroundAxis,
+    /// Radius of the fibres \[m\].
+    Radius,
+    /// Reference radius r0 \[m\].
+    ReferenceRadius,
+    /// Gauge pressure \[Pa\].
+    Pressure,
+    /// Angle between fibre and axis at rest \[rad\].
+    Angle,
+    /// Length at rest \[m\].
+    Length,
+}
+
+/// Number of [`FormulaInput`]s.
+const INPUTS: usize = 7;
+
+impl<D: Real> Formula<D> {
+    /// The outputs, by the value of every input that is not a parameter.
+    pub(crate) fn run<const OUTPUTS: usize>(&self, inputs: [D; INPUTS]) -> [D; OUTPUTS] {
+        let parameter = |i: usize| self.parameters.get(i).copied().unwrap_or(D::from(f64::NAN));
+        self.tape.run_on(|i| inputs.get(i).copied().unwrap_or_else(|| parameter(i - INPUTS)))
+    }
+
+    /// The same for another scalar.
+    pub(crate) fn map<E>(&self, f: impl FnMut(D) -> E) -> Formula<E> {
+        Formula { tape: Arc::clone(&self.tape), parameters: self.parameters.iter().copied().map(f).collect() }
+    }
+}
+
+/// The formulas that act at every radius of a dimensionless net, and what they need of the muscle \[SI\].
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Formulas<D> {
+    /// Energy W of the wall per area at rest \[N/m\] by the stretches.
+    pub(crate) energy: Option<Formula<D>>,
+    /// Area A(r) on which the pressure acts \[m^2\].
+    pub(crate) area: Option<Formula<D>>,
+    /// Energy scale per unstretched fibre length: 2 pi cos(alpha0)/(p R).
+    pub(crate) scale: D,
+    pub(crate) radius: D,
+    pub(crate) pressure: D,
+    pub(crate) angle: D,
+    pub(crate) length: D,
+}
+
+impl<D> Formulas<D> {
+    /// Numbers of both together, at most.
+    pub(crate) const NUMBERS: usize = 5 + 2 * MOST_PARAMETERS;
+}
+
+impl<D: Real> Formulas<D> {
+    fn inputs(&self, l1: D, l2: D) -> [D; INPUTS] {
+        [l1, l2, l2 * self.radius, self.radius, self.pressure, self.angle, self.length]
+    }
+
+    /// Adds the energy of the wall at a radius.
+    pub(crate) fn add(&self, wall: &mut Wall<D>, sigma: D, r: D, cos_rest: D) {
+        let Some(energy) = &self.energy else { return };
+        let per_cos = D::from(1.0) / cos_rest;
+        let [w, w_1, w_2, w_11, w_12, w_22]: [D; 6] = energy.run(self.inputs(sigma * per_cos, r));
+        let along = self.scale * per_cos;
+        wall.w += self.scale * w;
+        wall.w_1 += along * w_1;
+        wall.w_2 += self.scale * w_2;
+        wall.w_11 += along * per_cos * w_11;
+        wall.w_12 += along * w_12;
+        wall.w_22 += self.scale * w_22;
+    }
+
+    /// The cross-section, over R^2, if a formula says it.
+    pub(crate) fn section(&self, r: D) -> Option<Section<D>> {
+        let area = self.area.as_ref()?;
+        let [area, area_r, area_rr]: [D; 3] = area.run(self.inputs(D::from(1.0), r));
+        let per_radius = D::from(1.0) / self.radius;
+        Some(Section { area: area * per_radius * per_radius, area_r: area_r * per_radius, area_rr })
+    }
+
+    /// The same for another scalar; each number has its place.
+    pub(crate) fn map<E>(&self, mut f: impl FnMut(usize, D) -> E) -> Formulas<E> {
+        let mut of = |formula: &Option<Formula<D>>, first: usize| {
+            let mut place = first;
+            formula.as_ref().map(|formula| {
+                formula.map(|number| {
+                    place += 1;
+                    f(place - 1, number)
+                })
+            })
+        };
+        let (energy, area) = (of(&self.energy, 5), of(&self.area, 5 + MOST_PARAMETERS));
+        Formulas {
+            energy,
+            area,
+            scale: f(0, self.scale),
+            radius: f(1, self.radius),
+            pressure: f(2, self.pressure),
+            angle: f(3, self.angle),
+            length: f(4, self.length),
+        }
+    }
+}
+
+impl Formulas<f64> {
+    /// The same with a part of the energy.
+    pub(crate) fn with_part(&self, part: f64) -> Self {
+        Self { scale: part * self.scale, ..self.clone() }
+    }
+}
