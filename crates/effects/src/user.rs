@@ -117,6 +117,12 @@ pub struct EffectFileError {
     message: FileError,
 }
 
+impl From<EffectFileError> for FileError {
+    fn from(error: EffectFileError) -> Self {
+        error.message
+    }
+}
+
 impl EffectFileError {
     /// The file, as it was named.
     #[must_use]

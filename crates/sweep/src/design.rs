@@ -246,6 +246,7 @@ mod tests {
 
     fn plan(axes: Vec<Axis>, design: Option<Design>) -> Plan {
         Plan {
+            own_effects: None,
             name: "x".to_owned(),
             muscle: preset("ppam-2-r16").unwrap(),
             pressure_pa: 1e5,

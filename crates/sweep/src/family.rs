@@ -1,6 +1,6 @@
 //! The family of muscles that the axes of a plan span: the muscle at a point of the axes, and its outputs.
 
-use bulge_effects::{Catalogue, Group, Known, known};
+use bulge_effects::{Group, Known, known};
 use bulge_fibre::{Approach, FibreError, Given, Gradient, Problem, RangeEnd, Response};
 use bulge_model::MuscleWithEffects;
 use bulge_muscles::{Muscle, Parameter, Pressure, Quantity as _};
@@ -40,7 +40,7 @@ impl Family {
     /// # Errors
     /// If the muscle file states an effect that doesn't exist or has other numbers.
     pub fn new(plan: &Plan) -> Result<Self, FamilyError> {
-        let effects = known(&plan.muscle, &Catalogue::builtin())?;
+        let effects = known(&plan.muscle, &plan.catalogue()?)?;
         let family = Self {
             effects,
             muscle: plan.muscle.clone(),

@@ -10,6 +10,7 @@ pub(crate) mod wish;
 
 pub(crate) use axes::quantity;
 
+use bulge_effects::Catalogue;
 use bulge_fibre::Approach;
 use bulge_muscles::settings::{Document, FileKind, Keys, Settings};
 use bulge_muscles::{Dimension, FileError, Muscle};
@@ -19,10 +20,13 @@ use axes::Placed;
 use check::Family;
 
 use crate::output::Output;
-use crate::plan::{Design, Plan, Quantity, Range};
+use crate::plan::{Design, Plan, Quantity, Range, catalogue};
 
 /// What messages call the file.
 const KIND: FileKind = FileKind { name: "sweep", file: "sweep.toml", line: "pressure = \"1 bar\"" };
+/// The file of one's own effects.
+const EFFECTS: FileKind =
+    FileKind { name: "effects", file: "effects.toml", line: "[effects.hose-stiffness]" };
 /// Gauge pressure where nothing is stated \[Pa\].
 const USUAL_PRESSURE: f64 = 1e5;
 /// Points of a chunk where the closed form applies, and where each takes an integration.
@@ -37,6 +41,7 @@ const MOST_POINTS: u64 = 1 << 48;
 pub const SWEEP_EXAMPLE: &str = "\
 name = \"pleated family\"         # default: the muscle's name
 muscle = \"ppam-2-r16\"           # a muscle file, beside this one, or a shipped muscle
+# effects = \"effects.toml\"      # effects of your own that the muscle states, beside this one
 pressure = \"1 bar\"              # where no axis varies it
 # contraction = \"20 %\"          # where no axis varies it
 method = \"auto\"                 # or \"closed-form\", or \"shooting\"
@@ -72,6 +77,7 @@ checks = 131072                 # points off the grid that certify it, 100000 or
 const TOP: Keys = &[
     ("name", "name = \"pleated family\""),
     ("muscle", "muscle = \"ppam-2-r16\""),
+    ("effects", "effects = \"effects.toml\""),
     ("pressure", "pressure = \"1 bar\""),
     ("contraction", "contraction = \"20 %\""),
     ("method", "method = \"auto\""),
@@ -134,9 +140,13 @@ impl Plan {
 fn plan(settings: &Settings<'_>, folder: Option<&Path>, muscle: Option<&Muscle>) -> Result<Plan, FileError> {
     settings.check_keys()?;
     let muscle = muscle.map_or_else(|| settings.muscle("muscle", folder), |muscle| Ok(muscle.clone()))?;
+    let own = own_effects(settings, folder)?;
+    let catalogue = own
+        .as_ref()
+        .map_or_else(|| Ok(Catalogue::builtin()), |(text, origin)| catalogue(Some(text), origin))?;
     let axes = axes::axes(settings, &muscle)?;
     let pressure_pa = pressure(settings, &axes)?;
-    let family = Family { muscle: &muscle, pressure: pressure_pa, axes: &axes };
+    let family = Family { muscle: &muscle, catalogue: &catalogue, pressure: pressure_pa, axes: &axes };
     family.check()?;
     let design = design(settings, &axes)?;
     let muscles = family.muscles()?;
@@ -161,7 +171,22 @@ fn plan(settings: &Settings<'_>, folder: Option<&Path>, muscle: Option<&Muscle>)
         table,
         axes: axes.into_iter().map(|placed| placed.axis).collect(),
         muscle,
+        own_effects: own.map(|(text, _)| text),
     })
+}
+
+/// The text of the file of effects that the sweep names, and what messages call it.
+fn own_effects(
+    settings: &Settings<'_>,
+    folder: Option<&Path>,
+) -> Result<Option<(String, String)>, FileError> {
+    let Some(named) = settings.text("effects")? else { return Ok(None) };
+    let path = folder.map_or_else(|| named.into(), |folder| folder.join(named));
+    let text = EFFECTS.read(&path).map_err(|error| {
+        let instead = format!("name a file of effects beside the sweep: {}", error.instead());
+        settings.error(settings.value_span("effects"), error.what().to_owned(), instead)
+    })?;
+    Ok(Some((text, path.display().to_string())))
 }
 
 fn name(settings: &Settings<'_>, muscle: &Muscle) -> Result<String, FileError> {

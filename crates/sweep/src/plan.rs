@@ -1,7 +1,8 @@
 //! What is swept: axes, design, outputs and table, as a sweep file states them. Plain values, read by [`Plan::read`] and run by [`crate::run`].
 
+use bulge_effects::{Catalogue, user};
 use bulge_fibre::Approach;
-use bulge_muscles::{Muscle, Parameter};
+use bulge_muscles::{FileError, Muscle, Parameter};
 use serde::Serialize;
 
 use crate::output::Output;
@@ -156,6 +157,9 @@ pub struct Plan {
     pub name: String,
     /// The muscle that is varied.
     pub muscle: Muscle,
+    /// Effects of one's own that the muscle may state, as the TOML of their file.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub own_effects: Option<String>,
     /// Gauge pressure \[Pa\] where no axis varies it.
     pub pressure_pa: f64,
     /// Contraction where no axis varies it.
@@ -173,4 +177,25 @@ pub struct Plan {
     pub chunk: u64,
     /// The table, if one is wanted.
     pub table: Option<TableRequirements>,
+}
+
+impl Plan {
+    /// The effects that the muscle may state: those of the catalogue, and one's own.
+    ///
+    /// # Errors
+    /// If one's own are no effects, or have names of the catalogue.
+    pub fn catalogue(&self) -> Result<Catalogue, FileError> {
+        catalogue(self.own_effects.as_deref(), "effects")
+    }
+}
+
+/// The catalogue with the effects of a file; `origin` is what messages call it.
+pub(crate) fn catalogue(own: Option<&str>, origin: &str) -> Result<Catalogue, FileError> {
+    let mut catalogue = Catalogue::builtin();
+    for effect in own.map_or(Ok(Vec::new()), |text| user::from_toml(text, origin))? {
+        catalogue = catalogue
+            .with(effect)
+            .map_err(|error| FileError::whole(origin, error.to_string(), "rename the effect"))?;
+    }
+    Ok(catalogue)
 }

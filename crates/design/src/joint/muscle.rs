@@ -1,7 +1,7 @@
 //! A muscle on its side of a joint: its pull, what the pull follows, and how sure it is.
 
 use bulge_effects::{Group, Known};
-use bulge_fibre::{Approach, Problem, Response, Variable};
+use bulge_fibre::{Approach, Problem, Response};
 use bulge_model::{MuscleWithEffects, MuscleWithEffectsError};
 use bulge_muscles::{Muscle, Parameter, Pressure, Quantity as _};
 use bulge_numerics::root::illinois;
@@ -135,11 +135,10 @@ impl JointMuscle {
     pub fn by_pressure(&self, angle: f64, pressure: f64) -> Result<f64, JointError> {
         let contraction = self.contraction(angle);
         let by = if self.known.is_empty() {
-            let gradient = Problem::new(&self.muscle, Pressure::pa(pressure))
+            Problem::new(&self.muscle, Pressure::pa(pressure))
                 .and_then(|problem| problem.gradient(contraction, Approach::Auto))
-                .map_err(|error| self.failed(angle, pressure, error))?;
-            let found = gradient.by_variable.iter().find(|(variable, _)| *variable == Variable::Pressure);
-            found.map_or(0.0, |(_, by)| by[0])
+                .map_err(|error| self.failed(angle, pressure, error))?
+                .by_pressure[0]
         } else {
             let step = PRESSURE_STEP * pressure.abs().max(1e-3);
             let force = |times: f64| force(&self.extended, pressure + times * step, contraction);

@@ -111,7 +111,11 @@ fn what_an_effect_needs() {
     refused("[effects.hose]\n", (1, 10), &["the effect `hose` needs `title`", "add `title = "]);
     refused(&with("force =", "# force ="), (1, 10), &["needs `force`", "add `force = "]);
     refused(&with("force =", "forces ="), (3, 1), &["unknown key `forces`", "did you mean `force`?"]);
-    refused(&with("title =", "colour = 1\ntitle ="), (2, 1), &["known here: title, force, energy, area, twist, about"]);
+    refused(
+        &with("title =", "colour = 1\ntitle ="),
+        (2, 1),
+        &["known here: title, force, energy, area, twist, about"],
+    );
     refused(
         &with("\"Hose pulls on the muscle\"", "3"),
         (2, 9),

@@ -17,6 +17,7 @@ const LIST: &str = "use a list, such as `list = [20, 40, 60]`";
 /// The muscle of a sweep with its axes.
 pub(super) struct Family<'p, 'a> {
     pub(super) muscle: &'p Muscle,
+    pub(super) catalogue: &'p Catalogue,
     /// Gauge pressure \[Pa\] where no axis varies it.
     pub(super) pressure: f64,
     pub(super) axes: &'p [Placed<'a>],
@@ -142,7 +143,7 @@ impl Family<'_, '_> {
                 changed(Parameter::FibreStiffness, stiffness)
             }
             Quantity::Parameter(parameter) => changed(*parameter, value),
-            Quantity::Effect { effect, key } => with_effect(muscle, effect, key, value),
+            Quantity::Effect { effect, key } => with_effect(muscle, self.catalogue, effect, key, value),
         }
     }
 
@@ -188,7 +189,13 @@ impl Family<'_, '_> {
 }
 
 /// The muscle with another value of an effect's number.
-fn with_effect(muscle: &Muscle, effect: &str, key: &str, value: f64) -> Result<Muscle, String> {
+fn with_effect(
+    muscle: &Muscle,
+    catalogue: &Catalogue,
+    effect: &str,
+    key: &str,
+    value: f64,
+) -> Result<Muscle, String> {
     let Some(stated) = muscle.learnt().iter().find(|learnt| learnt.name() == effect) else {
         return Err(format!("the muscle has no effect `{effect}`"));
     };
@@ -198,8 +205,7 @@ fn with_effect(muscle: &Muscle, effect: &str, key: &str, value: f64) -> Result<M
     }
     let changed = Learnt::new(effect, values).map_err(|error| error.to_string())?;
     let muscle = muscle.clone().with_learnt(changed);
-    known(&muscle, &Catalogue::builtin())
-        .map_err(|error| format!("{}: {}", error.what(), error.instead()))?;
+    known(&muscle, catalogue).map_err(|error| format!("{}: {}", error.what(), error.instead()))?;
     Ok(muscle)
 }
 
