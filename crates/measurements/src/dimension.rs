@@ -1,26 +1,7 @@
-//! Time and temperature, which only measurements have, and the scale from a column's unit to SI.
+//! Temperature, whose scales have zero points, and the scale from a column's unit to SI.
 
-use bulge_muscles::units::{Quantity, UnitError, factor};
-
-/// A time in seconds.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Time(f64);
-
-impl Quantity for Time {
-    const NAME: &'static str = "time";
-    const EXAMPLE: &'static str = "10 s";
-    const SHOWN: (&'static str, f64) = ("s", 1.0);
-    const UNITS: &'static [(&'static str, f64)] =
-        &[("s", 1.0), ("ms", 1e-3), ("us", 1e-6), ("min", 60.0), ("h", 3600.0)];
-
-    fn from_si(value: f64) -> Self {
-        Self(value)
-    }
-
-    fn si(self) -> f64 {
-        self.0
-    }
-}
+use bulge_muscles::Dimension;
+use bulge_muscles::units::{Quantity, UnitError, factor, to_si};
 
 /// A temperature in kelvin; the factors are those of differences, the zero points are in [`Scale`].
 #[derive(Debug, Clone, Copy)]
@@ -28,6 +9,7 @@ pub(crate) struct Temperature(f64);
 
 impl Quantity for Temperature {
     const NAME: &'static str = "temperature";
+    const DIMENSION: Dimension = Dimension::TEMPERATURE;
     const EXAMPLE: &'static str = "20 degC";
     const SHOWN: (&'static str, f64) = ("degC", 1.0);
     const UNITS: &'static [(&'static str, f64)] = &[("K", 1.0), ("C", 1.0), ("degC", 1.0)];
@@ -51,18 +33,15 @@ const ATMOSPHERE: f64 = 101_325.0;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Scale {
     factor: f64,
-    /// 1/factor where that is a whole number: 5 um divided by 1e6 is the same number as 5e-6, multiplied it is not.
-    divisor: Option<f64>,
     zero: f64,
 }
 
 impl Scale {
     /// Pure numbers and SI units.
-    pub(crate) const SI: Self = Self { factor: 1.0, divisor: None, zero: 0.0 };
+    pub(crate) const SI: Self = Self { factor: 1.0, zero: 0.0 };
 
     /// Degrees of Fahrenheit: 32 degF are 0 degC.
-    pub(crate) const FAHRENHEIT: Self =
-        Self { factor: 5.0 / 9.0, divisor: None, zero: CELSIUS_ZERO - 32.0 * 5.0 / 9.0 };
+    pub(crate) const FAHRENHEIT: Self = Self { factor: 5.0 / 9.0, zero: CELSIUS_ZERO - 32.0 * 5.0 / 9.0 };
 
     /// A unit that is so many SI units.
     pub(crate) fn by(factor: f64) -> Self {
@@ -71,7 +50,7 @@ impl Scale {
 
     /// The same with the other sign: a sensor that counts the other way.
     pub(crate) fn reversed(self) -> Self {
-        Self { factor: -self.factor, divisor: self.divisor.map(|divisor| -divisor), zero: self.zero }
+        Self { factor: -self.factor, ..self }
     }
 
     /// The same of absolute pressures, as gauge pressures above the standard atmosphere.
@@ -81,10 +60,7 @@ impl Scale {
 
     /// The scale of a unit of a dimension.
     pub(crate) fn of<Q: Quantity>(unit: &str) -> Result<Self, UnitError> {
-        let factor = factor::<Q>(unit)?;
-        let inverse = (1.0 / factor).round();
-        let is_whole = inverse > 1.0 && (inverse * factor - 1.0).abs() <= 2.0 * f64::EPSILON;
-        Ok(Self { factor, divisor: is_whole.then_some(inverse), zero: 0.0 })
+        factor::<Q>(unit).map(Self::by)
     }
 
     /// The scale of a unit of temperature.
@@ -96,14 +72,15 @@ impl Scale {
 
     /// A number in SI.
     pub(crate) fn si(self, number: f64) -> f64 {
-        self.divisor.map_or_else(|| number * self.factor, |divisor| number / divisor) + self.zero
+        // A reversed one as its mirror, so that 5 um is 5e-6 there too.
+        to_si(number, self.factor.abs()) * self.factor.signum() + self.zero
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use bulge_muscles::{Length, Pressure, Ratio};
+    use bulge_muscles::{Length, Pressure, Ratio, Time};
 
     #[test]
     fn numbers_become_si() {

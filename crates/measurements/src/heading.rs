@@ -1,9 +1,9 @@
 //! The columns that measurements have: names, dimensions, and how a heading such as `length [mm]` is read.
 
 use crate::cell;
-use crate::dimension::{Scale, Temperature, Time};
+use crate::dimension::{Scale, Temperature};
 use bulge_muscles::units::{Quantity, UnitError};
-use bulge_muscles::{Force, Length, Pressure, Ratio, Volume};
+use bulge_muscles::{Force, Length, Pressure, Ratio, Time, Volume};
 
 /// A column of measurements.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
