@@ -1,7 +1,7 @@
 //! Temperature, whose scales have zero points, and the scale from a column's unit to SI.
 
 use bulge_muscles::Dimension;
-use bulge_muscles::units::{Quantity, UnitError, factor, to_si};
+use bulge_muscles::units::{Quantity, UnitError, Wanted, to_si};
 
 /// A temperature in kelvin; the factors are those of differences, the zero points are in [`Scale`].
 #[derive(Debug, Clone, Copy)]
@@ -58,16 +58,10 @@ impl Scale {
         Self { zero: self.zero - ATMOSPHERE, ..self }
     }
 
-    /// The scale of a unit of a dimension.
-    pub(crate) fn of<Q: Quantity>(unit: &str) -> Result<Self, UnitError> {
-        factor::<Q>(unit).map(Self::by)
-    }
-
-    /// The scale of a unit of temperature.
-    pub(crate) fn of_temperature(unit: &str) -> Result<Self, UnitError> {
-        let scale = Self::of::<Temperature>(unit)?;
-        let is_celsius = unit.trim_end().ends_with('C');
-        Ok(Self { zero: if is_celsius { CELSIUS_ZERO } else { 0.0 }, ..scale })
+    /// The scale of a unit.
+    pub(crate) fn of(wanted: &'static Wanted, unit: &str) -> Result<Self, UnitError> {
+        let is_celsius = wanted.dimension == Some(Dimension::TEMPERATURE) && unit.trim_end().ends_with('C');
+        Ok(Self { zero: if is_celsius { CELSIUS_ZERO } else { 0.0 }, ..Self::by(wanted.factor(unit)?) })
     }
 
     /// A number in SI.
@@ -84,12 +78,13 @@ mod tests {
 
     #[test]
     fn numbers_become_si() {
-        let of_time = |unit, number| Scale::of::<Time>(unit).map(|scale| scale.si(number));
+        let of_time = |unit, number| Scale::of(Wanted::of::<Time>(), unit).map(|scale| scale.si(number));
         assert_eq!(of_time("s", 2.5), Ok(2.5));
         assert_eq!(of_time("ms", 250.0), Ok(0.25));
         assert_eq!(of_time("min", 1.5), Ok(90.0));
         assert_eq!(of_time("h", 0.5), Ok(1800.0));
-        let kelvin = |unit, number| Scale::of_temperature(unit).map(|scale| scale.si(number));
+        let kelvin =
+            |unit, number| Scale::of(Wanted::of::<Temperature>(), unit).map(|scale| scale.si(number));
         assert_eq!(kelvin("K", 293.0), Ok(293.0));
         for unit in ["C", "degC", "\u{b0}C", " degC "] {
             assert_eq!(kelvin(unit, 20.0), Ok(293.15), "{unit}");
@@ -100,10 +95,10 @@ mod tests {
 
     #[test]
     fn decimal_units_are_the_literal() {
-        assert_eq!(Scale::of::<Length>("mm").map(|s| s.si(296.0)), Ok(0.296));
-        assert_eq!(Scale::of::<Length>("um").map(|s| s.si(5.0)), Ok(5e-6));
-        assert_eq!(Scale::of::<Ratio>("%").map(|s| s.si(7.0)), Ok(0.07));
-        assert_eq!(Scale::of::<Pressure>("kPa").map(|s| s.si(35.0)), Ok(35_000.0));
+        assert_eq!(Scale::of(Wanted::of::<Length>(), "mm").map(|s| s.si(296.0)), Ok(0.296));
+        assert_eq!(Scale::of(Wanted::of::<Length>(), "um").map(|s| s.si(5.0)), Ok(5e-6));
+        assert_eq!(Scale::of(Wanted::of::<Ratio>(), "%").map(|s| s.si(7.0)), Ok(0.07));
+        assert_eq!(Scale::of(Wanted::of::<Pressure>(), "kPa").map(|s| s.si(35.0)), Ok(35_000.0));
         assert_eq!(Scale::SI.si(0.1).to_bits(), 0.1_f64.to_bits());
     }
 }

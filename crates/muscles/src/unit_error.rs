@@ -28,7 +28,8 @@ impl Wanted {
         &Self { quantity: "number", example: "4 N s", unit: "N", dimension: None, known: &[] };
 
     /// A quantity of one dimension.
-    pub(crate) const fn of<Q: Quantity>() -> &'static Self {
+    #[must_use]
+    pub const fn of<Q: Quantity>() -> &'static Self {
         const {
             &Self {
                 quantity: Q::NAME,

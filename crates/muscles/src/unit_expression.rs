@@ -165,7 +165,7 @@ impl Reader<'_> {
         if OFFSET.iter().any(|scale| scale.eq_ignore_ascii_case(symbol)) {
             return Err(UnitError::Offset { text, unit });
         }
-        let suggestion = nearest(symbol, symbols().map(|(known, ..)| known));
+        let suggestion = nearest(symbol, &symbols().map(|(known, ..)| known));
         Err(UnitError::UnknownUnit { text, unit, suggestion, wanted: Wanted::ANY })
     }
 

@@ -107,7 +107,10 @@ fn raised(c: char) -> Option<char> {
 }
 
 /// The symbol of those known that was probably meant: the same but for case, a word for it, or one slip of the finger away.
-pub(crate) fn nearest(unit: &str, known: impl Iterator<Item = &'static str> + Clone) -> Option<&'static str> {
+pub(crate) fn nearest(
+    unit: &str,
+    known: &(impl Iterator<Item = &'static str> + Clone),
+) -> Option<&'static str> {
     let lower = unit.to_lowercase();
     let singular = lower.strip_suffix('s').unwrap_or(&lower);
     let word = WORDS.iter().find(|(word, _)| *word == lower || *word == singular).map(|(_, symbol)| *symbol);

@@ -78,9 +78,19 @@ pub fn any(text: &str) -> Result<Any, UnitError> {
 /// # Errors
 /// If the unit is not of the dimension.
 pub fn factor<Q: Quantity>(unit: &str) -> Result<f64, UnitError> {
-    let unit = compact(unit);
-    let is_pure = matches!(unit.as_str(), "1" | "-") && Q::NAME == Ratio::NAME;
-    if is_pure { Ok(1.0) } else { factor_in(Wanted::of::<Q>(), &unit, &unit) }
+    Wanted::of::<Q>().factor(unit)
+}
+
+impl Wanted {
+    /// The same of what is wanted.
+    ///
+    /// # Errors
+    /// If the unit is not of the dimension.
+    pub fn factor(&'static self, unit: &str) -> Result<f64, UnitError> {
+        let unit = compact(unit);
+        let is_pure = matches!(unit.as_str(), "1" | "-") && self.quantity == Ratio::NAME;
+        if is_pure { Ok(1.0) } else { factor_in(self, &unit, &unit) }
+    }
 }
 
 /// Reads a value with an optional width: "110 mm", "110 mm +- 0.2 mm", "110 ± 0.2 mm", "110 mm +- 0.5 %".
@@ -261,6 +271,7 @@ fn scaled(wanted: &'static Wanted, text: &str, number: f64, unit: &str) -> Resul
 fn not_finite(wanted: &'static Wanted, text: &str) -> UnitError {
     UnitError::NotFinite { text: shortened(text), wanted }
 }
+
 /// How many bytes at the beginning are a decimal number: sign, digits, point, exponent ("12e" has no exponent).
 fn number_length(text: &str) -> usize {
     let bytes = text.as_bytes();
@@ -304,7 +315,7 @@ fn factor_in(wanted: &'static Wanted, text: &str, unit: &str) -> Result<f64, Uni
     if unit.is_empty() {
         return Err(UnitError::NoUnit { text, wanted });
     }
-    let suggestion = nearest(unit, wanted.known.iter().map(|(symbol, _)| *symbol));
+    let suggestion = nearest(unit, &wanted.known.iter().map(|(symbol, _)| *symbol));
     let is_like = |symbol: &str| suggestion.is_none() && symbol.eq_ignore_ascii_case(unit);
     Err(match measured(|symbol| symbol == unit).or_else(|| measured(is_like)) {
         Some(found) => UnitError::OtherDimension { text, found, wanted },
