@@ -9,6 +9,7 @@ mod dual;
 pub mod elliptic;
 pub mod gauss;
 pub mod least_squares;
+pub mod minimum;
 mod random;
 mod real;
 pub mod root;

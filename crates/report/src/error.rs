@@ -70,12 +70,6 @@ pub enum PlotError {
         /// Largest value.
         high: f64,
     },
-    /// The drawing library refuses.
-    #[error("the plot can't be drawn: {reason}")]
-    Drawing {
-        /// What it says.
-        reason: String,
-    },
 }
 
 impl PlotError {

@@ -1,9 +1,7 @@
 //! A legend as a row of marks with words, wrapped where the drawing ends.
 
-use plotters::style::RGBColor;
-
 use crate::comparison::svg::{Anchor, Stroke, Style, Svg, TEXT, width};
-use crate::palette::{INK, SOFT_INK};
+use crate::palette::{INK, Rgb, SOFT_INK};
 
 /// What stands before the words.
 #[derive(Debug, Clone, Copy)]
@@ -11,11 +9,11 @@ pub(crate) enum Mark {
     /// A line.
     Line(Stroke),
     /// A dot.
-    Dot(RGBColor),
+    Dot(Rgb),
     /// A diamond.
-    Diamond(RGBColor),
+    Diamond(Rgb),
     /// A filled rectangle.
-    Box(RGBColor),
+    Box(Rgb),
 }
 
 /// Readings, the base, and the last model if there are effects: what curves of a comparison are drawn with.

@@ -1,9 +1,8 @@
 //! Which pressure levels are shown, in which colour, and how specimens share a plot.
 
-use plotters::style::RGBColor;
-
+use crate::comparison::legend::{self, Mark};
 use crate::comparison::number::bar;
-use crate::palette;
+use crate::palette::{self, Rgb};
 
 /// Indices of at most `most` of `count`, evenly spread, the first and the last among them.
 pub(crate) fn spread(count: usize, most: usize) -> Vec<usize> {
@@ -40,6 +39,11 @@ pub(crate) fn specimens<'a>(names: impl Iterator<Item = &'a String>) -> Vec<&'a 
     found
 }
 
+/// A sentence where not all are shown.
+pub(crate) fn left_out(shown: usize, all: usize, what: &str) -> String {
+    if shown < all { format!(" Shown are {shown} of {all} {what}.") } else { String::new() }
+}
+
 /// The levels of a plot that are shown, with their colours.
 pub(crate) struct Shown {
     levels: Vec<f64>,
@@ -56,23 +60,20 @@ impl Shown {
     }
 
     /// Colour of a pressure; none if it isn't shown.
-    pub(crate) fn colour(&self, pressure_pa: f64) -> Option<RGBColor> {
+    pub(crate) fn colour(&self, pressure_pa: f64) -> Option<Rgb> {
         let place = self.levels.iter().position(|level| same(*level, pressure_pa))?;
         Some(palette::colour(place, self.levels.len()))
     }
 
-    /// Levels with their colours and names, highest first as the curves mostly lie.
-    pub(crate) fn named(&self) -> Vec<(RGBColor, String)> {
-        self.levels.iter().rev().filter_map(|p| Some((self.colour(*p)?, bar(*p)))).collect()
+    /// Entries of a legend: the models, then the levels, highest first as the curves mostly lie.
+    pub(crate) fn entries(&self, has_effects: bool) -> Vec<(Mark, String)> {
+        let levels = self.levels.iter().rev().filter_map(|p| Some((Mark::Box(self.colour(*p)?), bar(*p))));
+        legend::models(has_effects).into_iter().chain(levels).collect()
     }
 
     /// What a caption says about levels that aren't shown.
     pub(crate) fn caption(&self) -> String {
-        if self.levels.len() < self.of {
-            format!(" Shown are {} of {} pressure levels.", self.levels.len(), self.of)
-        } else {
-            String::new()
-        }
+        left_out(self.levels.len(), self.of, "pressure levels")
     }
 }
 
@@ -101,6 +102,6 @@ mod tests {
         assert_eq!((shown.of, shown.levels.as_slice()), (3, &[1e5, 3e5][..]));
         assert!(shown.colour(1.000_01e5).is_some() && shown.colour(2e5).is_none());
         assert_eq!(shown.caption(), " Shown are 2 of 3 pressure levels.");
-        assert_eq!(shown.named()[0].1, "3 bar");
+        assert_eq!(shown.entries(false)[2].1, "3 bar");
     }
 }
