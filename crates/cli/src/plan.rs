@@ -15,7 +15,7 @@ use crate::diagnose::paragraph::paragraph;
 use crate::diagnose::untested::reasons;
 use crate::failure::Failure;
 use crate::files;
-use crate::text::{significant, table};
+use crate::text::{table, three};
 use bulge_report::shell_word;
 
 /// Sigmas at which an effect is seen, and from which two are told apart.
@@ -132,10 +132,6 @@ impl PlanCommand {
         }
         out
     }
-}
-
-fn three(value: f64) -> String {
-    significant(value, 3)
 }
 
 /// What the test is.
