@@ -21,9 +21,8 @@ pub(super) fn pulling(
     let found = muscle
         .solve(Pressure::pa(pressure_pa), Given::Contraction(contraction), approach)
         .map_err(|error| failed(pressure_pa, error))?;
-    // Effects may turn the pull of the equilibrium into a push. Rounding may as well, at the limit.
-    let scale = pressure_pa * muscle.muscle().radius().si().powi(2);
-    if found.force_n < -1e-9 * scale {
+    // Effects may turn the pull of the equilibrium into a push.
+    if !found.pulls(pressure_pa * muscle.muscle().radius().si().powi(2)) {
         return Err(failed(pressure_pa, FibreError::WouldPush { contraction, force_n: found.force_n }));
     }
     Ok(found)
