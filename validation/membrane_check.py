@@ -9,11 +9,8 @@ by another array of its cells, such as `wrinkle_state`; lines are drawn as tubes
 anything failed.
 """
 
-import argparse
 import math
 import sys
-import xml.etree.ElementTree as ElementTree
-from pathlib import Path
 
 import numpy
 import vtk
@@ -41,16 +38,8 @@ COLOURS = {"membrane_force_1_N_per_m": "larger membrane force [N/m]", "wrinkle_s
 
 
 def read(path):
-    """The grid of one file; whatever VTK complains about is an assertion."""
-    complaints = []
-    reader = vtk.vtkXMLUnstructuredGridReader()
-    for event in ("ErrorEvent", "WarningEvent"):
-        reader.AddObserver(event, lambda _, name: complaints.append(name))
-    assert path.is_file(), f"{path}: no such file"
-    reader.SetFileName(str(path))
-    reader.Update()
-    assert not complaints and reader.GetErrorCode() == 0, f"{path}: VTK complains {complaints}"
-    return reader.GetOutput()
+    """The grid of one file."""
+    return vtk_check.read(path, vtk.vtkXMLUnstructuredGridReader())
 
 
 def arrays(path, attributes, count):
@@ -204,50 +193,6 @@ def check_pvd(path):
     print(f"{path}: {len(found)} members from {found[0][0]:.4g} to {found[-1][0]:.4g}")
 
 
-def surface_actor(surface, colour, table):
-    """Cloth, smooth within a lobe and creased between two."""
-    normals = vtk.vtkPolyDataNormals()
-    normals.SetInputData(surface)
-    normals.SetFeatureAngle(50.0)
-    normals.SplittingOn()
-    normals.ConsistencyOff()
-    mapper = vtk.vtkPolyDataMapper()
-    mapper.SetInputConnection(normals.GetOutputPort())
-    mapper.SetScalarModeToUseCellFieldData()
-    mapper.SelectColorArray(colour)
-    mapper.SetLookupTable(table)
-    mapper.UseLookupTableScalarRangeOn()
-    actor = vtk.vtkActor()
-    actor.SetMapper(mapper)
-    look = actor.GetProperty()
-    look.SetInterpolationToPhong()
-    look.SetAmbient(0.30)
-    look.SetDiffuse(0.80)
-    look.SetSpecular(0.12)
-    look.SetSpecularPower(28.0)
-    return actor
-
-
-def line_actor(lines, radius):
-    """Fibres as dark tubes."""
-    strip = vtk.vtkStripper()
-    strip.SetInputData(lines)
-    strip.JoinContiguousSegmentsOn()
-    tubes = vtk.vtkTubeFilter()
-    tubes.SetInputConnection(strip.GetOutputPort())
-    tubes.SetRadius(radius)
-    tubes.SetNumberOfSides(12)
-    tubes.CappingOn()
-    mapper = vtk.vtkPolyDataMapper()
-    mapper.SetInputConnection(tubes.GetOutputPort())
-    mapper.ScalarVisibilityOff()
-    actor = vtk.vtkActor()
-    actor.SetMapper(mapper)
-    actor.GetProperty().SetColor(0.13, 0.14, 0.17)
-    actor.GetProperty().SetSpecular(0.35)
-    return actor
-
-
 def caption(data):
     """Pressure, volume and force of the picture."""
     value = {name: float(data.GetFieldData().GetArray(name).GetValue(0)) for name in FIELD_ARRAYS}
@@ -275,9 +220,15 @@ def picture(path, target, colour):
     scene = vtk.vtkRenderer()
     scene.SetBackground(1.0, 1.0, 1.0)
     if (~is_line).any():
-        scene.AddActor(surface_actor(kept(data, numpy.flatnonzero(~is_line)), colour, table))
+        surface = kept(data, numpy.flatnonzero(~is_line))
+        scene.AddActor(vtk_check.cloth_actor(surface, table, colour, 50.0, 0.12, of_cells=True))
     if is_line.any():
-        scene.AddActor(line_actor(kept(data, numpy.flatnonzero(is_line)), 0.004 * size))
+        strip = vtk.vtkStripper()
+        strip.SetInputData(kept(data, numpy.flatnonzero(is_line)))
+        strip.JoinContiguousSegmentsOn()
+        tubes = vtk.vtkTubeFilter()
+        tubes.SetInputConnection(strip.GetOutputPort())
+        scene.AddActor(vtk_check.fibre_actor(tubes, 0.004 * size))
     bar = vtk_check.colour_bar(table)
     if is_state:
         bar.SetNumberOfLabels(3)
@@ -291,67 +242,27 @@ def picture(path, target, colour):
     camera.SetPosition(*(bounds.mean(axis=1) + size * numpy.array([0.9, 0.35, 0.42])))
     camera.SetViewUp(0.0, 1.0, 0.0)
     camera.SetViewAngle(18.0)
-    render(scene, target)
 
+    def framed():
+        # Between the lines of text; known only with the window's shape.
+        scene.ResetCameraScreenSpace(0.68)
+        camera.SetWindowCenter(0.0, -0.06)
+        scene.ResetCameraClippingRange()
 
-def render(scene, target):
-    """Draws it SCALE times as large and averages, as vtk_check does."""
-    width, height, scale = vtk_check.WIDTH, vtk_check.HEIGHT, vtk_check.SCALE
-    window = vtk.vtkRenderWindow()
-    window.SetOffScreenRendering(1)
-    window.SetMultiSamples(0)
-    window.SetSize(scale * width, scale * height)
-    window.AddRenderer(scene)
-    # Between the lines of text; known only with the window's shape.
-    scene.ResetCameraScreenSpace(0.68)
-    scene.GetActiveCamera().SetWindowCenter(0.0, -0.06)
-    scene.ResetCameraClippingRange()
-    window.Render()
-    grab = vtk.vtkWindowToImageFilter()
-    grab.SetInput(window)
-    grab.ReadFrontBufferOff()
-    half = vtk.vtkImageResize()
-    half.SetInputConnection(grab.GetOutputPort())
-    half.SetResizeMethodToOutputDimensions()
-    half.SetOutputDimensions(width, height, 1)
-    half.InterpolateOn()
-    half.Update()
-    vtk_check.coarsen(half.GetOutput())
-    shown = vtk_to_numpy(half.GetOutput().GetPointData().GetScalars()).reshape(height, width, -1)
-    middle = shown[height // 3 : 2 * height // 3, width // 3 : 2 * width // 3]
-    assert (middle[:, :, :3].min(axis=2) < 240).mean() > 0.2, f"{target}: nothing in the middle of the picture"
-    writer = vtk.vtkPNGWriter()
-    writer.SetInputData(half.GetOutput())
-    writer.SetCompressionLevel(9)
-    writer.SetFileName(str(target))
-    writer.Write()
-    assert target.is_file() and target.stat().st_size > 10_000, f"{target}: no picture"
-    print(f"{target}: {target.stat().st_size / 1000:.0f} kB, rendered with {window.GetClassName()}")
+    def check(image):
+        width, height = vtk_check.WIDTH, vtk_check.HEIGHT
+        shown = vtk_to_numpy(image.GetPointData().GetScalars()).reshape(height, width, -1)
+        middle = shown[height // 3 : 2 * height // 3, width // 3 : 2 * width // 3]
+        assert (middle[:, :, :3].min(axis=2) < 240).mean() > 0.2, f"{target}: nothing in the middle of the picture"
+
+    vtk_check.render(scene, target, framed, check)
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("files", nargs="+", type=Path, help=".vtu and .pvd files")
-    parser.add_argument("--picture", type=Path, help="PNG to render")
+    parser = vtk_check.arguments(".vtu", __doc__)
     parser.add_argument("--colour", default="membrane_force_1_N_per_m", help="array of the cells to colour by")
     options = parser.parse_args()
-    # Without a display VTK warns before it turns to EGL or OSMesa.
-    vtk.vtkLogger.SetStderrVerbosity(vtk.vtkLogger.VERBOSITY_ERROR)
-
-    checks = [(check_pvd if path.suffix == ".pvd" else check_vtu, (path,)) for path in options.files]
-    if options.picture:
-        first = options.files[0]
-        source = vtk_check.members(first)[-1][1] if first.suffix == ".pvd" else first
-        checks.append((picture, (source, options.picture, options.colour)))
-    failed = 0
-    for check, arguments in checks:
-        try:
-            check(*arguments)
-        except (AssertionError, ElementTree.ParseError, OSError) as reason:
-            failed += 1
-            print(f"FAILED {reason}")
-    print(f"{len(checks) - failed} passed, {failed} failed")
-    return 1 if failed else 0
+    return vtk_check.run(options, check_vtu, check_pvd, lambda source, target: picture(source, target, options.colour))
 
 
 if __name__ == "__main__":

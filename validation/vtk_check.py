@@ -34,10 +34,10 @@ CELL_AREA_TOLERANCE = 1e-9
 TRIANGLE_AREA_TOLERANCE = 5e-3
 
 
-def read(path):
-    """The poly data of one file; whatever VTK complains about is an assertion."""
+def read(path, reader=None):
+    """The data of one file, poly data unless another reader is given; whatever VTK complains about is an assertion."""
     complaints = []
-    reader = vtk.vtkXMLPolyDataReader()
+    reader = reader or vtk.vtkXMLPolyDataReader()
     for event in ("ErrorEvent", "WarningEvent"):
         reader.AddObserver(event, lambda _, name: complaints.append(name))
     assert path.is_file(), f"{path}: no such file"
@@ -163,17 +163,20 @@ def check_pvd(path):
     print(f"{path}: {len(found)} members from {found[0][0]:.4g} to {found[-1][0]:.4g}")
 
 
-def cloth_actor(data, colours):
-    """The cloth, smoothly shaded except at the fibres, where it is creased."""
+def cloth_actor(data, colours, array, angle, specular, of_cells=False):
+    """Cloth coloured by an array of its points or cells, smoothly shaded except where it is creased by more than an angle in degrees."""
     normals = vtk.vtkPolyDataNormals()
-    normals.SetInputData(cells_of(data, CLOTH))
-    normals.SetFeatureAngle(40.0)
+    normals.SetInputData(data)
+    normals.SetFeatureAngle(angle)
     normals.SplittingOn()
     normals.ConsistencyOff()
     mapper = vtk.vtkPolyDataMapper()
     mapper.SetInputConnection(normals.GetOutputPort())
-    mapper.SetScalarModeToUsePointFieldData()
-    mapper.SelectColorArray("membrane_force_N_per_m")
+    if of_cells:
+        mapper.SetScalarModeToUseCellFieldData()
+    else:
+        mapper.SetScalarModeToUsePointFieldData()
+    mapper.SelectColorArray(array)
     mapper.SetLookupTable(colours)
     mapper.UseLookupTableScalarRangeOn()
     actor = vtk.vtkActor()
@@ -182,15 +185,13 @@ def cloth_actor(data, colours):
     look.SetInterpolationToPhong()
     look.SetAmbient(0.30)
     look.SetDiffuse(0.80)
-    look.SetSpecular(0.18)
+    look.SetSpecular(specular)
     look.SetSpecularPower(28.0)
     return actor
 
 
-def fibre_actor(data, radius):
-    """The fibres as dark tubes."""
-    tubes = vtk.vtkTubeFilter()
-    tubes.SetInputData(cells_of(data, FIBRE))
+def fibre_actor(tubes, radius):
+    """Fibres as dark tubes, from a filter that has its input."""
     tubes.SetRadius(radius)
     tubes.SetNumberOfSides(12)
     tubes.CappingOn()
@@ -202,7 +203,6 @@ def fibre_actor(data, radius):
     look = actor.GetProperty()
     look.SetColor(0.13, 0.14, 0.17)
     look.SetSpecular(0.35)
-    look.SetSpecularPower(20.0)
     return actor
 
 
@@ -302,9 +302,13 @@ def picture(path, target):
 
     scene = vtk.vtkRenderer()
     scene.SetBackground(1.0, 1.0, 1.0)
-    scene.AddActor(cloth_actor(data, table))
+    scene.AddActor(cloth_actor(cells_of(data, CLOTH), table, "membrane_force_N_per_m", 40.0, 0.18))
     if data.GetNumberOfLines() > 0:
-        scene.AddActor(fibre_actor(data, 0.018 * float(radius.max())))
+        tubes = vtk.vtkTubeFilter()
+        tubes.SetInputData(cells_of(data, FIBRE))
+        fibres = fibre_actor(tubes, 0.018 * float(radius.max()))
+        fibres.GetProperty().SetSpecularPower(20.0)
+        scene.AddActor(fibres)
     x = vtk_to_numpy(data.GetPoints().GetData())[:, 0]
     outermost = vtk_to_numpy(data.GetPointData().GetArray("cloth_radius_m"))
     thickness = 0.07 * length
@@ -325,12 +329,17 @@ def picture(path, target):
     # A little lower than the middle of the window is free for the bar, so the muscle moves up.
     camera.SetWindowCenter(0.0, -0.09)
     scene.ResetCameraClippingRange()
+    render(scene, target)
 
+
+def render(scene, target, framed=lambda: None, check=lambda image: None):
+    """Draws a scene SCALE times as large and averages; `framed` is called once the window has its shape, `check` with the picture."""
     window = vtk.vtkRenderWindow()
     window.SetOffScreenRendering(1)
     window.SetMultiSamples(0)
     window.SetSize(SCALE * WIDTH, SCALE * HEIGHT)
     window.AddRenderer(scene)
+    framed()
     window.Render()
     grab = vtk.vtkWindowToImageFilter()
     grab.SetInput(window)
@@ -342,6 +351,7 @@ def picture(path, target):
     half.InterpolateOn()
     half.Update()
     coarsen(half.GetOutput())
+    check(half.GetOutput())
     writer = vtk.vtkPNGWriter()
     writer.SetInputData(half.GetOutput())
     writer.SetCompressionLevel(9)
@@ -369,23 +379,27 @@ def light_up(scene):
         scene.AddLight(light)
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("files", nargs="+", type=Path, help=".vtp and .pvd files")
+def arguments(kinds, doc):
+    """What both checks take: files, and a picture to render."""
+    parser = argparse.ArgumentParser(description=doc.splitlines()[0])
+    parser.add_argument("files", nargs="+", type=Path, help=f"{kinds} and .pvd files")
     parser.add_argument("--picture", type=Path, help="PNG to render")
-    options = parser.parse_args()
+    return parser
+
+
+def run(options, check_file, check_series, draw):
+    """Checks every file and draws the first (or the last member of it); the exit status."""
     # Without a display VTK warns before it turns to EGL or OSMesa.
     vtk.vtkLogger.SetStderrVerbosity(vtk.vtkLogger.VERBOSITY_ERROR)
-
-    checks = [(check_pvd if path.suffix == ".pvd" else check_vtp, (path,)) for path in options.files]
+    checks = [(check_series if path.suffix == ".pvd" else check_file, (path,)) for path in options.files]
     if options.picture:
         first = options.files[0]
         source = members(first)[-1][1] if first.suffix == ".pvd" else first
-        checks.append((picture, (source, options.picture)))
+        checks.append((draw, (source, options.picture)))
     failed = 0
-    for check, arguments in checks:
+    for check, given in checks:
         try:
-            check(*arguments)
+            check(*given)
         except (AssertionError, ElementTree.ParseError, OSError) as reason:
             failed += 1
             print(f"FAILED {reason}")
@@ -394,4 +408,4 @@ def main():
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(run(arguments(".vtp", __doc__).parse_args(), check_vtp, check_pvd, picture))

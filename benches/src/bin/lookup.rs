@@ -5,7 +5,7 @@
 //! cargo run --release -p bulge-benches --bin lookup FOLDER
 //! ```
 
-use bulge_benches::{Failure, random_points};
+use bulge_benches::{Failure, median_us, random_points};
 use bulge_fibre::closed_form;
 use bulge_sweep::{Plan, tabulate};
 use bulge_table::Table;
@@ -21,16 +21,8 @@ const ROUNDS: usize = 15;
 const PASSES: usize = 100;
 
 /// Median nanoseconds of one of `count` calls.
-fn median(count: usize, mut round: impl FnMut()) -> f64 {
-    let mut times: Vec<f64> = (0..ROUNDS)
-        .map(|_| {
-            let start = Instant::now();
-            round();
-            start.elapsed().as_secs_f64() * 1e9 / count as f64
-        })
-        .collect();
-    times.sort_by(f64::total_cmp);
-    times[ROUNDS / 2]
+fn median(count: usize, round: impl FnMut()) -> f64 {
+    1e3 * median_us(ROUNDS, count, round)
 }
 
 fn main() -> Result<(), Failure> {

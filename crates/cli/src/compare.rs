@@ -1,7 +1,7 @@
 //! `bulge compare`: model against measurement, and the error as effects are added.
 
 use bulge_effects::Effect;
-use bulge_inference::{Comparison, Fit, HeldNumber, Rows, compare_with_rows};
+use bulge_inference::{Comparison, DataSummary, Fit, HeldNumber, Rows, compare_with_rows};
 use bulge_measurements::written;
 use bulge_report::comparison::{html, plots};
 use clap::Args;
@@ -14,7 +14,7 @@ use crate::data::{DataArguments, told};
 use crate::failure::Failure;
 use crate::files;
 use crate::restricted::RestrictedArguments;
-use crate::text::{significant, with_interval};
+use crate::text::{significant, three, with_interval};
 
 /// Model against measurement. Effects are fitted only if you name them with `--with`.
 #[derive(Debug, Args)]
@@ -102,24 +102,21 @@ pub(crate) fn report(
     Ok([first, numbers])
 }
 
-/// The comparison as text.
+/// From where to where the data reach.
+pub(crate) fn spans(data: &DataSummary) -> String {
+    let span = |ends: [f64; 2]| ends.map(three).join(" to ");
+    let (bar, percent) = (data.pressure_pa.map(|p| p / 1e5), data.contraction.map(|e| 100.0 * e));
+    format!("{} bar, contraction {} %, force {} N", span(bar), span(percent), span(data.force_n))
+}
+
+/// The comparison for people.
 pub(crate) fn text(comparison: &Comparison, effects: &[Arc<dyn Effect>]) -> String {
     let mut out = String::new();
     let data = &comparison.data;
     let _ = writeln!(out, "{} against {}\n", comparison.muscle, data.files.join(", "));
     out.push_str(&told(&data.reading));
     let kind = if data.is_path { "along paths" } else { "in a static map" };
-    let _ = writeln!(
-        out,
-        "  {} rows {kind}: {} to {} bar, contraction {} to {} %, force {} to {} N",
-        data.rows,
-        three(data.pressure_pa[0] / 1e5),
-        three(data.pressure_pa[1] / 1e5),
-        three(100.0 * data.contraction[0]),
-        three(100.0 * data.contraction[1]),
-        three(data.force_n[0]),
-        three(data.force_n[1])
-    );
+    let _ = writeln!(out, "  {} rows {kind}: {}", data.rows, spans(data));
     for held in &comparison.isotonic {
         let _ = writeln!(
             out,
@@ -289,8 +286,4 @@ fn rivals(out: &mut String, comparison: &Comparison) {
             rival.fitted
         );
     }
-}
-
-fn three(value: f64) -> String {
-    significant(value, 3)
 }

@@ -15,7 +15,7 @@ use crate::diagnose::paragraph::paragraph;
 use crate::diagnose::untested::reasons;
 use crate::failure::Failure;
 use crate::files;
-use crate::text::{significant, table};
+use crate::text::{table, three};
 use bulge_report::shell_word;
 
 /// Sigmas at which an effect is detected, and from which two are distinguished.
@@ -134,11 +134,7 @@ impl PlanCommand {
     }
 }
 
-fn three(value: f64) -> String {
-    significant(value, 3)
-}
-
-/// Description of the test.
+/// What the test is.
 fn test(out: &mut String, plan: &Plan) {
     let [low, high] = plan.pressure_pa.map(|p| three(p / 1e5));
     let [short, long] = plan.contraction.map(|e| three(100.0 * e));

@@ -2,7 +2,12 @@
 
 pub(crate) use bulge_muscles::units::significant;
 
-/// A value and the ends of its interval, with enough decimals to show the interval.
+/// Three significant digits.
+pub(crate) fn three(value: f64) -> String {
+    significant(value, 3)
+}
+
+/// A value and the ends of its interval, so that the interval can be seen.
 pub(crate) fn with_interval(value: f64, low: f64, high: f64) -> [String; 3] {
     bulge_report::with_interval(value, [low, high])
         .unwrap_or_else(|| [value, low, high].map(|x| significant(x, 3)))

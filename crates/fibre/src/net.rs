@@ -431,6 +431,7 @@ pub(crate) mod tests {
             lobes: None,
             bladder: Some(Bladder { c10: D::from(0.3), c01: D::from(0.1) }),
             cloth: Some(Cloth { stiffness: D::from(0.7), radius: D::from(1.2) }),
+            formulas: None,
         }
     }
 

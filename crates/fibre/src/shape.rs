@@ -81,6 +81,14 @@ pub struct Response {
     pub convergence: Convergence,
 }
 
+impl Response {
+    /// Whether it pulls: the force is not negative, but for rounding, which is small against `scale_n`. Near the limit the force is small against p R^2.
+    #[must_use]
+    pub fn pulls(&self, scale_n: f64) -> bool {
+        self.force_n >= -1e-9 * scale_n
+    }
+}
+
 /// One point of the meridian.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct MeridianPoint {

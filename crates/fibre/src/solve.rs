@@ -257,9 +257,8 @@ impl Problem {
         }
     }
 
-    /// Whether the force is not negative: near the limit it is small against p R^2, and rounding may make it negative there.
     pub(crate) fn pulls(&self, response: &Response) -> bool {
-        response.force_n >= -1e-9 * self.pressure * self.parts.radius.powi(2)
+        response.pulls(self.pressure * self.parts.radius.powi(2))
     }
 
     fn with_force(&self, method: Method, approach: Approach, force: f64) -> Result<Found, FibreError> {

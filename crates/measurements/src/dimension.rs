@@ -1,26 +1,7 @@
-//! Time and temperature, which only measurements use, and the scale from a column's unit to SI.
+//! Temperature, whose scales have zero points, and the scale from a column's unit to SI.
 
-use bulge_muscles::units::{Quantity, UnitError, factor};
-
-/// A time in seconds.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Time(f64);
-
-impl Quantity for Time {
-    const NAME: &'static str = "time";
-    const EXAMPLE: &'static str = "10 s";
-    const SHOWN: (&'static str, f64) = ("s", 1.0);
-    const UNITS: &'static [(&'static str, f64)] =
-        &[("s", 1.0), ("ms", 1e-3), ("us", 1e-6), ("min", 60.0), ("h", 3600.0)];
-
-    fn from_si(value: f64) -> Self {
-        Self(value)
-    }
-
-    fn si(self) -> f64 {
-        self.0
-    }
-}
+use bulge_muscles::Dimension;
+use bulge_muscles::units::{Quantity, UnitError, Wanted, to_si};
 
 /// A temperature in kelvin. The factors are those of differences; the zero points are in [`Scale`].
 #[derive(Debug, Clone, Copy)]
@@ -28,6 +9,7 @@ pub(crate) struct Temperature(f64);
 
 impl Quantity for Temperature {
     const NAME: &'static str = "temperature";
+    const DIMENSION: Dimension = Dimension::TEMPERATURE;
     const EXAMPLE: &'static str = "20 degC";
     const SHOWN: (&'static str, f64) = ("degC", 1.0);
     const UNITS: &'static [(&'static str, f64)] = &[("K", 1.0), ("C", 1.0), ("degC", 1.0)];
@@ -51,19 +33,15 @@ const ATMOSPHERE: f64 = 101_325.0;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Scale {
     factor: f64,
-    /// 1/factor if it is a whole number: 5 um divided by 1e6 gives exactly 5e-6, but multiplied by 1e-6 it
-    /// doesn't.
-    divisor: Option<f64>,
     zero: f64,
 }
 
 impl Scale {
-    /// Dimensionless numbers and SI units.
-    pub(crate) const SI: Self = Self { factor: 1.0, divisor: None, zero: 0.0 };
+    /// Pure numbers and SI units.
+    pub(crate) const SI: Self = Self { factor: 1.0, zero: 0.0 };
 
-    /// Degrees Fahrenheit: 32 degF are 0 degC.
-    pub(crate) const FAHRENHEIT: Self =
-        Self { factor: 5.0 / 9.0, divisor: None, zero: CELSIUS_ZERO - 32.0 * 5.0 / 9.0 };
+    /// Degrees of Fahrenheit: 32 degF are 0 degC.
+    pub(crate) const FAHRENHEIT: Self = Self { factor: 5.0 / 9.0, zero: CELSIUS_ZERO - 32.0 * 5.0 / 9.0 };
 
     /// A unit that equals `factor` SI units.
     pub(crate) fn by(factor: f64) -> Self {
@@ -72,7 +50,7 @@ impl Scale {
 
     /// The scale with the opposite sign, for a sensor that counts the other way.
     pub(crate) fn reversed(self) -> Self {
-        Self { factor: -self.factor, divisor: self.divisor.map(|divisor| -divisor), zero: self.zero }
+        Self { factor: -self.factor, ..self }
     }
 
     /// The scale of absolute pressures, as gauge pressures above the standard atmosphere.
@@ -80,40 +58,33 @@ impl Scale {
         Self { zero: self.zero - ATMOSPHERE, ..self }
     }
 
-    /// The scale of a unit of a quantity.
-    pub(crate) fn of<Q: Quantity>(unit: &str) -> Result<Self, UnitError> {
-        let factor = factor::<Q>(unit)?;
-        let inverse = (1.0 / factor).round();
-        let is_whole = inverse > 1.0 && (inverse * factor - 1.0).abs() <= 2.0 * f64::EPSILON;
-        Ok(Self { factor, divisor: is_whole.then_some(inverse), zero: 0.0 })
-    }
-
-    /// The scale of a unit of temperature.
-    pub(crate) fn of_temperature(unit: &str) -> Result<Self, UnitError> {
-        let scale = Self::of::<Temperature>(unit)?;
-        let is_celsius = unit.trim_end().ends_with('C');
-        Ok(Self { zero: if is_celsius { CELSIUS_ZERO } else { 0.0 }, ..scale })
+    /// The scale of a unit.
+    pub(crate) fn of(wanted: &'static Wanted, unit: &str) -> Result<Self, UnitError> {
+        let is_celsius = wanted.dimension == Some(Dimension::TEMPERATURE) && unit.trim_end().ends_with('C');
+        Ok(Self { zero: if is_celsius { CELSIUS_ZERO } else { 0.0 }, ..Self::by(wanted.factor(unit)?) })
     }
 
     /// A number in SI.
     pub(crate) fn si(self, number: f64) -> f64 {
-        self.divisor.map_or_else(|| number * self.factor, |divisor| number / divisor) + self.zero
+        // A reversed one as its mirror, so that 5 um is 5e-6 there too.
+        to_si(number, self.factor.abs()) * self.factor.signum() + self.zero
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use bulge_muscles::{Length, Pressure, Ratio};
+    use bulge_muscles::{Length, Pressure, Ratio, Time};
 
     #[test]
     fn numbers_become_si() {
-        let of_time = |unit, number| Scale::of::<Time>(unit).map(|scale| scale.si(number));
+        let of_time = |unit, number| Scale::of(Wanted::of::<Time>(), unit).map(|scale| scale.si(number));
         assert_eq!(of_time("s", 2.5), Ok(2.5));
         assert_eq!(of_time("ms", 250.0), Ok(0.25));
         assert_eq!(of_time("min", 1.5), Ok(90.0));
         assert_eq!(of_time("h", 0.5), Ok(1800.0));
-        let kelvin = |unit, number| Scale::of_temperature(unit).map(|scale| scale.si(number));
+        let kelvin =
+            |unit, number| Scale::of(Wanted::of::<Temperature>(), unit).map(|scale| scale.si(number));
         assert_eq!(kelvin("K", 293.0), Ok(293.0));
         for unit in ["C", "degC", "\u{b0}C", " degC "] {
             assert_eq!(kelvin(unit, 20.0), Ok(293.15), "{unit}");
@@ -124,10 +95,10 @@ mod tests {
 
     #[test]
     fn decimal_units_are_the_literal() {
-        assert_eq!(Scale::of::<Length>("mm").map(|s| s.si(296.0)), Ok(0.296));
-        assert_eq!(Scale::of::<Length>("um").map(|s| s.si(5.0)), Ok(5e-6));
-        assert_eq!(Scale::of::<Ratio>("%").map(|s| s.si(7.0)), Ok(0.07));
-        assert_eq!(Scale::of::<Pressure>("kPa").map(|s| s.si(35.0)), Ok(35_000.0));
+        assert_eq!(Scale::of(Wanted::of::<Length>(), "mm").map(|s| s.si(296.0)), Ok(0.296));
+        assert_eq!(Scale::of(Wanted::of::<Length>(), "um").map(|s| s.si(5.0)), Ok(5e-6));
+        assert_eq!(Scale::of(Wanted::of::<Ratio>(), "%").map(|s| s.si(7.0)), Ok(0.07));
+        assert_eq!(Scale::of(Wanted::of::<Pressure>(), "kPa").map(|s| s.si(35.0)), Ok(35_000.0));
         assert_eq!(Scale::SI.si(0.1).to_bits(), 0.1_f64.to_bits());
     }
 }

@@ -1,9 +1,9 @@
 //! The columns of measurements: names, dimensions, and the parsing of headings such as `length [mm]`.
 
 use crate::cell;
-use crate::dimension::{Scale, Temperature, Time};
-use bulge_muscles::units::{Quantity, UnitError};
-use bulge_muscles::{Force, Length, Pressure, Ratio, Volume};
+use crate::dimension::{Scale, Temperature};
+use bulge_muscles::units::{UnitError, Wanted};
+use bulge_muscles::{Force, Length, Pressure, Ratio, Time, Volume};
 
 /// A column of measurements.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -68,18 +68,23 @@ impl Field {
         self.example().split(' ').next().unwrap_or_default()
     }
 
-    /// The scale of a unit; none for labels and counts, which have no unit.
-    pub(crate) fn scale(self, unit: &str) -> Option<Result<Scale, UnitError>> {
+    /// What its numbers are; none for labels and counts.
+    fn wanted(self) -> Option<&'static Wanted> {
         Some(match self {
-            Self::Pressure => Scale::of::<Pressure>(unit),
-            Self::Contraction => Scale::of::<Ratio>(unit),
-            Self::Length | Self::Displacement | Self::Diameter => Scale::of::<Length>(unit),
-            Self::Force | Self::ForceSd => Scale::of::<Force>(unit),
-            Self::Time => Scale::of::<Time>(unit),
-            Self::Temperature => Scale::of_temperature(unit),
-            Self::Volume => Scale::of::<Volume>(unit),
+            Self::Pressure => Wanted::of::<Pressure>(),
+            Self::Contraction => Wanted::of::<Ratio>(),
+            Self::Length | Self::Displacement | Self::Diameter => Wanted::of::<Length>(),
+            Self::Force | Self::ForceSd => Wanted::of::<Force>(),
+            Self::Time => Wanted::of::<Time>(),
+            Self::Temperature => Wanted::of::<Temperature>(),
+            Self::Volume => Wanted::of::<Volume>(),
             Self::Sweep | Self::Specimen | Self::Cycle | Self::Direction => return None,
         })
+    }
+
+    /// The scale of a unit; none for labels and counts.
+    pub(crate) fn scale(self, unit: &str) -> Option<Result<Scale, UnitError>> {
+        Some(Scale::of(self.wanted()?, unit))
     }
 
     /// Whether it holds labels or counts, which have no unit.
@@ -99,20 +104,9 @@ impl Field {
     }
 
     /// The symbols of its units.
-    pub(crate) fn symbols(self) -> Vec<&'static str> {
-        fn of<Q: Quantity>() -> Vec<&'static str> {
-            Q::UNITS.iter().map(|(symbol, _)| *symbol).filter(|symbol| !symbol.is_empty()).collect()
-        }
-        match self {
-            Self::Pressure => of::<Pressure>(),
-            Self::Contraction => of::<Ratio>(),
-            Self::Length | Self::Displacement | Self::Diameter => of::<Length>(),
-            Self::Force | Self::ForceSd => of::<Force>(),
-            Self::Time => of::<Time>(),
-            Self::Temperature => of::<Temperature>(),
-            Self::Volume => of::<Volume>(),
-            Self::Sweep | Self::Specimen | Self::Cycle | Self::Direction => Vec::new(),
-        }
+    pub(crate) fn symbols(self) -> impl Iterator<Item = &'static str> {
+        let units = self.wanted().map_or(&[][..], |wanted| wanted.known);
+        units.iter().map(|(symbol, _)| *symbol).filter(|symbol| !symbol.is_empty())
     }
 }
 

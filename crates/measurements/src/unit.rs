@@ -139,9 +139,7 @@ fn named(field: Field, text: &str) -> Option<Unit> {
         return Some(Unit { scale: Scale::FAHRENHEIT, name: "degF".to_owned(), is_absolute: false });
     }
     let word = WORDS.iter().find(|(word, _)| *word == lower).and_then(|(_, symbol)| of(symbol));
-    word.or_else(|| {
-        field.symbols().iter().filter(|symbol| symbol.to_lowercase() == lower).find_map(|s| of(s))
-    })
+    word.or_else(|| field.symbols().filter(|symbol| symbol.to_lowercase() == lower).find_map(of))
 }
 
 /// The problem with an invalid unit.

@@ -14,20 +14,15 @@ pub(crate) fn bulleted(complaints: &[MeasurementError], more: usize) -> String {
 
 /// The problem with the unit of a heading, as a continuation of "column `..`".
 pub(crate) fn of_unit(problem: &UnitError) -> String {
-    let symbols = |units: &[(&'static str, f64)]| {
-        let named: Vec<_> =
-            units.iter().map(|(symbol, _)| *symbol).filter(|symbol| !symbol.is_empty()).collect();
-        named.join(", ")
-    };
     match problem {
-        UnitError::NoUnit { known, .. } => format!("has no unit (known: {})", symbols(known)),
-        UnitError::UnknownUnit { unit, suggestion, known, .. } => {
+        UnitError::NoUnit { wanted, .. } => format!("has no unit (known: {})", wanted.symbols()),
+        UnitError::UnknownUnit { unit, suggestion, wanted, .. } => {
             let question =
                 suggestion.map_or_else(String::new, |symbol| format!(": did you mean `{symbol}`?"));
-            format!("has the unknown unit `{unit}`{question} (known: {})", symbols(known))
+            format!("has the unknown unit `{unit}`{question} (known: {})", wanted.symbols())
         }
-        UnitError::OtherDimension { found, quantity, .. } => {
-            format!("has a unit of {found} where one of {quantity} is needed")
+        UnitError::OtherDimension { found, wanted, .. } => {
+            format!("has a unit of {found} where one of {} is needed", wanted.quantity)
         }
         other => format!("has a unit that can't be read ({other})"),
     }

@@ -17,8 +17,6 @@ use crate::record::Record;
 const MOST_STEPS: usize = 60;
 /// Longest of them, in contraction.
 const MOST_STEP: f64 = 0.05;
-/// Part of the largest force below which a force is none.
-const ROUNDING: f64 = 1e-9;
 
 /// A muscle with the effects that its file states.
 #[derive(Debug, Clone)]
@@ -221,7 +219,7 @@ impl MuscleWithEffects {
                 isobar.points.par_iter().map(|point| self.complete(point)).collect::<Result<_, _>>()?;
             let largest = completed.iter().map(|point| point.force_n.abs()).fold(0.0, f64::max);
             let (pulling, pushing): (Vec<_>, Vec<_>) =
-                completed.into_iter().partition(|point| point.force_n >= -ROUNDING * largest);
+                completed.into_iter().partition(|point| point.pulls(largest));
             isobar.points = pulling;
             isobar.without.extend(pushing.into_iter().map(|Response { contraction, force_n, .. }| {
                 (contraction, FibreError::WouldPush { contraction, force_n })

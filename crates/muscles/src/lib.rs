@@ -30,8 +30,6 @@
 //!
 //! Deliberately absent: pressure, contraction and force. They are the state of a muscle, not the muscle.
 
-mod any_unit;
-mod any_unit_error;
 mod construction;
 mod data_columns;
 mod digits;
@@ -57,6 +55,7 @@ pub mod settings;
 mod specimen;
 mod unit_error;
 mod unit_expression;
+mod unit_table;
 pub mod units;
 mod write;
 
@@ -74,7 +73,7 @@ pub use material::{Bladder, Fibre, Unfolding};
 pub use muscle::Muscle;
 pub use parameter::Parameter;
 pub use presets::{PRESETS, Preset, PresetError, preset};
-pub use quantity::{Angle, Area, Force, Length, LineStiffness, Pressure, Ratio, Volume};
+pub use quantity::{Angle, Area, Force, Length, LineStiffness, Pressure, Ratio, Time, Volume};
 pub use specimen::Specimen;
 pub use units::{Quantity, UnitError};
 pub use write::to_toml;

@@ -1,5 +1,6 @@
 //! Quantities with a dimension: one newtype each, SI inside, constructors and readers named by unit.
 
+use crate::dimension::Dimension;
 use crate::units::Quantity;
 use serde::Serialize;
 use std::fmt;
@@ -7,7 +8,8 @@ use std::fmt;
 /// A value in a unit of `factor` SI units, in SI.
 ///
 /// Decimal fractions of the SI unit divide by the exact inverse, so that 5 um is the same number as `5e-6`.
-pub(crate) const fn to_si(value: f64, factor: f64) -> f64 {
+#[must_use]
+pub const fn to_si(value: f64, factor: f64) -> f64 {
     if let Some(inverse) = whole_inverse(factor) { value / inverse } else { value * factor }
 }
 
@@ -28,7 +30,7 @@ const fn whole_inverse(factor: f64) -> Option<f64> {
 macro_rules! quantity {
     (
         $(#[$doc:meta])*
-        $type:ident: $name:literal, such as $example:literal, shown in $shown:literal ($shown_factor:expr);
+        $type:ident: $name:literal $dimension:ident, such as $example:literal, shown in $shown:literal ($shown_factor:expr);
         $($make:ident, $read:ident = $factor:expr, [$($symbol:literal),+];)+
     ) => {
         $(#[$doc])*
@@ -53,6 +55,7 @@ macro_rules! quantity {
 
         impl Quantity for $type {
             const NAME: &'static str = $name;
+            const DIMENSION: Dimension = Dimension::$dimension;
             const EXAMPLE: &'static str = $example;
             const SHOWN: (&'static str, f64) = ($shown, $shown_factor);
             const UNITS: &'static [(&'static str, f64)] = &[$($(($symbol, $factor)),+),+];
@@ -88,7 +91,7 @@ quantity! {
     /// assert_eq!(length.to_string(), "110 mm");
     /// assert_eq!(format!("{:.1}", Length::inch(1.0)), "25.4 mm");
     /// ```
-    Length: "length", such as "110 mm", shown in "mm" (1e-3);
+    Length: "length" LENGTH, such as "110 mm", shown in "mm" (1e-3);
     m, to_m = 1.0, ["m"];
     cm, to_cm = 1e-2, ["cm"];
     mm, to_mm = 1e-3, ["mm"];
@@ -98,7 +101,7 @@ quantity! {
 
 quantity! {
     /// A pressure, gauge unless said otherwise; SI unit Pa.
-    Pressure: "pressure", such as "2 bar", shown in "bar" (1e5);
+    Pressure: "pressure" PRESSURE, such as "2 bar", shown in "bar" (1e5);
     pa, to_pa = 1.0, ["Pa"];
     hpa, to_hpa = 100.0, ["hPa"];
     kpa, to_kpa = 1e3, ["kPa"];
@@ -112,7 +115,7 @@ quantity! {
 
 quantity! {
     /// A force; SI unit N.
-    Force: "force", such as "500 N", shown in "N" (1.0);
+    Force: "force" FORCE, such as "500 N", shown in "N" (1.0);
     n, to_n = 1.0, ["N"];
     mn, to_mn = 1e-3, ["mN"];
     kn, to_kn = 1e3, ["kN"];
@@ -124,7 +127,7 @@ quantity! {
 
 quantity! {
     /// A plane angle; SI unit rad.
-    Angle: "angle", such as "25 deg", shown in "deg" (std::f64::consts::PI / 180.0);
+    Angle: "angle" NONE, such as "25 deg", shown in "deg" (std::f64::consts::PI / 180.0);
     rad, to_rad = 1.0, ["rad"];
     mrad, to_mrad = 1e-3, ["mrad"];
     deg, to_deg = std::f64::consts::PI / 180.0, ["deg"];
@@ -132,7 +135,7 @@ quantity! {
 
 quantity! {
     /// An area; SI unit m^2.
-    Area: "area", such as "0.3 mm^2", shown in "mm^2" (1e-6);
+    Area: "area" AREA, such as "0.3 mm^2", shown in "mm^2" (1e-6);
     m2, to_m2 = 1.0, ["m^2", "m2"];
     cm2, to_cm2 = 1e-4, ["cm^2", "cm2"];
     mm2, to_mm2 = 1e-6, ["mm^2", "mm2"];
@@ -141,7 +144,7 @@ quantity! {
 
 quantity! {
     /// A volume; SI unit m^3.
-    Volume: "volume", such as "400 ml", shown in "ml" (1e-6);
+    Volume: "volume" VOLUME, such as "400 ml", shown in "ml" (1e-6);
     m3, to_m3 = 1.0, ["m^3", "m3"];
     l, to_l = 1e-3, ["l", "L"];
     cl, to_cl = 1e-5, ["cl", "cL"];
@@ -152,7 +155,7 @@ quantity! {
 
 quantity! {
     /// A force per length, such as the hoop stiffness E t of a cloth or the stiffness of a frame; SI unit N/m.
-    LineStiffness: "stiffness per width", such as "81 kN/m", shown in "kN/m" (1e3);
+    LineStiffness: "stiffness per width" LINE_STIFFNESS, such as "81 kN/m", shown in "kN/m" (1e3);
     n_per_m, to_n_per_m = 1.0, ["N/m"];
     kn_per_m, to_kn_per_m = 1e3, ["kN/m"];
     mn_per_m, to_mn_per_m = 1e6, ["MN/m"];
@@ -162,11 +165,21 @@ quantity! {
 
 quantity! {
     /// A pure number, such as a contraction; the only quantity that may be written without a unit.
-    Ratio: "ratio", such as "20 %", shown in "%" (1e-2);
+    Ratio: "ratio" NONE, such as "20 %", shown in "%" (1e-2);
     one, to_one = 1.0, [""];
     percent, to_percent = 1e-2, ["%"];
     permille, to_permille = 1e-3, ["permille"];
     ppm, to_ppm = 1e-6, ["ppm"];
+}
+
+quantity! {
+    /// A time; SI unit s.
+    Time: "time" TIME, such as "10 s", shown in "s" (1.0);
+    s, to_s = 1.0, ["s"];
+    ms, to_ms = 1e-3, ["ms"];
+    us, to_us = 1e-6, ["us"];
+    min, to_min = 60.0, ["min"];
+    h, to_h = 3600.0, ["h"];
 }
 
 #[cfg(test)]
@@ -223,6 +236,7 @@ mod tests {
             (Ratio::percent(20.0).si(), 0.2),
             (Ratio::permille(3.0).si(), 0.003),
             (Ratio::ppm(3.0).si(), 3e-6),
+            (Time::min(1.5).si(), 90.0),
         ] {
             close(found, expected);
         }
@@ -246,6 +260,7 @@ mod tests {
             Volume: m3 to_m3, l to_l, cl to_cl, ml to_ml, cm3 to_cm3, mm3 to_mm3;
             LineStiffness: n_per_m to_n_per_m, kn_per_m to_kn_per_m, mn_per_m to_mn_per_m, n_per_mm to_n_per_mm,
                 kn_per_mm to_kn_per_mm;
+            Time: s to_s, ms to_ms, us to_us, min to_min, h to_h;
             Ratio: one to_one, percent to_percent, permille to_permille, ppm to_ppm;
         }
     }

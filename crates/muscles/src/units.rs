@@ -1,17 +1,21 @@
-//! Units in text: "110 mm", "2 bar", "110 mm +- 0.2 mm", "1,2,3 bar", "0 %..35 %".
+//! Units in text: "110 mm", "2 bar", "110 mm +- 0.2 mm", "1,2,3 bar", "0 %..35 %", "4 N s", "1e-3 1/K".
 
-pub use crate::any_unit::{Any, any, any_with_width, exact_any_text};
-pub use crate::any_unit_error::AnyUnitError;
 use crate::digits::shortest;
 pub use crate::digits::{rounded, significant};
-use crate::quantity::{Angle, Area, Force, Length, LineStiffness, Pressure, Ratio, Volume, in_unit, to_si};
-pub use crate::unit_error::UnitError;
+use crate::dimension::Dimension;
+use crate::quantity::Ratio;
+use crate::quantity::in_unit;
+pub use crate::quantity::to_si;
+pub use crate::unit_error::{UnitError, Wanted};
 pub use crate::unit_expression::unit;
+use crate::unit_table::{Units, measured, nearest, normalised};
 
 /// A dimension with its units: what [`parse`] needs to know about a type.
 pub trait Quantity: Copy {
     /// What it is in words, such as "length".
     const NAME: &'static str;
+    /// Its physical dimension.
+    const DIMENSION: Dimension;
     /// A value written as it should be, such as "110 mm".
     const EXAMPLE: &'static str;
     /// The natural unit for people, with its factor.
@@ -24,41 +28,16 @@ pub trait Quantity: Copy {
     fn si(self) -> f64;
 }
 
-pub(crate) type Units = &'static [(&'static str, f64)];
-
-/// Every dimension: a unit that is not of the dimension asked for is looked up here, to say what it is.
-pub(crate) const DIMENSIONS: &[(&str, Units)] = &[
-    (Length::NAME, Length::UNITS),
-    (Pressure::NAME, Pressure::UNITS),
-    (Force::NAME, Force::UNITS),
-    (Angle::NAME, Angle::UNITS),
-    (Area::NAME, Area::UNITS),
-    (Volume::NAME, Volume::UNITS),
-    (LineStiffness::NAME, LineStiffness::UNITS),
-    (Ratio::NAME, Ratio::UNITS),
-];
-
-/// Units in words, which are not accepted (there would be no end of them) but recognised.
-pub(crate) const WORDS: &[(&str, &str)] = &[
-    ("meter", "m"),
-    ("metre", "m"),
-    ("millimeter", "mm"),
-    ("millimetre", "mm"),
-    ("centimeter", "cm"),
-    ("centimetre", "cm"),
-    ("micrometer", "um"),
-    ("micrometre", "um"),
-    ("micron", "um"),
-    ("inches", "in"),
-    ("pascal", "Pa"),
-    ("newton", "N"),
-    ("kilonewton", "kN"),
-    ("degree", "deg"),
-    ("radian", "rad"),
-    ("percent", "%"),
-    ("litre", "l"),
-    ("liter", "l"),
-];
+/// A number with its unit, of whatever dimension.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Any {
+    /// The value in SI units.
+    pub si: f64,
+    /// Its dimension.
+    pub dimension: Dimension,
+    /// The unit as it was written, with µ as u, ° as deg and ² as ^2; empty for a pure number.
+    pub unit: String,
+}
 
 /// Reads one quantity, such as "110 mm", "110mm", "1e-3 m", "0.3 mm²" or "5 µm".
 ///
@@ -74,8 +53,22 @@ pub(crate) const WORDS: &[(&str, &str)] = &[
 /// # Errors
 /// If the text is not a finite number with a unit of the dimension.
 pub fn parse<Q: Quantity>(text: &str) -> Result<Q, UnitError> {
-    let (number, unit) = split::<Q>(text)?;
-    scaled(text, number, factor_in::<Q>(text, &unit)?)
+    Ok(Q::from_si(read(Wanted::of::<Q>(), text)?.si))
+}
+
+/// Reads a number with a unit of any dimension, such as "4 N s", "0.2" or "1e-3 1/K".
+///
+/// ```
+/// use bulge_muscles::units;
+/// let drag = units::any("4 N s/mm")?;
+/// assert_eq!((drag.si, drag.dimension.to_string(), drag.unit), (4000.0, "N s/m".to_owned(), "N s/mm".to_owned()));
+/// # Ok::<(), units::UnitError>(())
+/// ```
+///
+/// # Errors
+/// If the text is not a finite number with such a unit, see [`unit()`].
+pub fn any(text: &str) -> Result<Any, UnitError> {
+    read(Wanted::ANY, text)
 }
 
 /// The size of a unit in SI units, such as 0.001 for `Length` and "mm": for CSV headers like `length [mm]`.
@@ -85,9 +78,19 @@ pub fn parse<Q: Quantity>(text: &str) -> Result<Q, UnitError> {
 /// # Errors
 /// If the unit is not of the dimension.
 pub fn factor<Q: Quantity>(unit: &str) -> Result<f64, UnitError> {
-    let unit = normalised(unit);
-    let pure = matches!(unit.as_str(), "1" | "-") && Q::NAME == Ratio::NAME;
-    if pure { Ok(1.0) } else { factor_in::<Q>(&unit, &unit) }
+    Wanted::of::<Q>().factor(unit)
+}
+
+impl Wanted {
+    /// The same of what is wanted.
+    ///
+    /// # Errors
+    /// If the unit is not of the dimension.
+    pub fn factor(&'static self, unit: &str) -> Result<f64, UnitError> {
+        let unit = compact(unit);
+        let is_pure = matches!(unit.as_str(), "1" | "-") && self.quantity == Ratio::NAME;
+        if is_pure { Ok(1.0) } else { factor_in(self, &unit, &unit) }
+    }
 }
 
 /// Reads a value with an optional width: "110 mm", "110 mm +- 0.2 mm", "110 ± 0.2 mm", "110 mm +- 0.5 %".
@@ -98,31 +101,16 @@ pub fn factor<Q: Quantity>(unit: &str) -> Result<f64, UnitError> {
 /// # Errors
 /// If either part is not a quantity of the dimension or the width is negative.
 pub fn parse_with_width<Q: Quantity>(text: &str) -> Result<(Q, Option<Q>), UnitError> {
-    let Some((value_text, width_text)) = ["+-", "+/-", "±"].iter().find_map(|sign| text.split_once(sign))
-    else {
-        return Ok((parse(text)?, None));
-    };
-    let (value_number, value_unit) = split::<Q>(value_text)?;
-    let (width_number, width_unit) = split::<Q>(width_text)?;
-    if width_number == 0.0 && width_unit.is_empty() {
-        return Ok((parse(value_text)?, Some(Q::from_si(0.0))));
-    }
-    let is_relative = Q::NAME != Ratio::NAME && is_ratio_unit(&width_unit);
-    // "110 ± 0.2 mm": one unit for both.
-    let shares_unit = value_unit.is_empty() && !is_relative;
-    let value_factor = factor_in::<Q>(value_text, if shares_unit { &width_unit } else { &value_unit })?;
-    let value: Q = scaled(value_text, value_number, value_factor)?;
-    let width = if is_relative {
-        value.si().abs() * to_si(width_number, factor_in::<Ratio>(width_text, &width_unit)?)
-    } else {
-        scaled::<Q>(width_text, width_number, factor_in::<Q>(width_text, &width_unit)?)?.si()
-    };
-    if width >= 0.0 && width.is_finite() {
-        // Without the sign of a zero, which nobody writes back.
-        Ok((value, Some(Q::from_si(width.abs()))))
-    } else {
-        Err(UnitError::NegativeWidth { text: shortened(text), width, example: Q::EXAMPLE })
-    }
+    let (value, width) = read_with_width(Wanted::of::<Q>(), text)?;
+    Ok((Q::from_si(value.si), width.map(Q::from_si)))
+}
+
+/// The same of any dimension: "1 N +- 0.2 N", "50 ± 30 N", "1 N s +- 5 %".
+///
+/// # Errors
+/// If either part is not a number with a unit, their dimensions differ, or the width is negative.
+pub fn any_with_width(text: &str) -> Result<(Any, Option<f64>), UnitError> {
+    read_with_width(Wanted::ANY, text)
 }
 
 /// Reads a list: "1 bar,2 bar,3 bar" or "1,2,3 bar", where numbers without a unit take that of the last item.
@@ -130,15 +118,7 @@ pub fn parse_with_width<Q: Quantity>(text: &str) -> Result<(Q, Option<Q>), UnitE
 /// # Errors
 /// If an item is empty or is not a quantity of the dimension.
 pub fn parse_list<Q: Quantity>(text: &str) -> Result<Vec<Q>, UnitError> {
-    let items = text.split(',').map(|item| Ok((item, split::<Q>(item)?))).collect::<Result<Vec<_>, _>>()?;
-    let last_unit = items.last().map(|(_, (_, unit))| unit.clone()).unwrap_or_default();
-    items
-        .into_iter()
-        .map(|(item, (number, unit))| {
-            let unit = if unit.is_empty() { &last_unit } else { &unit };
-            scaled(item, number, factor_in::<Q>(item, unit)?)
-        })
-        .collect()
+    read_all(&text.split(',').collect::<Vec<_>>())
 }
 
 /// Reads a range: "0 %..35 %" or "0..35 %", in the order written (a range may run downwards).
@@ -146,14 +126,10 @@ pub fn parse_list<Q: Quantity>(text: &str) -> Result<Vec<Q>, UnitError> {
 /// # Errors
 /// If there is no `..` or an end is not a quantity of the dimension.
 pub fn parse_range<Q: Quantity>(text: &str) -> Result<(Q, Q), UnitError> {
-    let not_a_range =
-        || UnitError::NotARange { text: shortened(text), unit: Q::SHOWN.0, example: Q::EXAMPLE };
+    let not_a_range = || UnitError::NotARange { text: shortened(text), wanted: Wanted::of::<Q>() };
     let (from, to) = text.split_once("..").ok_or_else(not_a_range)?;
-    let (from_number, from_unit) = split::<Q>(from)?;
-    let (to_number, to_unit) = split::<Q>(to)?;
-    let from_unit = if from_unit.is_empty() { &to_unit } else { &from_unit };
-    let start = scaled(from, from_number, factor_in::<Q>(from, from_unit)?)?;
-    Ok((start, scaled(to, to_number, factor_in::<Q>(to, &to_unit)?)?))
+    let ends = read_all(&[from, to])?;
+    Ok((ends[0], ends[1]))
 }
 
 /// Writes a quantity so that [`parse`] gives back exactly the same number: in the natural unit with as few digits as
@@ -165,39 +141,139 @@ pub fn exact_text<Q: Quantity>(quantity: Q) -> String {
 
 /// The same in another unit of the dimension; a unit that is not known gives SI.
 pub(crate) fn exact_text_in<Q: Quantity>(quantity: Q, unit: &str) -> String {
-    let si = quantity.si();
-    let in_si = || format!("{si} {}", Q::UNITS.first().map_or("", |first| first.0)).trim_end().to_owned();
-    let Some((unit, factor)) = find(Q::UNITS, |symbol| symbol == unit) else { return in_si() };
-    let shown = in_unit(si, factor);
-    let shortest = shortest(shown, |value| to_si(value, factor).to_bits() == si.to_bits());
-    shortest.map_or_else(in_si, |value| format!("{value} {unit}"))
+    let in_si = Q::UNITS.first().map_or("", |first| first.0);
+    let (unit, factor) = find(Q::UNITS, unit).unwrap_or((in_si, 1.0));
+    exact(quantity.si(), unit, factor, in_si)
 }
 
-/// Splits "110 mm" into the number and the normalised unit, which may be empty.
-fn split<Q: Quantity>(text: &str) -> Result<(f64, String), UnitError> {
+/// Writes an SI value in a unit so that [`any`] gives back exactly the same number, with as few digits as that takes;
+/// where the unit cannot do that, in SI units; as a pure number if the unit is none that [`unit()`] reads.
+///
+/// ```
+/// use bulge_muscles::units;
+/// assert_eq!(units::exact_any_text(4000.0, "N s/mm"), "4 N s/mm");
+/// assert_eq!(units::exact_any_text(0.25, "%"), "25 %");
+/// ```
+#[must_use]
+pub fn exact_any_text(si: f64, unit: &str) -> String {
+    let Ok((factor, dimension)) = crate::unit_expression::unit(unit) else { return plain_number(si) };
+    let in_si = if dimension.is_none() { String::new() } else { dimension.to_string() };
+    exact(si, if is_pure(unit) { "" } else { unit.trim() }, factor, &in_si)
+}
+
+fn exact(si: f64, unit: &str, factor: f64, in_si: &str) -> String {
+    let shown = shortest(in_unit(si, factor), |value| to_si(value, factor).to_bits() == si.to_bits());
+    let (number, unit) = shown.map_or((si, in_si), |value| (value, unit));
+    format!("{} {unit}", plain_number(number)).trim_end().to_owned()
+}
+
+/// A double as people write it, and with an exponent where that would take many zeros.
+fn plain_number(value: f64) -> String {
+    if value == 0.0 || (1e-5..1e16).contains(&value.abs()) { value.to_string() } else { format!("{value:e}") }
+}
+
+fn is_pure(unit: &str) -> bool {
+    matches!(unit.trim(), "" | "1" | "-")
+}
+
+fn read(wanted: &'static Wanted, text: &str) -> Result<Any, UnitError> {
+    let (number, unit) = split(wanted, text)?;
+    scaled(wanted, text, number, &unit)
+}
+
+fn read_with_width(wanted: &'static Wanted, text: &str) -> Result<(Any, Option<f64>), UnitError> {
+    let Some((value_text, width_text)) = ["+-", "+/-", "±"].iter().find_map(|sign| text.split_once(sign))
+    else {
+        return Ok((read(wanted, text)?, None));
+    };
+    let (value_number, value_unit) = split(wanted, value_text)?;
+    let (width_number, width_unit) = split(wanted, width_text)?;
+    if width_number == 0.0 && width_unit.is_empty() {
+        return Ok((scaled(wanted, value_text, value_number, &value_unit)?, Some(0.0)));
+    }
+    let is_ratio = |unit: &str| !unit.is_empty() && find(Ratio::UNITS, &normalised(unit)).is_some();
+    // Of what may be a pure number, "20 +- 1 %" has one unit for both, as "110 ± 0.2 mm" has.
+    let may_be_pure = wanted.dimension.is_none() || find(wanted.known, "").is_some();
+    let is_relative =
+        is_ratio(&width_unit) && !is_ratio(&value_unit) && !(may_be_pure && value_unit.is_empty());
+    let shares_unit = value_unit.is_empty() && !is_relative;
+    let value =
+        scaled(wanted, value_text, value_number, if shares_unit { &width_unit } else { &value_unit })?;
+    let width =
+        scaled(if is_relative { Wanted::ANY } else { wanted }, width_text, width_number, &width_unit)?;
+    if !is_relative && width.dimension != value.dimension {
+        let (found, value) = (width.dimension.describe(), value.dimension.describe());
+        return Err(UnitError::OtherWidth { text: shortened(text), found, value });
+    }
+    let width = if is_relative { value.si.abs() * width.si } else { width.si };
+    if width >= 0.0 && width.is_finite() {
+        // Without the sign of a zero, which nobody writes back.
+        Ok((value, Some(width.abs())))
+    } else {
+        Err(UnitError::NegativeWidth { text: shortened(text), width, wanted })
+    }
+}
+
+/// Values of which those without a unit take that of the last.
+fn read_all<Q: Quantity>(items: &[&str]) -> Result<Vec<Q>, UnitError> {
+    let wanted = Wanted::of::<Q>();
+    let parts = items.iter().map(|item| split(wanted, item)).collect::<Result<Vec<_>, _>>()?;
+    let last_unit = parts.last().map_or("", |(_, unit)| unit);
+    let one = |(item, (number, unit)): (&&str, &(f64, String))| {
+        let unit = if unit.is_empty() { last_unit } else { unit };
+        Ok(Q::from_si(scaled(wanted, item, *number, unit)?.si))
+    };
+    items.iter().zip(&parts).map(one).collect()
+}
+
+/// Splits "110 mm" into the number and the unit, which may be empty.
+fn split(wanted: &'static Wanted, text: &str) -> Result<(f64, String), UnitError> {
     let body = text.trim().replace('\u{2212}', "-");
     if body.is_empty() {
-        return Err(UnitError::Empty { quantity: Q::NAME, example: Q::EXAMPLE });
+        return Err(UnitError::Empty { wanted });
     }
     let (number, rest) = body.split_at(number_length(&body));
     let rest = rest.trim_start();
+    let not_a_number = || UnitError::NotANumber { text: shortened(text), wanted };
     let Ok(value) = number.parse::<f64>() else {
-        return Err(if is_not_finite(&body) { not_finite::<Q>(text) } else { not_a_number::<Q>(text) });
+        let is_not_finite = is_not_finite(&body);
+        return Err(if is_not_finite { not_finite(wanted, text) } else { not_a_number() });
     };
     match rest.chars().next() {
-        Some(',') if rest[1..].starts_with(|c: char| c.is_ascii_digit()) => Err(UnitError::DecimalComma {
-            text: shortened(text),
-            fixed: shortened(&body.replacen(',', ".", 1)),
-        }),
-        Some(c) if !(c.is_alphabetic() || matches!(c, '%' | '\u{2030}' | '\u{b0}' | '\u{b5}')) => {
-            Err(not_a_number::<Q>(text))
+        Some(',') if rest[1..].starts_with(|c: char| c.is_ascii_digit()) => {
+            let fixed = shortened(&body.replacen(',', ".", 1));
+            Err(UnitError::DecimalComma { text: shortened(text), fixed })
         }
-        _ => Ok((value, normalised(rest))),
+        // What a unit of any dimension begins with is for its reader to say.
+        Some(c)
+            if wanted.dimension.is_some()
+                && !(c.is_alphabetic() || matches!(c, '%' | '\u{2030}' | '\u{b0}' | '\u{b5}')) =>
+        {
+            Err(not_a_number())
+        }
+        _ => Ok((value, rest.to_owned())),
     }
 }
 
+/// A number in a unit; `text` is the whole value, for the message.
+fn scaled(wanted: &'static Wanted, text: &str, number: f64, unit: &str) -> Result<Any, UnitError> {
+    let (factor, dimension) = match wanted.dimension {
+        Some(dimension) => (factor_in(wanted, text, &compact(unit))?, dimension),
+        None => crate::unit_expression::unit(unit)?,
+    };
+    let si = to_si(number, factor);
+    if !si.is_finite() {
+        return Err(not_finite(wanted, text));
+    }
+    Ok(Any { si, dimension, unit: if is_pure(unit) { String::new() } else { normalised(unit) } })
+}
+
+fn not_finite(wanted: &'static Wanted, text: &str) -> UnitError {
+    UnitError::NotFinite { text: shortened(text), wanted }
+}
+
 /// How many bytes at the beginning are a decimal number: sign, digits, point, exponent ("12e" has no exponent).
-pub(crate) fn number_length(text: &str) -> usize {
+fn number_length(text: &str) -> usize {
     let bytes = text.as_bytes();
     let digits = |from: usize| bytes[from..].iter().take_while(|b| b.is_ascii_digit()).count();
     let mut end = usize::from(matches!(bytes.first(), Some(b'+' | b'-')));
@@ -216,84 +292,35 @@ pub(crate) fn number_length(text: &str) -> usize {
 }
 
 /// Whether the text begins with one of the words that stand for no finite number.
-pub(crate) fn is_not_finite(text: &str) -> bool {
+fn is_not_finite(text: &str) -> bool {
     let word = text.trim_start_matches(['+', '-']).split_whitespace().next().unwrap_or("");
     ["nan", "inf", "infinity", "\u{221e}"].iter().any(|other| word.eq_ignore_ascii_case(other))
 }
 
-/// One spelling for each unit: µ is u, ° is deg, ² is ^2, ‰ is permille, no blanks.
-fn normalised(unit: &str) -> String {
-    let mut out = String::with_capacity(unit.len());
-    for c in unit.chars().filter(|c| !c.is_whitespace()) {
-        match c {
-            '\u{b5}' | '\u{3bc}' => out.push('u'),
-            '\u{b0}' => out.push_str("deg"),
-            '\u{b2}' => out.push_str("^2"),
-            '\u{b3}' => out.push_str("^3"),
-            '\u{2030}' => out.push_str("permille"),
-            other => out.push(other),
-        }
-    }
-    out
+/// A unit of a dimension in its one spelling, without blanks.
+fn compact(unit: &str) -> String {
+    normalised(unit).replace(' ', "")
 }
 
-fn is_ratio_unit(unit: &str) -> bool {
-    !unit.is_empty() && find(Ratio::UNITS, |symbol| symbol == unit).is_some()
+fn find(units: Units, unit: &str) -> Option<(&'static str, f64)> {
+    units.iter().copied().find(|(symbol, _)| *symbol == unit)
 }
 
-fn find(units: Units, matches: impl Fn(&str) -> bool) -> Option<(&'static str, f64)> {
-    units.iter().copied().find(|(symbol, _)| matches(symbol))
-}
-
-/// The factor of a normalised unit; `text` is the whole value, for the message.
-fn factor_in<Q: Quantity>(text: &str, unit: &str) -> Result<f64, UnitError> {
-    if let Some((_, factor)) = find(Q::UNITS, |symbol| symbol == unit) {
+/// The factor of a unit in its one spelling; `text` is the whole value, for the message.
+fn factor_in(wanted: &'static Wanted, text: &str, unit: &str) -> Result<f64, UnitError> {
+    if let Some((_, factor)) = find(wanted.known, unit) {
         return Ok(factor);
     }
     let text = shortened(text);
-    let (quantity, example, known) = (Q::NAME, Q::EXAMPLE, Q::UNITS);
     if unit.is_empty() {
-        return Err(UnitError::NoUnit { text, quantity, example, known });
+        return Err(UnitError::NoUnit { text, wanted });
     }
-    let other = |matches: &dyn Fn(&str) -> bool| {
-        DIMENSIONS.iter().find(|(_, units)| find(units, matches).is_some()).map(|(name, _)| *name)
-    };
-    if let Some(found) = other(&|symbol| symbol == unit) {
-        return Err(UnitError::OtherDimension { text, found, quantity, example });
-    }
-    let suggestion = nearest_unit(unit, known);
-    if suggestion.is_none()
-        && let Some(found) = other(&|symbol| symbol.eq_ignore_ascii_case(unit))
-    {
-        return Err(UnitError::OtherDimension { text, found, quantity, example });
-    }
-    Err(UnitError::UnknownUnit { text, unit: shortened(unit), quantity, suggestion, example, known })
-}
-
-/// The unit that was probably meant: the same but for case, a word for it, or one slip of the finger away.
-fn nearest_unit(unit: &str, known: Units) -> Option<&'static str> {
-    let lower = unit.to_lowercase();
-    let singular = lower.strip_suffix('s').unwrap_or(&lower);
-    let word = WORDS.iter().find(|(word, _)| *word == lower || *word == singular).map(|(_, symbol)| *symbol);
-    let slips = |symbol: &str| strsim::damerau_levenshtein(symbol, unit);
-    find(known, |symbol| symbol.eq_ignore_ascii_case(unit))
-        .or_else(|| word.and_then(|word| find(known, |symbol| symbol == word)))
-        .or_else(|| find(known, |symbol| symbol.len() > 1 && symbol.eq_ignore_ascii_case(singular)))
-        .or_else(|| find(known, |symbol| symbol.len() > 1 && unit.chars().count() > 1 && slips(symbol) == 1))
-        .map(|(symbol, _)| symbol)
-}
-
-fn scaled<Q: Quantity>(text: &str, number: f64, factor: f64) -> Result<Q, UnitError> {
-    let si = to_si(number, factor);
-    if si.is_finite() { Ok(Q::from_si(si)) } else { Err(not_finite::<Q>(text)) }
-}
-
-fn not_finite<Q: Quantity>(text: &str) -> UnitError {
-    UnitError::NotFinite { text: shortened(text), quantity: Q::NAME, example: Q::EXAMPLE }
-}
-
-fn not_a_number<Q: Quantity>(text: &str) -> UnitError {
-    UnitError::NotANumber { text: shortened(text), quantity: Q::NAME, example: Q::EXAMPLE }
+    let suggestion = nearest(unit, &wanted.known.iter().map(|(symbol, _)| *symbol));
+    let is_like = |symbol: &str| suggestion.is_none() && symbol.eq_ignore_ascii_case(unit);
+    Err(match measured(|symbol| symbol == unit).or_else(|| measured(is_like)) {
+        Some(found) => UnitError::OtherDimension { text, found, wanted },
+        None => UnitError::UnknownUnit { text, unit: shortened(unit), suggestion, wanted },
+    })
 }
 
 /// A quotation for a message: at most 40 characters, on one line, without control characters.
@@ -311,6 +338,7 @@ pub fn shortened(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::quantity::{Angle, Area, Force, Length, LineStiffness, Pressure, Time, Volume};
 
     #[track_caller]
     fn reads<Q: Quantity>(text: &str, si: f64) {
@@ -319,11 +347,22 @@ mod tests {
     }
 
     #[track_caller]
-    fn refuses<Q: Quantity>(text: &str, parts: &[&str]) {
-        let message = parse::<Q>(text).map(Quantity::si).unwrap_err().to_string();
+    fn says<T: std::fmt::Debug>(found: Result<T, UnitError>, parts: &[&str]) {
+        let message = found.unwrap_err().to_string();
         for part in parts {
-            assert!(message.contains(part), "{text}: {message:?} does not say {part:?}");
+            assert!(message.contains(part), "{message:?} does not say {part:?}");
         }
+    }
+
+    #[track_caller]
+    fn refuses<Q: Quantity + std::fmt::Debug>(text: &str, parts: &[&str]) {
+        says(parse::<Q>(text), parts);
+    }
+
+    /// Numbers that look random.
+    fn next(state: &mut u64) -> u64 {
+        *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        *state
     }
 
     #[test]
@@ -380,6 +419,7 @@ mod tests {
         all::<Volume>();
         all::<LineStiffness>();
         all::<Ratio>();
+        all::<Time>();
     }
 
     #[test]
@@ -392,6 +432,7 @@ mod tests {
         refuses::<Length>("2 millimetres", &["did you mean `mm`?"]);
         refuses::<Length>("2 ft", &["unknown unit `ft`", "known: m, cm"]);
         refuses::<Length>("2 parsec", &["unknown unit `parsec`: write a length"]);
+        refuses::<Length>("2 s", &["`2 s` is a time, here a length is needed", "\"110 mm\""]);
         refuses::<Length>("2 bar", &["`2 bar` is a pressure, here a length is needed", "\"110 mm\""]);
         refuses::<Length>("2 Bar", &["is a pressure"]);
         refuses::<Pressure>("25 deg", &["is an angle, here a pressure is needed"]);
@@ -426,6 +467,7 @@ mod tests {
         let ratio = parse_with_width::<Ratio>("20 % +- 1 %");
         assert_eq!(ratio, Ok((Ratio::percent(20.0), Some(Ratio::percent(1.0)))));
         for (text, part) in [
+            ("25 +- 1 %", "no unit"),
             ("110 mm +- -2 mm", "can't be negative"),
             ("110 +- 0", "no unit"),
             ("110 mm +- ", "no length"),
@@ -437,6 +479,62 @@ mod tests {
             let message = read(text).unwrap_err().to_string();
             assert!(message.contains(part), "{text}: {message}");
         }
+    }
+
+    #[test]
+    fn numbers_of_any_dimension() {
+        let read = |text| any(text).map(|any| (any.si, any.dimension.to_string(), any.unit));
+        for (text, si, dimension, unit) in [
+            ("4 N s", 4.0, "N s", "N s"),
+            ("4N s", 4.0, "N s", "N s"),
+            ("0.2", 0.2, "1", ""),
+            ("0.2 1", 0.2, "1", ""),
+            ("20 %", 0.2, "1", "%"),
+            ("\u{2212}3 \u{b5}m", -3e-6, "m", "um"),
+            ("1e-3 1/K", 1e-3, "1/K", "1/K"),
+            ("1e\u{2212}3 s", 1e-3, "s", "s"),
+            ("+2 mm\u{b2}", 2e-6, "m^2", "mm^2"),
+            ("5 ms", 5e-3, "s", "ms"),
+        ] {
+            assert_eq!(read(text), Ok((si, dimension.to_owned(), unit.to_owned())), "{text}");
+        }
+        says(any(""), &["no number is given", "\"4 N s\""]);
+        says(any("N s"), &["does not begin with a number"]);
+        says(any("\u{2212}-3 N"), &["does not begin with a number"]);
+        says(any("1e400 N"), &["not a finite number"]);
+        says(any("1e305 MPa"), &["not a finite number"]);
+        says(any("20 degC"), &["293.15 K"]);
+        says(any("3 Nm"), &["unknown unit `Nm`"]);
+    }
+
+    #[test]
+    fn widths_of_any_dimension() {
+        let read = |text| any_with_width(text).map(|(any, width)| (any.si, width));
+        for (text, value, width) in [
+            ("1 N", 1.0, None),
+            ("1 N +- 0.2 N", 1.0, Some(0.2)),
+            ("1 kN \u{b1} 200 N", 1e3, Some(200.0)),
+            ("50 +/- 30 N s", 50.0, Some(30.0)),
+            ("-2 N s +- 5 %", -2.0, Some(0.1)),
+            ("20 deg +- 10 %", 20.0 * std::f64::consts::PI / 180.0, Some(2.0 * std::f64::consts::PI / 180.0)),
+            ("20 % +- 1 %", 0.2, Some(0.01)),
+            ("20 +- 1 %", 0.2, Some(0.01)),
+            ("0.2 +- 0.1", 0.2, Some(0.1)),
+        ] {
+            let (found, found_width) = read(text).unwrap();
+            let near = |a: f64, b: f64| (a - b).abs() <= 4.0 * f64::EPSILON * b.abs();
+            assert!(near(found, value), "{text}: {found}");
+            assert_eq!(found_width.is_some(), width.is_some(), "{text}");
+            assert!(near(found_width.unwrap_or(1.0), width.unwrap_or(1.0)), "{text}: {found_width:?}");
+        }
+        says(any_with_width("1 N +- 0.2 bar"), &["is a pressure (Pa)", "the value is a force (N)"]);
+        says(any_with_width("1 N +- 0.2"), &["a pure number"]);
+        for text in ["1 N +- 0 N", "1 N +- 0", "1 N +- 0 %"] {
+            assert_eq!(read(text), Ok((1.0, Some(0.0))), "{text}");
+        }
+        says(any_with_width("1 N +- -1 N"), &["can't be negative"]);
+        says(any_with_width("1 N +- "), &["no number"]);
+        says(any_with_width("+- 1 N"), &["no number"]);
     }
 
     #[test]
@@ -473,58 +571,62 @@ mod tests {
 
     #[test]
     fn exact_text_is_read_back_bit_for_bit() {
+        #[track_caller]
         fn check<Q: Quantity>(si: f64) {
             let text = exact_text(Q::from_si(si));
-            let back = parse::<Q>(&text).map(|q| q.si().to_bits());
-            assert_eq!(back, Ok(si.to_bits()), "{text}");
+            assert_eq!(parse::<Q>(&text).map(|q| q.si().to_bits()), Ok(si.to_bits()), "{text}");
         }
         assert_eq!(exact_text(Length::mm(110.0)), "110 mm");
+        assert_eq!(exact_text(Length::mm(3e-7)), "3e-7 mm");
         assert_eq!(exact_text(Angle::deg(25.0)), "25 deg");
-        let mut state = 7_u64;
-        for _ in 0..2000 {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            let si = f64::from_bits(
-                (state & 0x800f_ffff_ffff_ffff) | ((state >> 3) & 0x3ff) << 52 | (0x200 << 52),
-            );
-            if si.is_finite() {
-                check::<Length>(si);
-                check::<Pressure>(si);
-                check::<Angle>(si);
-                check::<Ratio>(si);
-                check::<Area>(si);
+        for (si, unit, text) in [
+            (0.11, "mm", "110 mm"),
+            (50.0, "N", "50 N"),
+            (0.25, "", "0.25"),
+            (0.25, "1", "0.25"),
+            (-1e-6, "N s/MPa", "-1 N s/MPa"),
+            (0.0, "N", "0 N"),
+            (1e300, "Pa", "1e300 Pa"),
+            (3.0, "no unit", "3"),
+        ] {
+            assert_eq!(exact_any_text(si, unit), text);
+        }
+        let mut state = 7;
+        for _ in 0..20_000 {
+            let si = f64::from_bits(next(&mut state) ^ (state >> 17));
+            if !si.is_finite() {
+                continue;
+            }
+            check::<Length>(si);
+            check::<Pressure>(si);
+            check::<Angle>(si);
+            check::<Ratio>(si);
+            check::<Area>(si);
+            for unit in ["", "mm", "deg", "%", "psi", "N s/MPa", "1/(K min)", "lbf^0.5", "decade"] {
+                let text = exact_any_text(si, unit);
+                let back = any(&text).unwrap();
+                assert_eq!(back.si.to_bits(), si.to_bits(), "{text}");
+                assert_eq!(Ok(back.dimension), super::unit(unit).map(|(_, dimension)| dimension), "{text}");
             }
         }
     }
 
     #[test]
     fn no_text_panics() {
-        let pieces = [
-            "1",
-            "e",
-            "-",
-            "+",
-            ".",
-            ",",
-            " ",
-            "mm",
-            "\u{b5}",
-            "\u{b1}",
-            "..",
-            "bar",
-            "%",
-            "nan",
-            "\u{0}",
-            "\u{1f600}",
-        ];
-        let mut state = 1_usize;
-        for _ in 0..20_000 {
-            let mut text = String::new();
-            for _ in 0..6 {
-                state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-                text.push_str(pieces[(state >> 33) % pieces.len()]);
-            }
+        let pieces =
+            "1|e|-|+|.|,| |mm|N|bar|\u{b5}|\u{b1}|..|/|^|2|(|)|%|nan|\0|\u{1f600}|\u{207b}|\u{b0}|degC|*";
+        let pieces: Vec<&str> = pieces.split('|').collect();
+        let mut state = 1;
+        for _ in 0..50_000 {
+            let text: String = (0..8)
+                .map(|_| pieces[usize::try_from(next(&mut state) >> 33).unwrap() % pieces.len()])
+                .collect();
             let _ = (parse::<Length>(&text), parse_with_width::<Ratio>(&text), parse_list::<Force>(&text));
-            let _ = parse_range::<Angle>(&text);
+            let _ = (parse_range::<Angle>(&text), any_with_width(&text), super::unit(&text));
+            if let Ok(found) = any(&text) {
+                let back = any(&exact_any_text(found.si, &found.unit)).map(|back| back.si);
+                assert_eq!(back, Ok(found.si), "{text}");
+            }
         }
     }
 }

@@ -11,6 +11,7 @@ mod elementary;
 pub mod elliptic;
 pub mod gauss;
 pub mod least_squares;
+pub mod minimum;
 mod random;
 mod real;
 pub mod root;

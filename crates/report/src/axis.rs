@@ -1,7 +1,6 @@
 //! Axes that begin and end at round numbers.
 
-use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, ValueFormatter};
-use std::ops::Range;
+use crate::PlotError;
 
 /// Range of an axis and distance between its ticks, all multiples of 1, 2 or 5 times a power of ten.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -20,9 +19,25 @@ impl Axis {
         Self::with_intervals(values, INTERVALS)
     }
 
-    /// As [`Axis::around`], with at most `intervals` intervals before the axis is extended to round ends:
-    /// fewer for a small panel.
-    pub(crate) fn with_intervals(values: impl Iterator<Item = f64>, intervals: f64) -> Option<Self> {
+    /// The same; the error says what is too large for an axis.
+    pub(crate) fn of(
+        quantity: &'static str,
+        values: impl Iterator<Item = f64> + Clone,
+    ) -> Result<Self, PlotError> {
+        Self::few(quantity, INTERVALS, values)
+    }
+
+    /// The same with fewer intervals, for a small panel.
+    pub(crate) fn few(
+        quantity: &'static str,
+        intervals: f64,
+        values: impl Iterator<Item = f64> + Clone,
+    ) -> Result<Self, PlotError> {
+        Self::with_intervals(values.clone(), intervals).ok_or_else(|| PlotError::span(quantity, values))
+    }
+
+    /// The same with at most so many intervals before it is extended to round ends: fewer for a small panel.
+    fn with_intervals(values: impl Iterator<Item = f64>, intervals: f64) -> Option<Self> {
         let (min, max) = range(values)?;
         let magnitude = min.abs().max(max.abs());
         // Constant values have no range: it becomes a tenth of their size, or one unit around zero.
@@ -47,13 +62,7 @@ impl Axis {
 
     /// Ticks with their labels, with a true minus sign.
     pub(crate) fn labels(&self) -> Vec<(f64, String)> {
-        self.ticks()
-            .into_iter()
-            .map(|tick| {
-                let tick = if tick.abs() < 1e-6 * self.step { 0.0 } else { tick };
-                (tick, self.label(tick).replace('-', "−"))
-            })
-            .collect()
+        self.ticks().into_iter().map(|tick| (tick, self.label(tick).replace('-', "−"))).collect()
     }
 
     /// Low and high end.
@@ -64,12 +73,12 @@ impl Axis {
     /// Ticks from the low end to the high one.
     fn ticks(&self) -> Vec<f64> {
         let tick = |i: u32| self.low + f64::from(i) * self.step;
+        let tick = |i: u32| if tick(i).abs() < 1e-6 * self.step { 0.0 } else { tick(i) };
         (0..100).map(tick).take_while(|tick| *tick <= self.high + 0.5 * self.step).collect()
     }
 
     /// Number at a tick, with as many decimals as the step needs.
     fn label(&self, tick: f64) -> String {
-        let tick = if tick.abs() < 1e-6 * self.step { 0.0 } else { tick };
         if self.step < 1e-4 || self.low.abs().max(self.high.abs()) >= 1e7 {
             return if tick == 0.0 { "0".to_owned() } else { format!("{tick:.3e}") };
         }
@@ -78,34 +87,7 @@ impl Axis {
     }
 }
 
-impl Ranged for Axis {
-    type FormatOption = NoDefaultFormatting;
-    type ValueType = f64;
-
-    #[expect(
-        clippy::cast_possible_truncation,
-        reason = "rounded; casting saturates, and drawings are far smaller"
-    )]
-    fn map(&self, value: &f64, (first, last): (i32, i32)) -> i32 {
-        (f64::from(first) + self.share(*value) * (f64::from(last) - f64::from(first))).round() as i32
-    }
-
-    fn key_points<Hint: KeyPointHint>(&self, _: Hint) -> Vec<f64> {
-        self.ticks()
-    }
-
-    fn range(&self) -> Range<f64> {
-        self.low..self.high
-    }
-}
-
-impl ValueFormatter<f64> for Axis {
-    fn format_ext(&self, tick: &f64) -> String {
-        self.label(*tick)
-    }
-}
-
-/// Smallest and largest of the values; `None` if there are none, or if their difference overflows.
+/// Least and largest of the values; `None` if there are none, or if they lie further apart than a number reaches.
 pub(crate) fn range(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
     let (min, max) =
         values.fold((f64::INFINITY, f64::NEG_INFINITY), |(min, max), v| (min.min(v), max.max(v)));
@@ -136,12 +118,6 @@ mod tests {
         assert_eq!(labels(&[0.0, 35.0]), ["0", "5", "10", "15", "20", "25", "30", "35"]);
         assert_eq!(labels(&[-130.0, 2410.0]), ["-500", "0", "500", "1000", "1500", "2000", "2500"]);
         assert_eq!(labels(&[0.12, 0.58]), ["0.1", "0.2", "0.3", "0.4", "0.5", "0.6"]);
-    }
-
-    #[test]
-    fn maps_ends_to_the_ends_of_the_drawing() {
-        let axis = Axis::around([0.0, 35.0].into_iter()).unwrap();
-        assert_eq!([0.0, 17.5, 35.0].map(|v| axis.map(&v, (400, 100))), [400, 250, 100]);
     }
 
     #[test]

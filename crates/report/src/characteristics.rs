@@ -1,12 +1,9 @@
 //! Isobaric characteristics: force and volume against contraction.
 
 use crate::PlotError;
-use crate::axis::{Axis, range};
-use crate::drawing::{Area, LINE, SCALE, bar, chart, failed, finish, pixels, text, titled};
-use crate::palette;
+use crate::axis::Axis;
+use crate::drawing::{Chart, bar, drawn};
 use bulge_fibre::Response;
-use plotters::prelude::{Color, IntoDrawingArea, LineSeries, PathElement, SVGBackend};
-use plotters::style::text_anchor::HPos;
 
 /// One isobaric curve.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -34,15 +31,22 @@ pub struct Curve<'a> {
 /// ```
 pub fn characteristics_svg(title: &str, curves: &[Curve]) -> Result<String, PlotError> {
     check(curves)?;
-    let mut svg = String::new();
-    draw(&mut svg, title, curves)?;
-    Ok(finish(&svg, SIZE, curves.len()))
+    let charts = [panel(FORCE, curves)?, panel(VOLUME, curves)?];
+    let names: Vec<_> = curves.iter().map(|curve| bar(curve.pressure_pa)).collect();
+    // Highest pressure on top, as the curves mostly lie.
+    let every = curves.len().div_ceil(ROWS);
+    let mut legend: Vec<_> =
+        names.iter().enumerate().step_by(every).map(|(i, name)| (i, name.as_str())).collect();
+    legend.sort_by(|a, b| curves[b.0].pressure_pa.total_cmp(&curves[a.0].pressure_pa));
+    Ok(drawn(title, SIZE, (LEGEND_WIDTH, &legend), &charts, &[]))
 }
 
-/// Size of the picture in pixels.
-const SIZE: (u32, u32) = (1160, 470);
-const LEGEND_WIDTH: u32 = 130;
-/// A quantity of a response in the unit of its axis.
+const SIZE: (f64, f64) = (928.0, 376.0);
+const LEGEND_WIDTH: f64 = 104.0;
+/// Rows a legend has at most; of more curves only every second, third, ... is named.
+const ROWS: usize = 16;
+
+/// A quantity of a response, in the unit of its axis.
 #[derive(Clone, Copy)]
 struct Quantity {
     name: &'static str,
@@ -55,11 +59,7 @@ const VOLUME: Quantity = Quantity { name: "volume [ml]", read: |r| 1e6 * r.volum
 
 impl Quantity {
     fn axis(self, curves: &[Curve]) -> Result<Axis, PlotError> {
-        let values = || curves.iter().flat_map(|c| c.points).map(self.read);
-        Axis::around(values()).ok_or_else(|| {
-            let (low, high) = range(values()).unwrap_or((f64::MIN, f64::MAX));
-            PlotError::Span { quantity: self.name, low, high }
-        })
+        Axis::of(self.name, curves.iter().flat_map(|c| c.points).map(self.read))
     }
 }
 
@@ -87,52 +87,18 @@ fn check(curves: &[Curve]) -> Result<(), PlotError> {
     Ok(())
 }
 
-fn draw(svg: &mut String, title: &str, curves: &[Curve]) -> Result<(), PlotError> {
-    let paper = SVGBackend::with_string(svg, (SIZE.0 * SCALE, SIZE.1 * SCALE)).into_drawing_area();
-    let body = titled(&paper, title, SIZE.0)?;
-    let (plots, legend) = body.split_horizontally((SIZE.0 - LEGEND_WIDTH) * SCALE);
-    let (left, right) = plots.split_horizontally((SIZE.0 - LEGEND_WIDTH) * SCALE / 2);
-    panel(&left, FORCE, curves)?;
-    panel(&right, VOLUME, curves)?;
-    self::legend(&legend, curves)?;
-    paper.present().map_err(failed)
-}
-
-fn panel(area: &Area, quantity: Quantity, curves: &[Curve]) -> Result<(), PlotError> {
-    let (x, y) = (CONTRACTION.axis(curves)?, quantity.axis(curves)?);
-    let mut chart = chart(area, (x, CONTRACTION.name), (y, quantity.name))?;
-    for (i, curve) in curves.iter().enumerate() {
-        let points = curve.points.iter().map(|r| ((CONTRACTION.read)(r), (quantity.read)(r)));
-        let line = palette::colour(i, curves.len()).stroke_width(LINE);
-        chart.draw_series(LineSeries::new(points, line)).map_err(failed)?;
-    }
-    Ok(())
-}
-
-/// Most rows of a legend; of more curves only every second, third, ... is named.
-const ROWS: usize = 16;
-const ROW_HEIGHT: i32 = 24;
-
-/// Draws the legend with the highest pressure on top, which is the usual order of the curves.
-fn legend(area: &Area, curves: &[Curve]) -> Result<(), PlotError> {
-    let every = curves.len().div_ceil(ROWS);
-    let mut named: Vec<usize> = (0..curves.len()).step_by(every).collect();
-    named.sort_by(|a, b| curves[*b].pressure_pa.total_cmp(&curves[*a].pressure_pa));
-    let scale = pixels(1);
-    for (row, i) in (0_i32..).zip(named) {
-        let y = (22 + row * ROW_HEIGHT) * scale;
-        let line = palette::colour(i, curves.len()).stroke_width(LINE);
-        area.draw(&PathElement::new(vec![(0, y), (38 * scale, y)], line)).map_err(failed)?;
-        text(area, &bar(curves[i].pressure_pa), (46 * scale, y), 16, HPos::Left)?;
-    }
-    Ok(())
+fn panel<'a>(quantity: Quantity, curves: &[Curve]) -> Result<Chart<'a>, PlotError> {
+    let axes = [CONTRACTION.axis(curves)?, quantity.axis(curves)?];
+    let pair = |r: &Response| [(CONTRACTION.read)(r), (quantity.read)(r)];
+    let lines = curves.iter().map(|curve| curve.points.iter().map(pair).collect()).collect();
+    Ok(Chart { names: [CONTRACTION.name, quantity.name], axes, lines })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::palette::{self, hex};
     use bulge_fibre::{Convergence, Method};
-    use plotters::prelude::RGBColor;
 
     fn response(pressure_pa: f64, contraction: f64) -> Response {
         Response {
@@ -198,8 +164,7 @@ mod tests {
         let svg = plot("second-generation PPAM", &[1e5, 2e5, 3e5]);
         assert_eq!(tags(&svg)[0], "svg");
         for i in 0..3 {
-            let RGBColor(r, g, b) = palette::colour(i, 3);
-            let stroke = format!("stroke=\"#{r:02X}{g:02X}{b:02X}\"");
+            let stroke = format!("stroke=\"{}\"", hex(palette::colour(i, 3)));
             let lines: Vec<_> =
                 svg.lines().filter(|l| l.starts_with("<polyline") && l.contains(&stroke)).collect();
             let points = |line: &str| line.split_once("points=").unwrap().1.matches(',').count();
@@ -219,7 +184,7 @@ mod tests {
         {
             assert!(svg.contains(words), "{words}");
         }
-        assert!(svg.contains(r#"width="1160" height="470" viewBox="0 0 11600 4700""#));
+        assert!(svg.contains(r#"width="1160" height="470" viewBox="0 0 928 376""#));
     }
 
     #[test]
@@ -238,7 +203,7 @@ mod tests {
     fn many_curves_keep_a_short_legend() {
         let pressures: Vec<_> = (1..=50).map(|i| 1e4 * f64::from(i)).collect();
         let svg = plot("fifty", &pressures);
-        assert!(svg.matches(" bar\n").count() <= ROWS && !svg.contains("dasharray"));
+        assert!(svg.matches(" bar<").count() <= ROWS && !svg.contains("dasharray"));
     }
 
     #[test]

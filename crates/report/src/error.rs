@@ -70,12 +70,6 @@ pub enum PlotError {
         /// Largest value.
         high: f64,
     },
-    /// The drawing library failed.
-    #[error("the plot can't be drawn: {reason}")]
-    Drawing {
-        /// Its message.
-        reason: String,
-    },
 }
 
 impl PlotError {

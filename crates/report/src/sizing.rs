@@ -2,15 +2,10 @@
 
 use crate::PlotError;
 use crate::axis::{Axis, range};
-use crate::drawing::{Area, INK, LINE, SCALE, bar, chart, failed, finish, pixels, text, titled};
-use crate::palette;
-use plotters::prelude::{Circle, Color, IntoDrawingArea, LineSeries, PathElement, SVGBackend};
-use plotters::style::text_anchor::HPos;
+use crate::drawing::{Chart, bar, drawn};
 
-/// Size of the picture in pixels.
-const SIZE: (u32, u32) = (780, 500);
-const LEGEND_WIDTH: u32 = 170;
-const ROW_HEIGHT: i32 = 24;
+const SIZE: (f64, f64) = (624.0, 400.0);
+const LEGEND_WIDTH: f64 = 136.0;
 const CONTRACTION: &str = "contraction [%]";
 const FORCE: &str = "force [N]";
 
@@ -37,7 +32,7 @@ pub fn sizing_svg(
     let percent =
         |points: &[[f64; 2]]| points.iter().map(|[x, force]| [100.0 * x, *force]).collect::<Vec<_>>();
     let lines: Vec<_> = isobars.iter().map(|(pressure, points)| (bar(*pressure), percent(points))).collect();
-    drawn(title, [CONTRACTION, FORCE], &lines, &percent(load))
+    with_axes(title, [CONTRACTION, FORCE], &lines, &percent(load))
 }
 
 /// Draws named lines against two axes as an SVG document. The first line is lowest in the legend.
@@ -55,7 +50,7 @@ pub fn lines_svg(
     if let Some((_, points)) = lines.iter().find(|(_, points)| points.len() < 2) {
         return Err(PlotError::Lengths { what: "point(s) of a line", expected: 2, found: points.len() });
     }
-    drawn(title, axes, lines, &[])
+    with_axes(title, axes, lines, &[])
 }
 
 fn check(isobars: &[(f64, Vec<[f64; 2]>)], load: &[[f64; 2]]) -> Result<(), PlotError> {
@@ -74,8 +69,8 @@ fn check(isobars: &[(f64, Vec<[f64; 2]>)], load: &[[f64; 2]]) -> Result<(), Plot
     Ok(())
 }
 
-/// Draws the lines, and a load over them if there is one.
-fn drawn(
+/// Lines, and a load over them if there is one.
+fn with_axes(
     title: &str,
     names: [&str; 2],
     lines: &[(String, Vec<[f64; 2]>)],
@@ -94,62 +89,15 @@ fn drawn(
         })
     };
     let axes = [axis(0)?, axis(1)?];
-    let mut svg = String::new();
-    draw(&mut svg, title, (names, axes), lines, load)?;
-    Ok(finish(&svg, SIZE, lines.len()))
-}
-
-fn draw(
-    svg: &mut String,
-    title: &str,
-    (names, axes): ([&str; 2], [Axis; 2]),
-    lines: &[(String, Vec<[f64; 2]>)],
-    load: &[[f64; 2]],
-) -> Result<(), PlotError> {
-    let paper = SVGBackend::with_string(svg, (SIZE.0 * SCALE, SIZE.1 * SCALE)).into_drawing_area();
-    let body = titled(&paper, title, SIZE.0)?;
-    let (plot, legend) = body.split_horizontally((SIZE.0 - LEGEND_WIDTH) * SCALE);
-    let mut chart = chart(&plot, (axes[0], names[0]), (axes[1], names[1]))?;
-    let point = |[x, y]: &[f64; 2]| (*x, *y);
-    for (i, (_, points)) in lines.iter().enumerate() {
-        let line = palette::colour(i, lines.len()).stroke_width(LINE);
-        chart.draw_series(LineSeries::new(points.iter().map(point), line)).map_err(failed)?;
-    }
-    if !load.is_empty() {
-        chart
-            .draw_series(LineSeries::new(load.iter().map(point), INK.stroke_width(LINE + SCALE)))
-            .map_err(failed)?;
-        chart
-            .draw_series(load.iter().map(|at| Circle::new(point(at), 5 * SCALE, INK.filled())))
-            .map_err(failed)?;
-    }
-    named(&legend, lines, !load.is_empty())?;
-    paper.present().map_err(failed)
-}
-
-/// Draws the legend with the last line on top, which is the order of isobars, and the load at the end.
-fn named(area: &Area, lines: &[(String, Vec<[f64; 2]>)], has_load: bool) -> Result<(), PlotError> {
-    let scale = pixels(1);
-    let row = |row: i32| (22 + row * ROW_HEIGHT) * scale;
-    let mut last = 0;
-    for (k, (i, (name, _))) in (0..).zip(lines.iter().enumerate().rev()) {
-        let line = palette::colour(i, lines.len()).stroke_width(LINE);
-        area.draw(&PathElement::new(vec![(0, row(k)), (38 * scale, row(k))], line)).map_err(failed)?;
-        text(area, name, (46 * scale, row(k)), 16, HPos::Left)?;
-        last = k + 1;
-    }
-    if !has_load {
-        return Ok(());
-    }
-    let line = INK.stroke_width(LINE + SCALE);
-    area.draw(&PathElement::new(vec![(0, row(last)), (38 * scale, row(last))], line)).map_err(failed)?;
-    text(area, "load", (46 * scale, row(last)), 16, HPos::Left)
+    let legend: Vec<_> = lines.iter().enumerate().map(|(i, (name, _))| (i, name.as_str())).rev().collect();
+    let lines = lines.iter().map(|(_, points)| points.clone()).collect();
+    Ok(drawn(title, SIZE, (LEGEND_WIDTH, &legend), &[Chart { names, axes, lines }], load))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use plotters::prelude::RGBColor;
+    use crate::palette::{self, hex};
 
     fn isobars() -> Vec<(f64, Vec<[f64; 2]>)> {
         [1e5, 2e5, 4e5].map(|p| (p, vec![[0.0, 3e-3 * p], [0.1, 1e-3 * p], [0.25, 0.0]])).to_vec()
@@ -164,13 +112,12 @@ mod tests {
         }
         // Each isobar occurs in the plot and in the legend.
         for i in 0..3 {
-            let RGBColor(r, g, b) = palette::colour(i, 3);
-            let stroke = format!("stroke=\"#{r:02X}{g:02X}{b:02X}\"");
+            let stroke = format!("stroke=\"{}\"", hex(palette::colour(i, 3)));
             let lines = svg.lines().filter(|line| line.starts_with("<polyline") && line.contains(&stroke));
             let points = |line: &str| line.split_once("points=").unwrap().1.matches(',').count();
             assert_eq!(lines.map(points).collect::<Vec<_>>(), [3, 2], "{i}");
         }
-        assert_eq!(svg.matches("<circle").count(), load.len());
+        assert_eq!(svg.matches("h0").count(), load.len());
         assert_eq!(svg, sizing_svg("DMSP-20 <of 400 mm>", &isobars(), &load).unwrap());
     }
 

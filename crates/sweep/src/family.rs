@@ -371,8 +371,7 @@ impl Member {
             return Err(end.beyond(contraction).into());
         }
         let response = self.response(contraction).map_err(|error| self.with_limit(contraction, error))?;
-        let scale = self.scales[0].abs();
-        if response.force_n < -1e-9 * scale {
+        if !response.pulls(self.scales[0].abs()) {
             let end = self.range_end()?;
             let beyond = contraction > end.contraction();
             let pushes = FibreError::WouldPush { contraction, force_n: response.force_n };

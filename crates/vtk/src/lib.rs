@@ -28,6 +28,7 @@ mod panel;
 mod series;
 mod vtp;
 mod whole_file;
+mod xml;
 
 pub use bulge::{Bulge, Style};
 pub use error::VtkError;

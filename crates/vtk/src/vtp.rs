@@ -3,12 +3,10 @@
 use crate::VtkError;
 use crate::bulge::{Bulge, whole};
 use crate::mesh::Mesh;
-use crate::whole_file;
+use crate::{whole_file, xml};
 use bulge_fibre::Response;
-use std::fmt::Write as _;
 use std::path::Path;
-use vtkio::model::{Attribute, Attributes, ByteOrder, DataSet, PolyDataPiece, Version, VertexNumbers, Vtk};
-use vtkio::xml::Compressor;
+use vtkio::model::{Attribute, Attributes, DataSet, PolyDataPiece, VertexNumbers};
 
 /// Writes one shape; the file appears whole or not at all.
 ///
@@ -39,33 +37,7 @@ fn encoded(path: &Path, bulge: &Bulge) -> Result<Vec<u8>, VtkError> {
 
 /// The bytes of a file.
 fn encode(mesh: Mesh, response: &Response) -> Result<Vec<u8>, String> {
-    let vtk = Vtk {
-        version: Version::new_xml(1, 0),
-        title: String::new(),
-        byte_order: ByteOrder::LittleEndian,
-        data: DataSet::inline(piece(mesh)),
-        file_path: None,
-    };
-    let file = vtk.try_into_xml_format(Compressor::ZLib, 6).map_err(|e| e.to_string())?;
-    // Written to memory first: vtkio doesn't notice a full disk.
-    let mut body = Vec::new();
-    file.write(&mut body).map_err(|e| e.to_string())?;
-    let body = String::from_utf8(body).map_err(|e| e.to_string())?;
-    let (head, tail) = body.split_once("<PolyData>").ok_or("no PolyData element")?;
-    Ok(format!("<?xml version=\"1.0\"?>\n{head}<PolyData>{}{tail}\n", field_data(response)).into_bytes())
-}
-
-/// Field data, which vtkio can't write.
-fn field_data(response: &Response) -> String {
-    let mut xml = String::from("<FieldData>");
-    for (name, value) in whole(response) {
-        // Writing to a String can't fail.
-        let _ = write!(
-            xml,
-            r#"<DataArray type="Float64" Name="{name}" NumberOfTuples="1" format="ascii">{value:e}</DataArray>"#
-        );
-    }
-    xml + "</FieldData>"
+    xml::bytes(DataSet::inline(piece(mesh)), "PolyData", &xml::numbers(whole(response)))
 }
 
 fn piece(mesh: Mesh) -> PolyDataPiece {
@@ -99,6 +71,7 @@ mod tests {
     use crate::Style;
     use crate::analytic::barrel;
     use bulge_fibre::Shape;
+    use vtkio::model::Vtk;
 
     fn drawn(shape: &Shape, facets: u32, fibres: u32) -> String {
         let bulge = Bulge { shape, fibres, style: Style::Revolution, facets };

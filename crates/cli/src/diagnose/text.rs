@@ -7,9 +7,10 @@ use bulge_report::diagnosis::{
 };
 use std::fmt::Write;
 
+use crate::compare::spans;
 use crate::diagnose::paragraph::paragraph;
 use crate::diagnose::untested::reasons;
-use crate::text::{significant, with_interval};
+use crate::text::{three, with_interval};
 use bulge_report::Call;
 
 /// Most lines of a kind; JSON has all.
@@ -53,17 +54,7 @@ fn measured(out: &mut String, diagnosis: &Diagnosis) {
     let _ = writeln!(out, "{} diagnosed on {}\n", diagnosis.muscle, data.files.join(", "));
     let sweeps =
         if data.is_path { format!(" in {} sweeps", data.sweeps) } else { " in a static map".to_owned() };
-    let _ = writeln!(
-        out,
-        "  {} rows{sweeps}: {} to {} bar, contraction {} to {} %, force {} to {} N",
-        data.rows,
-        three(data.pressure_pa[0] / 1e5),
-        three(data.pressure_pa[1] / 1e5),
-        three(100.0 * data.contraction[0]),
-        three(100.0 * data.contraction[1]),
-        three(data.force_n[0]),
-        three(data.force_n[1])
-    );
+    let _ = writeln!(out, "  {} rows{sweeps}: {}", data.rows, spans(data));
     for left in &data.left_out {
         let _ = writeln!(out, "  left out {} rows (line {}): {}", left.rows, left.lines, left.why);
     }
@@ -298,10 +289,6 @@ fn accept(out: &mut String, diagnosis: &Diagnosis, call: &Call) {
         out,
         "\n  to accept this step:\n    bulge diagnose {rest}\n    bulge fit {rest} --out learnt.toml"
     );
-}
-
-fn three(value: f64) -> String {
-    significant(value, 3)
 }
 
 #[cfg(test)]

@@ -2,24 +2,20 @@
 
 use std::path::PathBuf;
 use std::process::{Command, Output};
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 use serde_json::Value;
+use tempfile::TempDir;
 
-/// Number of folders created.
-static NUMBER: AtomicUsize = AtomicUsize::new(0);
-
-/// A folder for one test, removed at the end.
-pub(crate) struct Folder(pub(crate) PathBuf);
+/// A folder of its own for each test, removed at the end.
+pub(crate) struct Folder(
+    pub(crate) PathBuf,
+    #[expect(dead_code, reason = "removes the folder when it goes")] TempDir,
+);
 
 impl Folder {
     pub(crate) fn new(name: &str) -> Self {
-        // Two tests may use the same name.
-        let number = NUMBER.fetch_add(1, Ordering::Relaxed);
-        let path = std::env::temp_dir().join(format!("bulge-cli-{name}-{}-{number}", std::process::id()));
-        let _ = std::fs::remove_dir_all(&path);
-        std::fs::create_dir_all(&path).unwrap();
-        Self(path)
+        let folder = tempfile::Builder::new().prefix(&format!("bulge-cli-{name}-")).tempdir().unwrap();
+        Self(folder.path().to_owned(), folder)
     }
 
     pub(crate) fn write(&self, name: &str, text: &str) -> String {
@@ -37,12 +33,6 @@ impl Folder {
         let mut names: Vec<String> = entries.map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
         names.sort();
         names
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_dir_all(&self.0);
     }
 }
 

@@ -19,9 +19,8 @@ pub(crate) fn pulling(
     approach: Approach,
 ) -> Result<Response, MuscleWithEffectsError> {
     let found = muscle.solve(Pressure::pa(pressure_pa), Given::Contraction(contraction), approach)?;
-    // Effects may turn the pull of the equilibrium into a push. Rounding may as well, at the limit.
-    let scale = pressure_pa * muscle.parts().radius.powi(2);
-    if found.force_n < -1e-9 * scale {
+    // Effects may turn the pull of the equilibrium into a push.
+    if !found.pulls(pressure_pa * muscle.parts().radius.powi(2)) {
         return Err(FibreError::WouldPush { contraction, force_n: found.force_n }.into());
     }
     Ok(found)

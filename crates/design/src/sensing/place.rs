@@ -6,6 +6,7 @@
 //! best centre. A golden section finds the optimum of a unimodal function; the scan brackets it. The shapes
 //! of the muscle are computed once, for all zones.
 
+use bulge_numerics::minimum::golden;
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -13,8 +14,6 @@ use super::sensor::{Pose, Sensor};
 use super::winding::number;
 use super::{Curve, Range, Reading, SensingError, Winding};
 
-/// (sqrt(5) - 1)/2.
-const GOLDEN: f64 = 0.618_033_988_749_894_9;
 /// Width of the bracket, as a fraction of the fibre length, at which a golden section ends.
 const ENOUGH: f64 = 1e-5;
 /// Centres tried for each width between those of the scan.
@@ -196,7 +195,7 @@ impl Sensor {
                 (0..CENTRES).map(|i| try_centre(low + (high - low) * i as f64 / last)).collect();
             refined_centre(&zones, try_centre, |place| search.cost(place))
         };
-        golden(best, around, |place| place.width, at, |place| search.cost(place))
+        golden(best, around, ENOUGH, |place| (place.width, search.cost(place)), at)
     }
 
     fn try_zone(&self, search: &Search, poses: &[Pose], centre: f64, width: f64) -> Place {
@@ -246,36 +245,7 @@ fn refined_centre(row: &[Place], at: impl Fn(f64) -> Place, cost: impl Fn(&Place
         return row[i];
     }
     let around = [row[i.saturating_sub(1)].centre, row[(i + 1).min(row.len() - 1)].centre];
-    golden(row[i], around, |place| place.centre, at, cost)
-}
-
-/// Golden section that starts from a point inside (or at an end of) a bracket and never loses the best point.
-/// It divides the longer side of the bracket; the worse point becomes the new end.
-fn golden(
-    mut best: Place,
-    [mut low, mut high]: [f64; 2],
-    coordinate: impl Fn(&Place) -> f64,
-    at: impl Fn(f64) -> Place,
-    cost: impl Fn(&Place) -> f64,
-) -> Place {
-    while high - low > ENOUGH {
-        let middle = coordinate(&best);
-        let upwards = high - middle > middle - low;
-        let far = if upwards { high } else { low };
-        let tried = at(far + GOLDEN * (middle - far));
-        let beyond = coordinate(&tried);
-        let wins = cost(&tried) < cost(&best);
-        match (wins, upwards) {
-            (true, true) => low = middle,
-            (true, false) => high = middle,
-            (false, true) => high = beyond,
-            (false, false) => low = beyond,
-        }
-        if wins {
-            best = tried;
-        }
-    }
-    best
+    golden(row[i], around, ENOUGH, |place| (place.centre, cost(place)), at)
 }
 
 fn no_place(search: &Search, scanned: &[Place]) -> SensingError {

@@ -1,7 +1,6 @@
 //! The search for lengths and pressures.
 
-use argmin::core::{CostFunction, Executor};
-use argmin::solver::brent::BrentOpt;
+use bulge_numerics::minimum::golden;
 use bulge_numerics::root::illinois;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -56,8 +55,8 @@ pub struct Sizing {
 
 /// Relative tolerance of a length.
 const LENGTH_TOLERANCE: f64 = 1e-10;
-/// Iterations of a compromise.
-const MOST_ITERATIONS: u64 = 60;
+/// The same of a compromise, which is flat.
+const COMPROMISE_TOLERANCE: f64 = 1e-6;
 
 /// Muscles, lengths and pressures that carry a load, ranked. Parallel; the same result on any number of threads.
 ///
@@ -296,33 +295,20 @@ impl Task<'_> {
         if longest <= shortest * (1.0 + 1e-9) {
             return Ok(shortest);
         }
-        let solver = BrentOpt::new(shortest.ln(), longest.ln()).set_tolerance(1e-6, 1e-7);
-        let run =
-            Executor::new(Cost(&cost), solver).configure(|state| state.max_iters(MOST_ITERATIONS)).run();
-        let best = match run {
-            Ok(run) => run.state.best_param.map_or(shortest, f64::exp),
-            Err(error) => return Err(error.downcast().unwrap_or(SizeError::NoForce)),
+        let mut failed = None;
+        let at = |log: f64| {
+            let found = cost(log.exp()).unwrap_or_else(|error| {
+                failed.get_or_insert(error);
+                f64::INFINITY
+            });
+            (log, found)
         };
-        // It never looks at the ends themselves.
-        let mut least = (cost(best)?, best);
-        for end in [shortest, longest] {
-            let found = cost(end)?;
-            if found < least.0 {
-                least = (found, end);
-            }
+        let start = (shortest.ln(), cost(shortest)?);
+        let (log, least) = golden(start, [start.0, longest.ln()], COMPROMISE_TOLERANCE, |place| *place, at);
+        if let Some(error) = failed {
+            return Err(error);
         }
-        Ok(least.1)
-    }
-}
-
-/// A cost over the logarithm of the length.
-struct Cost<F>(F);
-
-impl<F: Fn(f64) -> Result<f64, SizeError>> CostFunction for Cost<F> {
-    type Param = f64;
-    type Output = f64;
-
-    fn cost(&self, log: &f64) -> Result<f64, argmin::core::Error> {
-        Ok((self.0)(log.exp())?)
+        // It never looks at the upper end itself.
+        Ok(if cost(longest)? < least { longest } else { log.exp() })
     }
 }

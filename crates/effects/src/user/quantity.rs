@@ -3,7 +3,7 @@
 use super::EffectFileError;
 use super::value::Table;
 use bulge_muscles::Dimension;
-use bulge_muscles::units::{self, Any, AnyUnitError};
+use bulge_muscles::units::{self, Any, UnitError};
 use std::ops::Range;
 use toml::Spanned;
 use toml::de::DeValue;
@@ -104,7 +104,7 @@ impl Quantity<'_> {
         }
     }
 
-    fn no_number(&self, key: &str, value: &Spanned<DeValue<'_>>, error: &AnyUnitError) -> EffectFileError {
+    fn no_number(&self, key: &str, value: &Spanned<DeValue<'_>>, error: &UnitError) -> EffectFileError {
         self.table.error(value.span(), error.to_string(), format!("write `{}`", self.example(key)))
     }
 

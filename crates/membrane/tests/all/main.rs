@@ -2,7 +2,6 @@
 //! each part.
 
 mod ends;
+mod equilibria;
 mod readers;
 mod refusals;
-mod triangles;
-mod verification;

@@ -1,9 +1,6 @@
 //! Breakdown of the error: mean and RMS error by pressure, contraction, direction, rate, time, sweep and
 //! specimen, before and after.
 
-use bulge_inference::{Bin, Breakdown, Comparison};
-use plotters::style::RGBColor;
-
 use crate::PlotError;
 use crate::axis::Axis;
 use crate::comparison::legend::{self, Mark};
@@ -12,7 +9,8 @@ use crate::comparison::panel::{BELOW, LEFT, Panel, columns};
 use crate::comparison::svg::{Anchor, Stroke, Style, Svg, TEXT, name_fitted};
 use crate::comparison::wording::{has_effects, named, names, negligible_n, pulls, sentence};
 use crate::comparison::{Plot, WIDTH};
-use crate::palette::{ALERT, FIRST, GRID, INK, LAST};
+use crate::palette::{ALERT, FIRST, GRID, INK, LAST, Rgb};
+use bulge_inference::{Bin, Breakdown, Comparison};
 
 /// Most rows of a plot of named groups.
 const MOST_ROWS: usize = 40;
@@ -170,7 +168,7 @@ impl Kind {
     }
 
     /// Errors of one group with their colours.
-    fn errors(self, bin: &Bin, has_effects: bool) -> Vec<(f64, RGBColor)> {
+    fn errors(self, bin: &Bin, has_effects: bool) -> Vec<(f64, Rgb)> {
         let both = if self == Self::Rms { bin.rmse_n } else { bin.bias_n };
         let all = [(both[0], FIRST), (both[1], LAST)];
         match (self, has_effects) {
@@ -193,8 +191,8 @@ impl Kind {
     /// Axis of the errors, which includes zero.
     fn axis(self, comparison: &Comparison, by: &Breakdown) -> Result<Axis, PlotError> {
         let errors = || by.bins.iter().flat_map(|bin| self.errors(bin, has_effects(comparison)));
-        let values = || errors().map(|(error, _)| error).chain([0.0]).chain(self.floors(comparison));
-        Axis::with_intervals(values(), 4.0).ok_or_else(|| PlotError::span(self.quantity(), values()))
+        let values = errors().map(|(error, _)| error).chain([0.0]).chain(self.floors(comparison));
+        Axis::few(self.quantity(), 4.0, values)
     }
 }
 

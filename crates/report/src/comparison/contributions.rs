@@ -1,30 +1,28 @@
 //! Contribution of each effect to the force: areas stacked on zero, against the misfit of the base.
 
-use bulge_inference::{Comparison, Stack};
-use plotters::style::RGBColor;
-
 use crate::PlotError;
 use crate::axis::Axis;
 use crate::comparison::legend::{self, Mark};
-use crate::comparison::levels::spread;
+use crate::comparison::levels::{left_out, spread};
 use crate::comparison::number::{bar, newton};
 use crate::comparison::panel::{BELOW, Panel, columns};
 use crate::comparison::svg::{Stroke, Svg, TEXT, fitted};
 use crate::comparison::wording::effect_title;
 use crate::comparison::{Plot, WIDTH};
-use crate::palette::{CATEGORIES, INK};
+use crate::palette::{CATEGORIES, INK, Rgb};
+use bulge_inference::{Comparison, Stack};
 
 /// Most pressure levels, drawn side by side.
 const LEVELS: usize = 3;
 const HEAD: f64 = 30.0;
 const HEIGHT: f64 = 280.0;
-/// Colour of the remaining effects together.
-const REST: RGBColor = RGBColor(200, 200, 200);
+/// The rest of the effects together.
+const REST: Rgb = Rgb(200, 200, 200);
 
 /// An effect, or the sum of the remaining ones, with its size over all levels.
 struct Share {
     name: String,
-    colour: RGBColor,
+    colour: Rgb,
     effects: Vec<String>,
 }
 
@@ -48,18 +46,13 @@ pub(crate) fn plot(comparison: &Comparison) -> Result<Option<Plot>, PlotError> {
     legend::draw(&mut svg, (6.0, 2.0), WIDTH - 20.0, &entries);
     let y = upwards(&chosen, &shares)?;
     for (stack, (left, width)) in chosen.iter().zip(columns(chosen.len(), WIDTH)) {
-        let across = || chosen.iter().flat_map(|s| s.contraction.iter().map(|c| 100.0 * c));
-        let x = Axis::with_intervals(across(), 5.0)
-            .ok_or_else(|| PlotError::span("contraction [%]", across()))?;
+        let across = chosen.iter().flat_map(|s| s.contraction.iter().map(|c| 100.0 * c));
+        let x = Axis::few("contraction [%]", 5.0, across)?;
         let panel = Panel { x, y, left, top: start + HEAD, width, height: HEIGHT };
         panel.draw(&mut svg, &bar(stack.pressure_pa), "contraction [%]", "contribution [N]");
         draw(&mut svg, &panel, stack, &shares);
     }
-    let left_out = if chosen.len() < stacks.len() {
-        format!(" Shown are {} of {} pressure levels.", chosen.len(), stacks.len())
-    } else {
-        String::new()
-    };
+    let left_out = left_out(chosen.len(), stacks.len(), "pressure levels");
     let (both, friction) = if comparison.data.is_path {
         let friction = " Friction adds as much on one branch as it takes on the other, so it is small here.";
         (", averaged over both directions", friction)
@@ -151,8 +144,7 @@ fn upwards(stacks: &[&Stack], shares: &[Share]) -> Result<Axis, PlotError> {
     let missed = stacks.iter().flat_map(|s| s.measured_n.iter().zip(&s.base_n).map(|(m, b)| m - b));
     let edges = stacks.iter().flat_map(|s| edges(s, shares)).flatten().flat_map(|(a, b)| [a, b]);
     let values: Vec<f64> = missed.chain(edges).chain([0.0]).collect();
-    Axis::around(values.iter().copied())
-        .ok_or_else(|| PlotError::span("contribution [N]", values.iter().copied()))
+    Axis::of("contribution [N]", values.iter().copied())
 }
 
 fn draw(svg: &mut Svg, panel: &Panel, stack: &Stack, shares: &[Share]) {

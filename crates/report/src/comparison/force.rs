@@ -6,7 +6,7 @@ use crate::PlotError;
 use crate::axis::Axis;
 use crate::comparison::held_length;
 use crate::comparison::legend::{self, Mark};
-use crate::comparison::levels::{Shown, specimens};
+use crate::comparison::levels::{Shown, left_out, specimens};
 use crate::comparison::number::{bar, newton};
 use crate::comparison::panel::{BELOW, Panel, columns};
 use crate::comparison::svg::{BOLD, Stroke, Svg, name_fitted};
@@ -34,38 +34,15 @@ pub(crate) fn plot(comparison: &Comparison) -> Result<Option<Plot>, PlotError> {
     let all = specimens(curves.iter().map(|curve| &curve.specimen));
     let names = &all[..all.len().min(SPECIMENS)];
     let points = || curves.iter().flat_map(|curve| &curve.points);
-    let x = axis("contraction [%]", points().map(|p| 100.0 * p.contraction))?;
-    let y = axis("force [N]", points().flat_map(|p| [p.measured_n, p.first_n, p.last_n]).chain([0.0]))?;
-    let across = if names.len() == 1 { 1 } else { 2 };
-    let height = if names.len() == 1 { 380.0 } else { 250.0 };
-    let entries = entries(&shown, has_effects(comparison));
-    let start = legend::height(&entries, WIDTH - 20.0) + 6.0;
-    let head = if names.len() == 1 { 10.0 } else { 30.0 };
-    let rows = names.len().div_ceil(across);
-    let row = head + height + BELOW;
-    let mut svg = Svg::new("force", WIDTH, start + row * rows as f64);
-    legend::draw(&mut svg, (6.0, 2.0), WIDTH - 20.0, &entries);
-    let columns = columns(across, WIDTH);
-    for (i, name) in names.iter().enumerate() {
-        let (left, width) = columns[i % across];
-        let top = start + row * (i / across) as f64 + head;
-        let panel = Panel { x, y, left, top, width, height };
-        let heading = if names.len() == 1 {
-            String::new()
-        } else {
-            name_fitted(&format!("specimen {name}"), BOLD, width)
-        };
-        panel.draw(&mut svg, &heading, "contraction [%]", "force [N]");
-        let of_specimen = curves.iter().filter(|curve| curve.specimen == *name);
-        for curve in of_specimen {
-            draw_curve(&mut svg, &panel, curve, &shown, has_effects(comparison));
+    let x = Axis::of("contraction [%]", points().map(|p| 100.0 * p.contraction))?;
+    let y = Axis::of("force [N]", points().flat_map(|p| [p.measured_n, p.first_n, p.last_n]).chain([0.0]))?;
+    let entries = shown.entries(has_effects(comparison));
+    let svg = by_specimen(names, &entries, (x, "contraction [%]"), y, |svg, panel, name| {
+        for curve in curves.iter().filter(|curve| curve.specimen == name) {
+            draw_curve(svg, panel, curve, &shown, has_effects(comparison));
         }
-    }
-    let specimens = if names.len() < all.len() {
-        format!(" Shown are {} of {} specimens.", names.len(), all.len())
-    } else {
-        String::new()
-    };
+    });
+    let specimens = left_out(names.len(), all.len(), "specimens");
     Ok(Some(Plot {
         name: "force",
         title: "Force against contraction".to_owned(),
@@ -79,14 +56,32 @@ pub(crate) fn plot(comparison: &Comparison) -> Result<Option<Plot>, PlotError> {
     }))
 }
 
-fn axis(quantity: &'static str, values: impl Iterator<Item = f64> + Clone) -> Result<Axis, PlotError> {
-    Axis::around(values.clone()).ok_or_else(|| PlotError::span(quantity, values))
-}
-
-fn entries(shown: &Shown, has_effects: bool) -> Vec<(Mark, String)> {
-    let mut entries = legend::models(has_effects);
-    entries.extend(shown.named().into_iter().map(|(colour, name)| (Mark::Box(colour), name)));
-    entries
+/// Forces in one panel for each specimen, under a legend.
+pub(super) fn by_specimen(
+    names: &[&str],
+    entries: &[(Mark, String)],
+    (x, across): (Axis, &str),
+    y: Axis,
+    draw: impl Fn(&mut Svg, &Panel, &str),
+) -> Svg {
+    let (in_a_row, height, head) = if names.len() == 1 { (1, 380.0, 10.0) } else { (2, 250.0, 30.0) };
+    let start = legend::height(entries, WIDTH - 20.0) + 6.0;
+    let row = head + height + BELOW;
+    let mut svg = Svg::new("force", WIDTH, start + row * names.len().div_ceil(in_a_row) as f64);
+    legend::draw(&mut svg, (6.0, 2.0), WIDTH - 20.0, entries);
+    let columns = columns(in_a_row, WIDTH);
+    for (i, name) in names.iter().enumerate() {
+        let (left, width) = columns[i % in_a_row];
+        let panel = Panel { x, y, left, top: start + row * (i / in_a_row) as f64 + head, width, height };
+        let heading = if names.len() == 1 {
+            String::new()
+        } else {
+            name_fitted(&format!("specimen {name}"), BOLD, width)
+        };
+        panel.draw(&mut svg, &heading, across, "force [N]");
+        draw(&mut svg, &panel, name);
+    }
+    svg
 }
 
 fn draw_curve(svg: &mut Svg, panel: &Panel, curve: &Curve, shown: &Shown, has_effects: bool) {

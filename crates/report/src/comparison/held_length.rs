@@ -1,19 +1,18 @@
 //! Force against pressure at constant lengths, for isometric tests.
 
-use bulge_inference::{Comparison, Curve, CurvePoint};
-use bulge_measurements::SweepKind;
-use plotters::style::RGBColor;
-
 use crate::PlotError;
 use crate::axis::Axis;
+use crate::comparison::Plot;
+use crate::comparison::force::by_specimen;
 use crate::comparison::legend::{self, Mark};
-use crate::comparison::levels::{specimens, spread};
+use crate::comparison::levels::{left_out, specimens, spread};
 use crate::comparison::number::percent;
-use crate::comparison::panel::{BELOW, Panel, columns};
-use crate::comparison::svg::{BOLD, Stroke, Svg, name_fitted};
+use crate::comparison::panel::Panel;
+use crate::comparison::svg::{Stroke, Svg};
 use crate::comparison::wording::has_effects;
-use crate::comparison::{Plot, WIDTH};
-use crate::palette;
+use crate::palette::{self, Rgb};
+use bulge_inference::{Comparison, Curve, CurvePoint};
+use bulge_measurements::SweepKind;
 
 /// Most lengths that are drawn, and most panels, one per specimen.
 const LENGTHS: usize = 8;
@@ -55,45 +54,23 @@ pub(crate) fn plot(comparison: &Comparison, curves: &[&Curve]) -> Result<Plot, P
     let shown = spread(lengths.len(), LENGTHS);
     let all = specimens(curves.iter().map(|curve| &curve.specimen));
     let names = &all[..all.len().min(SPECIMENS)];
-    let axis = |quantity, values: Vec<f64>| {
-        Axis::around(values.iter().copied()).ok_or_else(|| PlotError::span(quantity, values.iter().copied()))
-    };
-    let x = axis("pressure [bar]", points().map(|p| 1e-5 * p.pressure_pa).chain([0.0]).collect())?;
-    let y =
-        axis("force [N]", points().flat_map(|p| [p.measured_n, p.first_n, p.last_n]).chain([0.0]).collect())?;
+    let x = Axis::of("pressure [bar]", points().map(|p| 1e-5 * p.pressure_pa).chain([0.0]))?;
+    let y = Axis::of("force [N]", points().flat_map(|p| [p.measured_n, p.first_n, p.last_n]).chain([0.0]))?;
     let colour = |place: usize| palette::colour(shown.len() - 1 - place, shown.len());
     let mut entries = legend::models(has_effects(comparison));
     entries.extend(
         shown.iter().enumerate().map(|(i, length)| (Mark::Box(colour(i)), percent(lengths[*length]))),
     );
-    let (across, height, head) = if names.len() == 1 { (1, 380.0, 10.0) } else { (2, 250.0, 30.0) };
-    let start = legend::height(&entries, WIDTH - 20.0) + 6.0;
-    let row = head + height + BELOW;
-    let mut svg = Svg::new("force", WIDTH, start + row * names.len().div_ceil(across) as f64);
-    legend::draw(&mut svg, (6.0, 2.0), WIDTH - 20.0, &entries);
-    let columns = columns(across, WIDTH);
-    for (i, name) in names.iter().enumerate() {
-        let (left, width) = columns[i % across];
-        let panel = Panel { x, y, left, top: start + row * (i / across) as f64 + head, width, height };
-        let heading = if names.len() == 1 {
-            String::new()
-        } else {
-            name_fitted(&format!("specimen {name}"), BOLD, width)
-        };
-        panel.draw(&mut svg, &heading, "pressure [bar]", "force [N]");
+    let svg = by_specimen(names, &entries, (x, "pressure [bar]"), y, |svg, panel, name| {
         for (place, length) in shown.iter().enumerate() {
             let here = |point: &&CurvePoint| nearest(&lengths, point.contraction) == *length;
-            let of_specimen = curves.iter().filter(|curve| curve.specimen == *name);
+            let of_specimen = curves.iter().filter(|curve| curve.specimen == name);
             let held: Vec<CurvePoint> =
                 of_specimen.flat_map(|curve| &curve.points).filter(here).copied().collect();
-            draw(&mut svg, &panel, &held, colour(place), has_effects(comparison));
+            draw(svg, panel, &held, colour(place), has_effects(comparison));
         }
-    }
-    let left_out = if shown.len() < lengths.len() {
-        format!(" Shown are {} of {} lengths.", shown.len(), lengths.len())
-    } else {
-        String::new()
-    };
+    });
+    let left_out = left_out(shown.len(), lengths.len(), "lengths");
     Ok(Plot {
         name: "force",
         title: TITLE.to_owned(),
@@ -106,8 +83,8 @@ pub(crate) fn plot(comparison: &Comparison, curves: &[&Curve]) -> Result<Plot, P
     })
 }
 
-/// Draws the readings at one length, and the models on each branch in the order of pressure.
-fn draw(svg: &mut Svg, panel: &Panel, points: &[CurvePoint], colour: RGBColor, has_effects: bool) {
+/// Readings at one length, and the models on each branch in the order of the pressure.
+fn draw(svg: &mut Svg, panel: &Panel, points: &[CurvePoint], colour: Rgb, has_effects: bool) {
     let place = |point: &CurvePoint, force_n: f64| panel.at((1e-5 * point.pressure_pa, force_n));
     let dots: Vec<_> = points.iter().map(|p| place(p, p.measured_n)).collect();
     let (radius, opacity) = if dots.len() < 60 { (2.8, 0.8) } else { (2.6, 0.3) };

@@ -5,7 +5,7 @@ use bulge_inference::{Comparison, HeldLoad, HeldLoadPoint};
 use crate::PlotError;
 use crate::axis::Axis;
 use crate::comparison::legend::{self, Mark};
-use crate::comparison::levels::spread;
+use crate::comparison::levels::{left_out, spread};
 use crate::comparison::number::{newton, percent};
 use crate::comparison::panel::{BELOW, Panel, columns};
 use crate::comparison::svg::{Stroke, Svg};
@@ -35,10 +35,9 @@ pub(crate) fn plot(comparison: &Comparison) -> Result<Option<Plot>, PlotError> {
     let loads = loads(&by_load);
     let shown: Vec<&[&HeldLoad]> = spread(loads.len(), LOADS).into_iter().map(|i| loads[i]).collect();
     let points = || shown.iter().flat_map(|load| load.iter()).flat_map(|held| &held.points);
-    let across = || points().map(|p| p.pressure_pa / 1e5);
-    let up = || points().flat_map(|p| [p.contraction, p.first, p.last]).map(|c| 100.0 * c);
-    let x = Axis::around(across()).ok_or_else(|| PlotError::span("pressure [bar]", across()))?;
-    let y = Axis::around(up()).ok_or_else(|| PlotError::span("contraction [%]", up()))?;
+    let up = points().flat_map(|p| [p.contraction, p.first, p.last]).map(|c| 100.0 * c);
+    let x = Axis::of("pressure [bar]", points().map(|p| p.pressure_pa / 1e5))?;
+    let y = Axis::of("contraction [%]", up)?;
     let mut entries = legend::models(has_effects(comparison));
     let colour = |place: usize| palette::colour(place, shown.len());
     entries
@@ -61,11 +60,7 @@ pub(crate) fn plot(comparison: &Comparison) -> Result<Option<Plot>, PlotError> {
             svg.polyline(&line(|p| p.last), Stroke::solid(colour(place), 1.6));
         }
     }
-    let left_out = if shown.len() < loads.len() {
-        format!(" Shown are {} of {} loads.", shown.len(), loads.len())
-    } else {
-        String::new()
-    };
+    let left_out = left_out(shown.len(), loads.len(), "loads");
     Ok(Some(Plot {
         name: "isotonic",
         title: TITLE.to_owned(),

@@ -78,11 +78,8 @@ fn caption(comparison: &Comparison) -> String {
 }
 
 fn axis(rungs: &[Rung], floor: Option<f64>) -> Result<Axis, PlotError> {
-    let values = || {
-        let errors = rungs.iter().flat_map(|rung| [Some(rung.rmse_n), rung.held_out_rmse_n]).flatten();
-        errors.chain(floor).chain([0.0])
-    };
-    Axis::around(values()).ok_or_else(|| PlotError::span("RMS error [N]", values()))
+    let errors = rungs.iter().flat_map(|rung| [Some(rung.rmse_n), rung.held_out_rmse_n]).flatten();
+    Axis::of("RMS error [N]", errors.chain(floor).chain([0.0]))
 }
 
 fn entries(rungs: &[Rung], has_floor: bool) -> Vec<(Mark, String)> {

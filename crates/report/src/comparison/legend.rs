@@ -1,9 +1,7 @@
 //! A legend as a row of marks with labels, wrapped at the edge of the drawing.
 
-use plotters::style::RGBColor;
-
 use crate::comparison::svg::{Anchor, Stroke, Style, Svg, TEXT, width};
-use crate::palette::{INK, SOFT_INK};
+use crate::palette::{INK, Rgb, SOFT_INK};
 
 /// The mark before a label.
 #[derive(Debug, Clone, Copy)]
@@ -11,11 +9,11 @@ pub(crate) enum Mark {
     /// A line.
     Line(Stroke),
     /// A dot.
-    Dot(RGBColor),
+    Dot(Rgb),
     /// A diamond.
-    Diamond(RGBColor),
+    Diamond(Rgb),
     /// A filled rectangle.
-    Box(RGBColor),
+    Box(Rgb),
 }
 
 /// Entries of the readings, the base and, if there are effects, the last model: the curves of a comparison.

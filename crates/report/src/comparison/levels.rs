@@ -1,9 +1,8 @@
 //! Choice and colours of the pressure levels, and how specimens share a plot.
 
-use plotters::style::RGBColor;
-
+use crate::comparison::legend::{self, Mark};
 use crate::comparison::number::bar;
-use crate::palette;
+use crate::palette::{self, Rgb};
 
 /// At most `most` indices of `count`, evenly spread, including the first and the last.
 pub(crate) fn spread(count: usize, most: usize) -> Vec<usize> {
@@ -40,7 +39,12 @@ pub(crate) fn specimens<'a>(names: impl Iterator<Item = &'a String>) -> Vec<&'a 
     found
 }
 
-/// The levels shown in a plot, with their colours.
+/// A sentence where not all are shown.
+pub(crate) fn left_out(shown: usize, all: usize, what: &str) -> String {
+    if shown < all { format!(" Shown are {shown} of {all} {what}.") } else { String::new() }
+}
+
+/// The levels of a plot that are shown, with their colours.
 pub(crate) struct Shown {
     levels: Vec<f64>,
     /// Total number of levels.
@@ -55,24 +59,21 @@ impl Shown {
         Self { levels, of: all.len() }
     }
 
-    /// Colour of a pressure; `None` if it isn't shown.
-    pub(crate) fn colour(&self, pressure_pa: f64) -> Option<RGBColor> {
+    /// Colour of a pressure; none if it isn't shown.
+    pub(crate) fn colour(&self, pressure_pa: f64) -> Option<Rgb> {
         let place = self.levels.iter().position(|level| same(*level, pressure_pa))?;
         Some(palette::colour(place, self.levels.len()))
     }
 
-    /// Levels with their colours and names, highest first, which is the usual order of the curves.
-    pub(crate) fn named(&self) -> Vec<(RGBColor, String)> {
-        self.levels.iter().rev().filter_map(|p| Some((self.colour(*p)?, bar(*p)))).collect()
+    /// Entries of a legend: the models, then the levels, highest first as the curves mostly lie.
+    pub(crate) fn entries(&self, has_effects: bool) -> Vec<(Mark, String)> {
+        let levels = self.levels.iter().rev().filter_map(|p| Some((Mark::Box(self.colour(*p)?), bar(*p))));
+        legend::models(has_effects).into_iter().chain(levels).collect()
     }
 
     /// Remark of a caption about levels that aren't shown.
     pub(crate) fn caption(&self) -> String {
-        if self.levels.len() < self.of {
-            format!(" Shown are {} of {} pressure levels.", self.levels.len(), self.of)
-        } else {
-            String::new()
-        }
+        left_out(self.levels.len(), self.of, "pressure levels")
     }
 }
 
@@ -101,6 +102,6 @@ mod tests {
         assert_eq!((shown.of, shown.levels.as_slice()), (3, &[1e5, 3e5][..]));
         assert!(shown.colour(1.000_01e5).is_some() && shown.colour(2e5).is_none());
         assert_eq!(shown.caption(), " Shown are 2 of 3 pressure levels.");
-        assert_eq!(shown.named()[0].1, "3 bar");
+        assert_eq!(shown.entries(false)[2].1, "3 bar");
     }
 }

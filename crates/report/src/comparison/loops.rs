@@ -5,8 +5,8 @@ use bulge_measurements::SweepKind;
 
 use crate::PlotError;
 use crate::axis::Axis;
-use crate::comparison::legend::{self, Mark};
-use crate::comparison::levels::{Shown, specimens};
+use crate::comparison::legend;
+use crate::comparison::levels::{Shown, left_out, specimens};
 use crate::comparison::number::newton;
 use crate::comparison::panel::{BELOW, Panel, columns};
 use crate::comparison::svg::{BOLD, Stroke, Svg, name_fitted};
@@ -32,7 +32,7 @@ pub(crate) fn plot(comparison: &Comparison) -> Result<Option<Plot>, PlotError> {
     let shown = Shown::new(loops.iter().map(|gap| gap.pressure_pa), LEVELS);
     let all = specimens(loops.iter().map(|gap| &gap.specimen));
     let names = &all[..all.len().min(SPECIMENS)];
-    let entries = entries(&shown, has_effects(comparison));
+    let entries = shown.entries(has_effects(comparison));
     let start = legend::height(&entries, WIDTH - 20.0) + 6.0;
     let row = HEAD + HEIGHT + BELOW;
     let mut svg = Svg::new("loops", WIDTH, start + row * names.len() as f64);
@@ -49,11 +49,7 @@ pub(crate) fn plot(comparison: &Comparison) -> Result<Option<Plot>, PlotError> {
             }
         }
     }
-    let left_out = if names.len() < all.len() {
-        format!(" Shown are {} of {} specimens.", names.len(), all.len())
-    } else {
-        String::new()
-    };
+    let left_out = left_out(names.len(), all.len(), "specimens");
     Ok(Some(Plot {
         name: "loops",
         title: "Mean and half-gap of the loops".to_owned(),
@@ -90,19 +86,9 @@ fn values(gap: &LoopGap, kind: usize) -> [&Vec<f64>; 3] {
 }
 
 fn axes(loops: &[&LoopGap], kind: usize) -> Result<(Axis, Axis), PlotError> {
-    let across = || loops.iter().flat_map(|gap| gap.contraction.iter().map(|c| 100.0 * c));
-    let upwards = || loops.iter().flat_map(|gap| values(gap, kind)).flatten().copied().chain([0.0]);
-    let x =
-        Axis::with_intervals(across(), 6.0).ok_or_else(|| PlotError::span("contraction [%]", across()))?;
-    let y =
-        Axis::with_intervals(upwards(), 6.0).ok_or_else(|| PlotError::span(QUANTITIES[kind], upwards()))?;
-    Ok((x, y))
-}
-
-fn entries(shown: &Shown, has_effects: bool) -> Vec<(Mark, String)> {
-    let mut entries = legend::models(has_effects);
-    entries.extend(shown.named().into_iter().map(|(colour, name)| (Mark::Box(colour), name)));
-    entries
+    let across = loops.iter().flat_map(|gap| gap.contraction.iter().map(|c| 100.0 * c));
+    let upwards = loops.iter().flat_map(|gap| values(gap, kind)).flatten().copied().chain([0.0]);
+    Ok((Axis::few("contraction [%]", 6.0, across)?, Axis::few(QUANTITIES[kind], 6.0, upwards)?))
 }
 
 fn draw(svg: &mut Svg, panel: &Panel, gap: &LoopGap, kind: usize, shown: &Shown, has_effects: bool) {

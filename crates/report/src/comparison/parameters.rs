@@ -9,14 +9,12 @@ use crate::comparison::parameters_table::{interval, label, value};
 use crate::comparison::svg::{Anchor, Stroke, Style, Svg, TEXT, fitted};
 use crate::comparison::wording::last_fit;
 use crate::comparison::{Plot, WIDTH};
-use crate::palette::{ALERT, GRID, INK, LAST, SOFT_INK};
-use plotters::style::RGBColor;
-
+use crate::palette::{ALERT, GRID, INK, LAST, Rgb, SOFT_INK};
 const NAMES: f64 = 250.0;
 const NUMBERS: f64 = 250.0;
 /// Colour of a plausible range.
-const SHADE: RGBColor = RGBColor(222, 235, 222);
-/// Most that a scale extends beyond the plausible range, in widths of that range.
+const SHADE: Rgb = Rgb(222, 235, 222);
+/// How far a scale reaches beyond the plausible range, in widths of it.
 const BEYOND: f64 = 2.0;
 
 /// The plot; `None` if nothing was fitted.
@@ -68,8 +66,8 @@ fn ends(parameter: &Fitted) -> (f64, f64) {
     (least - margin, most + margin)
 }
 
-/// Colour of a value, by the remarks on it.
-fn colour(parameter: &Fitted) -> RGBColor {
+/// Colour of a value by what is to be said about it.
+fn colour(parameter: &Fitted) -> Rgb {
     if !parameter.plausible || parameter.at_bound.is_some() || !parameter.determined {
         ALERT
     } else if parameter.nuisance {
@@ -90,7 +88,7 @@ fn draw(svg: &mut Svg, parameter: &Fitted, (y, row): (f64, f64)) {
     let ink = colour(parameter);
     let name = fitted(&label(parameter), TEXT, NAMES - 20.0);
     svg.text((NAMES - 10.0, y), &name, Style::new(Anchor::End));
-    svg.rect((left, y - 0.4 * row), (right - left, 0.8 * row), RGBColor(248, 248, 248));
+    svg.rect((left, y - 0.4 * row), (right - left, 0.8 * row), Rgb(248, 248, 248));
     let [a, b] = parameter.plausible_range.map(place);
     svg.rect((a, y - 0.4 * row), (b - a, 0.8 * row), SHADE);
     svg.line((left, y), (right, y), Stroke::solid(GRID, 1.0));

@@ -1,14 +1,12 @@
 //! Mean residuals over pressure and contraction as coloured cells: one map per direction, before and after.
 
-use bulge_inference::{Comparison, ResidualMap};
-use plotters::style::{RGBColor, WHITE};
-
 use crate::PlotError;
 use crate::comparison::number::{bar, level, percent, three, ticks};
 use crate::comparison::svg::{Anchor, Stroke, Style, Svg, TEXT, width};
 use crate::comparison::wording::{has_effects, names, pulls, sentence};
 use crate::comparison::{Plot, WIDTH};
-use crate::palette::{INK, SOFT_INK, signed};
+use crate::palette::{INK, Rgb, SOFT_INK, WHITE, signed};
+use bulge_inference::{Comparison, ResidualMap};
 
 const LEFT: f64 = 64.0;
 const HEAD: f64 = 30.0;
@@ -150,7 +148,7 @@ impl Grid {
 fn draw_value(svg: &mut Svg, middle: (f64, f64), size: (f64, f64), value: f64, most: f64) {
     let words = cell(value, most);
     if width(&words, SMALL) + 3.0 < size.0 && size.1 >= 14.0 {
-        let colour: RGBColor = if (value / most).abs() > 0.7 { WHITE } else { INK };
+        let colour: Rgb = if (value / most).abs() > 0.7 { WHITE } else { INK };
         svg.text(middle, &words, Style::new(Anchor::Middle).size(SMALL).colour(colour));
     }
 }

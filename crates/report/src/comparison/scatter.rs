@@ -24,8 +24,8 @@ pub(super) fn plot(comparison: &Comparison) -> Result<Option<Plot>, PlotError> {
         return Ok(None);
     }
     let names = names(comparison);
-    let values = || rows.iter().flat_map(|row| row.iter().take(1 + names.len())).copied();
-    let axis = Axis::with_intervals(values(), 6.0).ok_or_else(|| PlotError::span("force [N]", values()))?;
+    let values = rows.iter().flat_map(|row| row.iter().take(1 + names.len())).copied();
+    let axis = Axis::few("force [N]", 6.0, values)?;
     let mut svg = Svg::new("scatter", WIDTH, HEAD + HEIGHT + BELOW);
     // A single panel is centred.
     let aside = if names.len() == 1 { 0.25 * WIDTH } else { 0.0 };

@@ -1,14 +1,11 @@
 //! A drawing as an SVG document: text remains text, lengths are in CSS pixels, and the same calls give the
 //! same bytes.
 //!
-//! Plotters draws one element for every mark, in whole units, and supports neither hatching nor tabular
-//! figures. A report contains thousands of marks and is read on paper.
+//! Marks of a kind share one element, and figures are tabular: a report holds thousands of marks and is read on paper.
 
 use std::fmt::{self, Write};
 
-use plotters::style::RGBColor;
-
-use crate::palette::{INK, hex};
+use crate::palette::{INK, Rgb, hex};
 
 /// Fonts that every system has in some form, with figures of equal width.
 const FONTS: &str = "system-ui, -apple-system, 'Segoe UI', Roboto, 'Helvetica Neue', Arial, sans-serif";
@@ -24,6 +21,7 @@ pub(crate) struct Svg {
     name: &'static str,
     width: f64,
     height: f64,
+    zoom: f64,
     body: String,
     hatched: bool,
 }
@@ -47,7 +45,7 @@ pub(crate) struct Style {
     /// Height of the font.
     pub(crate) size: f64,
     /// Colour.
-    pub(crate) colour: RGBColor,
+    pub(crate) colour: Rgb,
     /// Whether it is a heading.
     pub(crate) bold: bool,
 }
@@ -63,8 +61,8 @@ impl Style {
         Self { bold: true, ..self }
     }
 
-    /// The same style in another colour.
-    pub(crate) const fn colour(self, colour: RGBColor) -> Self {
+    /// The same in another colour.
+    pub(crate) const fn colour(self, colour: Rgb) -> Self {
         Self { colour, ..self }
     }
 
@@ -78,7 +76,7 @@ impl Style {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Stroke {
     /// Colour.
-    pub(crate) colour: RGBColor,
+    pub(crate) colour: Rgb,
     /// Width.
     pub(crate) width: f64,
     /// Lengths of dashes and gaps; `None` for a solid line.
@@ -87,12 +85,12 @@ pub(crate) struct Stroke {
 
 impl Stroke {
     /// A solid line.
-    pub(crate) const fn solid(colour: RGBColor, width: f64) -> Self {
+    pub(crate) const fn solid(colour: Rgb, width: f64) -> Self {
         Self { colour, width, dashes: None }
     }
 
     /// A dashed line.
-    pub(crate) const fn dashed(colour: RGBColor, width: f64) -> Self {
+    pub(crate) const fn dashed(colour: Rgb, width: f64) -> Self {
         Self { colour, width, dashes: Some("5 3") }
     }
 
@@ -105,7 +103,12 @@ impl Stroke {
 impl Svg {
     /// An empty drawing. `name` makes its ids unique among several drawings on one page.
     pub(crate) fn new(name: &'static str, width: f64, height: f64) -> Self {
-        Self { name, width, height, body: String::new(), hatched: false }
+        Self { name, width, height, zoom: 1.0, body: String::new(), hatched: false }
+    }
+
+    /// The same, shown so many times as large.
+    pub(crate) fn zoomed(self, zoom: f64) -> Self {
+        Self { zoom, ..self }
     }
 
     /// Adds markup.
@@ -164,15 +167,15 @@ impl Svg {
         ));
     }
 
-    /// Adds a filled area.
-    pub(crate) fn polygon(&mut self, points: &[(f64, f64)], fill: RGBColor) {
+    /// A filled area.
+    pub(crate) fn polygon(&mut self, points: &[(f64, f64)], fill: Rgb) {
         if points.len() >= 3 {
             self.put(format_args!("<polygon points=\"{}\" fill=\"{}\"/>\n", listed(points), hex(fill)));
         }
     }
 
-    /// Adds a transparent filled area.
-    pub(crate) fn veil(&mut self, points: &[(f64, f64)], fill: RGBColor, opacity: f64) {
+    /// A filled area through which one sees what lies below.
+    pub(crate) fn veil(&mut self, points: &[(f64, f64)], fill: Rgb, opacity: f64) {
         if points.len() >= 3 {
             self.put(format_args!(
                 "<polygon points=\"{}\" fill=\"{}\" fill-opacity=\"{}\"/>\n",
@@ -183,8 +186,8 @@ impl Svg {
         }
     }
 
-    /// Adds a filled rectangle; a negative size extends to the other side.
-    pub(crate) fn rect(&mut self, corner: (f64, f64), size: (f64, f64), fill: RGBColor) {
+    /// A filled rectangle; a negative size extends to the other side.
+    pub(crate) fn rect(&mut self, corner: (f64, f64), size: (f64, f64), fill: Rgb) {
         self.rectangle(corner, size, &hex(fill));
     }
 
@@ -205,8 +208,8 @@ impl Svg {
         ));
     }
 
-    /// Adds round dots, all in one element: lines of zero length with round caps.
-    pub(crate) fn dots(&mut self, points: &[(f64, f64)], radius: f64, colour: RGBColor, opacity: f64) {
+    /// Round dots, all in one element: lines of no length with round caps.
+    pub(crate) fn dots(&mut self, points: &[(f64, f64)], radius: f64, colour: Rgb, opacity: f64) {
         if points.is_empty() {
             return;
         }
@@ -221,8 +224,8 @@ impl Svg {
         ));
     }
 
-    /// Adds a diamond with a light edge, which stands out on bars.
-    pub(crate) fn diamond(&mut self, (x, y): (f64, f64), radius: f64, colour: RGBColor) {
+    /// A diamond with a light edge, which stands out on bars.
+    pub(crate) fn diamond(&mut self, (x, y): (f64, f64), radius: f64, colour: Rgb) {
         let points = [(x - radius, y), (x, y - radius), (x + radius, y), (x, y + radius)];
         self.put(format_args!(
             "<polygon points=\"{}\" fill=\"{}\" stroke=\"#FFFFFF\" stroke-width=\"1\"/>\n",
@@ -233,8 +236,8 @@ impl Svg {
 
     /// The document.
     pub(crate) fn finish(self, title: &str) -> String {
-        let Self { name, width, height, body, hatched } = self;
-        let (width, height) = (short(width), short(height));
+        let Self { name, width, height, zoom, body, hatched } = self;
+        let [across, down, width, height] = [zoom * width, zoom * height, width, height].map(short);
         let hatch = if hatched {
             format!(
                 "<defs><pattern id=\"{name}-hatch\" width=\"6\" height=\"6\" patternUnits=\"userSpaceOnUse\">\
@@ -246,7 +249,7 @@ impl Svg {
         };
         let title = escape(title);
         format!(
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" \
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{across}\" height=\"{down}\" viewBox=\"0 0 {width} {height}\" \
              role=\"img\" aria-label=\"{title}\" font-family=\"{FONTS}\" style=\"font-variant-numeric:tabular-nums\">\n\
              <rect width=\"100%\" height=\"100%\" fill=\"#FFFFFF\"/>\n{hatch}{body}</svg>\n"
         )

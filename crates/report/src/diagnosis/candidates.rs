@@ -1,8 +1,5 @@
 //! The evidence for each effect of the catalogue, as bars.
 
-use bulge_inference::{CandidateResult, Diagnosis};
-use plotters::style::RGBColor;
-
 use crate::PlotError;
 use crate::axis::Axis;
 use crate::comparison::legend::{self, Mark};
@@ -11,7 +8,8 @@ use crate::comparison::panel::Panel;
 use crate::comparison::svg::{Anchor, Stroke, Style, Svg, TEXT, name_fitted};
 use crate::comparison::wording::sentence;
 use crate::comparison::{Plot, WIDTH};
-use crate::palette::{ALERT, FIRST, GRID, LAST, SOFT_INK};
+use crate::palette::{ALERT, FIRST, GRID, LAST, Rgb, SOFT_INK};
+use bulge_inference::{CandidateResult, Diagnosis};
 
 /// Most bars.
 const MOST: usize = 28;
@@ -40,8 +38,7 @@ pub(super) fn plot(diagnosis: &Diagnosis) -> Result<Option<Plot>, PlotError> {
         return Ok(None);
     }
     let bars = || rows.iter().map(|row| row.log_evidence).filter(|e| e.is_finite()).map(|e| e.max(LEAST));
-    let values = || bars().chain([0.0]);
-    let x = Axis::around(values()).ok_or_else(|| PlotError::span("log evidence", values()))?;
+    let x = Axis::of("log evidence", bars().chain([0.0]))?;
     let entries = entries(rows);
     let top = legend::height(&entries, WIDTH - 20.0) + 12.0;
     let height = ROW * rows.len() as f64;
@@ -79,7 +76,7 @@ pub(super) fn plot(diagnosis: &Diagnosis) -> Result<Option<Plot>, PlotError> {
     }))
 }
 
-fn colour(status: &str) -> RGBColor {
+fn colour(status: &str) -> Rgb {
     match status {
         "confirmed" => LAST,
         "rival" => ALERT,

@@ -25,8 +25,7 @@ pub(super) fn plot(diagnosis: &Diagnosis) -> Result<Option<Plot>, PlotError> {
     if rows.is_empty() {
         return Ok(None);
     }
-    let values = || rows.iter().map(|row| 100.0 * row.share).chain([0.0]);
-    let x = Axis::with_intervals(values(), 5.0).ok_or_else(|| PlotError::span("share [%]", values()))?;
+    let x = Axis::few("share [%]", 5.0, rows.iter().map(|row| 100.0 * row.share).chain([0.0]))?;
     let height = ROW * rows.len() as f64;
     let panel = Panel { x, y: x, left: NAMES, top: TOP, width: WIDTH - NAMES - NUMBERS, height };
     let mut svg = Svg::new("where", WIDTH, TOP + height + 52.0);

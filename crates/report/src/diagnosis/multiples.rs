@@ -1,17 +1,15 @@
 //! Small panels over the contraction, one per pressure level, with a colour and a dash pattern for each
 //! direction of movement.
 
-use plotters::style::RGBColor;
-
 use crate::PlotError;
 use crate::axis::Axis;
 use crate::comparison::WIDTH;
 use crate::comparison::legend::{self, Mark};
-use crate::comparison::levels::{distinct, same, spread};
+use crate::comparison::levels::{distinct, left_out, same, spread};
 use crate::comparison::number::bar;
 use crate::comparison::panel::{BELOW, Panel, columns};
 use crate::comparison::svg::{Stroke, Svg};
-use crate::palette::{CATEGORIES, INK};
+use crate::palette::{CATEGORIES, INK, Rgb};
 
 /// Most panels.
 const LEVELS: usize = 6;
@@ -36,7 +34,7 @@ impl Piece<'_> {
 }
 
 /// Colour of a direction.
-pub(super) fn colour(direction: f64) -> RGBColor {
+pub(super) fn colour(direction: f64) -> Rgb {
     if direction > 0.0 {
         CATEGORIES[0]
     } else if direction < 0.0 {
@@ -88,12 +86,9 @@ pub(super) fn draw(
 ) -> Result<(String, String), PlotError> {
     let levels = distinct(pieces.iter().map(|piece| piece.pressure_pa));
     let shown: Vec<f64> = spread(levels.len(), LEVELS).into_iter().map(|i| levels[i]).collect();
-    let across = || pieces.iter().flat_map(|piece| piece.contraction.iter().map(|c| 100.0 * c));
-    let x =
-        Axis::with_intervals(across(), 4.0).ok_or_else(|| PlotError::span("contraction [%]", across()))?;
-    let upwards = values.chain([0.0]);
-    let y =
-        Axis::with_intervals(upwards.clone(), 5.0).ok_or_else(|| PlotError::span(frame.quantity, upwards))?;
+    let across = pieces.iter().flat_map(|piece| piece.contraction.iter().map(|c| 100.0 * c));
+    let x = Axis::few("contraction [%]", 4.0, across)?;
+    let y = Axis::few(frame.quantity, 5.0, values.chain([0.0]))?;
     let side_by_side = if shown.len() == 4 { 2 } else { shown.len().clamp(1, 3) };
     let columns = columns(side_by_side, WIDTH);
     let top = legend::height(frame.entries, WIDTH - 20.0) + 4.0;
@@ -110,10 +105,5 @@ pub(super) fn draw(
             draw_piece(&mut svg, &panel, place);
         }
     }
-    let left_out = if shown.len() < levels.len() {
-        format!(" Shown are {} of {} pressure levels.", shown.len(), levels.len())
-    } else {
-        String::new()
-    };
-    Ok((svg.finish(frame.title), left_out))
+    Ok((svg.finish(frame.title), left_out(shown.len(), levels.len(), "pressure levels")))
 }

@@ -44,10 +44,8 @@ pub(super) fn plot(diagnosis: &Diagnosis) -> Result<Option<Plot>, PlotError> {
         return Ok(None);
     }
     let drawn = |rival: &RivalResult| rival.separation.clamp(0.0, FAR);
-    let values = || {
-        groups.iter().flat_map(|(_, rivals)| rivals.iter().map(|r| drawn(r))).chain([0.0, 1.5 * SEPARATION])
-    };
-    let x = Axis::around(values()).ok_or_else(|| PlotError::span("separation [sigma]", values()))?;
+    let values = groups.iter().flat_map(|(_, rivals)| rivals.iter().map(|r| drawn(r)));
+    let x = Axis::of("separation [sigma]", values.chain([0.0, 1.5 * SEPARATION]))?;
     let entries = [
         (Mark::Box(ALERT), "in the class: not told apart".to_owned()),
         (Mark::Box(FIRST), "told apart".to_owned()),

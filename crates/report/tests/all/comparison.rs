@@ -2,13 +2,13 @@
 
 #![expect(clippy::unwrap_used, reason = "a test that can't be set up fails")]
 
+use crate::page::{check_page, check_plots, parsed, words};
 use crate::sample::{Recipe, bare, crowded, empty, hostile, rich, rows};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use bulge_inference::{Comparison, Rows};
 use bulge_report::PlotError;
 use bulge_report::comparison::plots;
-use roxmltree::{Document, ParsingOptions};
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 use std::collections::HashMap;
@@ -26,42 +26,6 @@ fn samples() -> [(&'static str, Comparison); 5] {
 /// The page without rows.
 fn html(comparison: &Comparison) -> Result<String, PlotError> {
     bulge_report::comparison::html(comparison, None)
-}
-
-/// The page as XML: it is written so that HTML and XML parsers can read it.
-fn parsed(html: &str) -> Document<'_> {
-    let options = ParsingOptions { allow_dtd: true, ..ParsingOptions::default() };
-    Document::parse_with_options(html, options).unwrap()
-}
-
-fn text(document: &Document<'_>) -> String {
-    let texts = document.descendants().filter(roxmltree::Node::is_text);
-    texts.filter_map(|node| node.text()).collect::<Vec<_>>().join(" ")
-}
-
-/// Coordinates and sizes of a drawing.
-fn numbers(document: &Document<'_>) -> Vec<f64> {
-    let of = ["x", "y", "x1", "y1", "x2", "y2", "width", "height"];
-    let attributes = document.descendants().flat_map(|node| node.attributes().collect::<Vec<_>>());
-    let plain = attributes.filter(|a| of.contains(&a.name())).filter_map(|a| a.value().parse().ok());
-    let lists = document.descendants().filter_map(|node| node.attribute("points"));
-    plain.chain(lists.flat_map(|list| list.split([' ', ',']).map(|v| v.parse().unwrap()))).collect()
-}
-
-#[test]
-fn every_plot_is_well_formed_and_within_its_frame() {
-    for (sample, comparison) in samples() {
-        for plot in plots(&comparison).unwrap() {
-            let document =
-                Document::parse(&plot.svg).unwrap_or_else(|e| panic!("{sample}, {}: {e}", plot.name));
-            let size = |name| document.root_element().attribute(name).unwrap().parse::<f64>().unwrap();
-            let most = size("width").max(size("height")) + 1.0;
-            assert!(size("width") > 100.0 && size("height") > 80.0, "{sample}, {}", plot.name);
-            let within = numbers(&document).into_iter().all(|v| (-1.0..=most).contains(&v));
-            assert!(within, "{sample}, {}: something lies outside", plot.name);
-            assert!(!plot.title.is_empty() && plot.caption.ends_with('.'), "{sample}, {}", plot.name);
-        }
-    }
 }
 
 #[test]
@@ -91,77 +55,10 @@ fn rich_data_have_all_plots_and_bare_data_those_that_there_are() {
 }
 
 #[test]
-fn every_page_is_well_formed_small_and_free_of_numbers_that_are_none() {
+fn pages_and_plots_keep_to_the_rules() {
     for (sample, comparison) in samples() {
-        let html = html(&comparison).unwrap();
-        assert!(html.len() < 3_000_000, "{sample}: {} bytes", html.len());
-        let document = parsed(&html);
-        let words = text(&document);
-        let words: Vec<&str> = words.split(|c: char| !c.is_alphanumeric()).collect();
-        for none in ["NaN", "nan", "inf", "Infinity", "null", "none", "undefined"] {
-            let style = document.descendants().any(|n| n.has_tag_name("style"));
-            // `none` is a keyword of style sheets.
-            assert!(none == "none" && style || !words.contains(&none), "{sample}: `{none}`");
-            assert!(!html.contains(&format!("\"{none}\"")) || none == "none", "{sample}: `{none}`");
-        }
-    }
-}
-
-#[test]
-fn a_page_asks_for_nothing_from_outside() {
-    for (sample, comparison) in samples() {
-        let html = html(&comparison).unwrap();
-        let drawings = html.matches("<svg ").count();
-        assert_eq!(
-            html.matches("http").count(),
-            drawings + 1,
-            "{sample}: beyond `http-equiv` and namespaces"
-        );
-        assert_eq!(html.matches("xmlns=\"http://www.w3.org/2000/svg\"").count(), drawings, "{sample}");
-        let policy = "default-src 'none'; style-src 'unsafe-inline'; img-src data:";
-        assert!(html.contains(policy), "{sample}");
-        let document = parsed(&html);
-        for node in document.descendants().filter(roxmltree::Node::is_element) {
-            let name = node.tag_name().name();
-            assert!(
-                !["script", "link", "img", "iframe", "object", "use", "image"].contains(&name),
-                "{sample}: {name}"
-            );
-            for attribute in node.attributes() {
-                assert!(!attribute.name().starts_with("on") && attribute.name() != "src", "{sample}: {name}");
-                assert!(attribute.name() != "href" || attribute.value().starts_with('#'), "{sample}: {name}");
-            }
-        }
-    }
-}
-
-#[test]
-fn links_and_ids_fit_together() {
-    for (sample, comparison) in samples() {
-        let html = html(&comparison).unwrap();
-        let document = parsed(&html);
-        let mut ids: Vec<&str> = document.descendants().filter_map(|n| n.attribute("id")).collect();
-        let all = ids.len();
-        ids.sort_unstable();
-        ids.dedup();
-        assert_eq!(ids.len(), all, "{sample}: an id occurs twice");
-        for target in document.descendants().filter_map(|n| n.attribute("href")) {
-            assert!(ids.contains(&target.trim_start_matches('#')), "{sample}: {target}");
-        }
-    }
-}
-
-#[test]
-fn each_section_begins_with_a_sentence() {
-    for (sample, comparison) in samples() {
-        let html = html(&comparison).unwrap();
-        let document = parsed(&html);
-        for section in document.descendants().filter(|n| n.has_tag_name("section")) {
-            let id = section.attribute("id").unwrap();
-            let lead = section.descendants().find(|n| n.attribute("class") == Some("lead"));
-            let lead = lead.unwrap_or_else(|| panic!("{sample}: section {id} has no sentence"));
-            assert!(lead.text().unwrap().trim().ends_with('.'), "{sample}: {id}: {:?}", lead.text());
-        }
+        check_page(sample, &html(&comparison).unwrap());
+        check_plots(sample, &plots(&comparison).unwrap());
     }
 }
 
@@ -208,7 +105,7 @@ fn every_number_of_the_ladder_is_on_the_page() {
 #[test]
 fn sentences_name_the_side_of_an_error() {
     let html = html(&rich(&Recipe::usual())).unwrap();
-    let words = text(&parsed(&html));
+    let words = words(&html);
     assert!(words.contains("At 3 bar the base pulls"), "pressure");
     assert!(
         words.contains("too hard on average"),
@@ -240,7 +137,7 @@ fn sentences_follow_the_numbers() {
     let words = |change: fn(&mut Comparison)| {
         let mut comparison = rich(&Recipe::usual());
         change(&mut comparison);
-        text(&parsed(&html(&comparison).unwrap()))
+        words(&html(&comparison).unwrap())
     };
     for (change, says) in [
         (
@@ -291,7 +188,7 @@ fn a_ladder_on_which_nothing_was_fitted_has_no_search() {
             fit.correlations.clear();
         }
     }
-    let words = text(&parsed(&html(&comparison).unwrap()));
+    let words = words(&html(&comparison).unwrap());
     assert!(words.contains("Nothing was fitted") && !words.contains("How the search ended"));
 }
 

@@ -3,4 +3,5 @@
 mod comparison;
 mod diagnosed;
 mod diagnosis;
+mod page;
 mod sample;

@@ -2,43 +2,20 @@
 
 use super::drawing::{Drawing, Shape};
 use super::{MembranePicture, arrays, check};
+use crate::xml;
 use std::fmt::Write as _;
-use vtkio::model::{
-    Attribute, Attributes, ByteOrder, CellType, Cells, DataSet, UnstructuredGridPiece, Version,
-    VertexNumbers, Vtk,
-};
-use vtkio::xml::Compressor;
+use vtkio::model::{Attribute, Attributes, CellType, Cells, DataSet, UnstructuredGridPiece, VertexNumbers};
 
 /// The bytes of a file, or the reason why it can't be encoded.
 pub(super) fn encode(drawing: Drawing, picture: &MembranePicture) -> Result<Vec<u8>, String> {
-    let vtk = Vtk {
-        version: Version::new_xml(1, 0),
-        title: String::new(),
-        byte_order: ByteOrder::LittleEndian,
-        data: DataSet::inline(piece(drawing, picture)),
-        file_path: None,
-    };
-    let file = vtk.try_into_xml_format(Compressor::ZLib, 6).map_err(|e| e.to_string())?;
-    // Written to memory first: vtkio doesn't notice a full disk.
-    let mut body = Vec::new();
-    file.write(&mut body).map_err(|e| e.to_string())?;
-    let body = String::from_utf8(body).map_err(|e| e.to_string())?;
-    let (head, tail) = body.split_once("<UnstructuredGrid>").ok_or("no UnstructuredGrid element")?;
     let fields = field_data(picture);
-    Ok(format!("<?xml version=\"1.0\"?>\n{head}<UnstructuredGrid>{fields}{tail}\n").into_bytes())
+    xml::bytes(DataSet::inline(piece(drawing, picture)), "UnstructuredGrid", &fields)
 }
 
-/// Field data, which vtkio can't write.
 fn field_data(picture: &MembranePicture) -> String {
-    let mut xml = String::from("<FieldData>");
-    // Writing to a String can't fail.
-    for (name, value) in check::numbers(picture.state, picture.time) {
-        let _ = write!(
-            xml,
-            r#"<DataArray type="Float64" Name="{name}" NumberOfTuples="1" format="ascii">{value:e}</DataArray>"#
-        );
-    }
+    let mut xml = xml::numbers(check::numbers(picture.state, picture.time));
     let unstable = picture.state.unstable;
+    // Writing to a String can't fail.
     let _ = write!(
         xml,
         r#"<DataArray type="Int64" Name="unstable" NumberOfTuples="1" format="ascii">{unstable}</DataArray>"#
@@ -53,7 +30,7 @@ fn field_data(picture: &MembranePicture) -> String {
         }
         xml.push_str("0 ");
     }
-    xml + "</Array></FieldData>"
+    xml + "</Array>"
 }
 
 fn piece(drawing: Drawing, picture: &MembranePicture) -> UnstructuredGridPiece {
