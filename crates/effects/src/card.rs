@@ -5,6 +5,11 @@ use serde::Serialize;
 
 use crate::mechanism::{Form, Mechanism};
 
+/// For [`Card::kind`]: an effect of pleated muscles alone.
+pub const PLEATED: Option<Kind> = Some(Kind::Pleated);
+/// For [`Card::kind`]: an effect of braided muscles alone.
+pub const BRAIDED: Option<Kind> = Some(Kind::Braided);
+
 /// Where in the chain from reading to reading an effect acts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]

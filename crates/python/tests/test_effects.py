@@ -183,3 +183,26 @@ def test_the_catalogue():
         assert pickle.loads(pickle.dumps(card)).to_dict() == card.to_dict()
     with pytest.raises(bulge.InputError, match="coulomb-friction"):
         bulge.effects("coulomb-frction")
+
+
+RUBBER = {"c10": bulge.Parameter("MPa", typical=0.3, low=0, high=3), "h": bulge.Parameter("mm", typical=2, low=0.5, high=5)}
+
+
+def test_a_rubber_of_ones_own_is_the_bladder():
+    """The bladder of the catalogue as an expression and as a function: the same force in the equilibrium."""
+
+    def energy(l1, l2, c10, h):
+        return h * c10 * (l1**2 + l2**2 + 1 / (l1 * l2) ** 2 - 3)
+
+    own = bulge.Effect("my-rubber", energy=energy, parameters=RUBBER)
+    assert own.quantity == "energy" and pickle.loads(pickle.dumps(own)) == own
+    numbers = {"kind": "braided", "length": "250 mm", "radius": "10 mm", "braid_angle": "25 deg", "wall": "2 mm"}
+    shipped = bulge.Muscle(**numbers, effects={"bladder-elasticity": {"c10": "0.3 MPa"}})
+    mine = bulge.Muscle(**numbers, effects={"my-rubber": {"c10": "0.3 MPa", "h": "2 mm"}}, own=own)
+    for contraction in (0.02, 0.1, 0.2):
+        one, other = (muscle.shape(pressure="3 bar", contraction=contraction).force_n for muscle in (shipped, mine))
+        assert one == pytest.approx(other, rel=1e-11)
+    with pytest.raises(bulge.InputError, match="one formula"):
+        bulge.Effect("both", "k", energy="k", parameters={"k": N})
+    with pytest.raises(bulge.InputError, match="nor one of l1"):
+        bulge.Effect("own", energy=lambda eps, c10, h: h * c10 * eps, parameters=RUBBER)

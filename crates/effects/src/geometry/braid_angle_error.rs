@@ -1,11 +1,11 @@
 //! Braid angle error: the fibres run at another angle at rest than stated (catalogue G14).
 
 use bulge_fibre::{Jet, Parts};
-use bulge_muscles::{Kind, MuscleError};
+use bulge_muscles::{MuscleError};
 use bulge_numerics::Real;
 use std::f64::consts::FRAC_PI_2;
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::card::{BRAIDED, Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
 use crate::effect::{Action, Effect, ShapeEffect};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::DEGREE;
@@ -28,7 +28,7 @@ impl Effect for BraidAngleError {
             source: "derivative of S2 eq. 12; 23.5 to 28.6 deg are reported for muscles of the same make (S5 and later work)",
             evidence: Evidence::Derived,
             group: Group::Geometry,
-            kind: Some(Kind::Braided),
+            kind: BRAIDED,
             signature: Signature {
                 pressure: "1",
                 parity: Parity::Even,

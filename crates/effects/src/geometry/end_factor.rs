@@ -1,8 +1,7 @@
 //! End factor: the taper of the ends as a factor on the contraction (Tondu and Lopez 2000; catalogue G10).
 
-use bulge_muscles::Kind;
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::card::{BRAIDED, Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
 use crate::effect::{Action, Effect, Input, InputEffect, Row};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::NUMBER;
@@ -26,7 +25,7 @@ impl Effect for EndFactor {
             source: "Tondu and Lopez 2000, as used in S2 eq. 15; k = 1.25 to 1.35 from memory",
             evidence: Evidence::Literature,
             group: Group::Geometry,
-            kind: Some(Kind::Braided),
+            kind: BRAIDED,
             signature: Signature { pressure: "1", parity: Parity::Even, shape: "eps dF/d eps" },
             twins: &[
                 Twin { name: "displacement-gain", how: "identical" },

@@ -1,9 +1,9 @@
 //! End taper: the ends of the braid are clamped, not cylindrical (catalogue G11; theory of Adkins and Rivlin, Liu and Rahn).
 
 use bulge_fibre::{Jet, Parts};
-use bulge_muscles::{Ends, Kind, MuscleError};
+use bulge_muscles::{Ends, MuscleError};
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::card::{BRAIDED, Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
 use crate::effect::{Action, Effect, ShapeEffect};
 use crate::mechanism::{Form, Mechanism};
 
@@ -27,7 +27,7 @@ impl Effect for EndTaper {
             source: "equilibrium of the pinned net, as Adkins and Rivlin 1955, Liu and Rahn 2003; checked by an independent energy method",
             evidence: Evidence::Derived,
             group: Group::Geometry,
-            kind: Some(Kind::Braided),
+            kind: BRAIDED,
             signature: Signature {
                 pressure: "1",
                 parity: Parity::Even,

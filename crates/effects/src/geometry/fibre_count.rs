@@ -4,7 +4,7 @@ use bulge_muscles::{Kind, Parameter};
 use bulge_numerics::Real;
 use std::f64::consts::TAU;
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::card::{Card, Evidence, Group, Needs, PLEATED, ParameterCard, Parity, Signature, Twin};
 use crate::effect::{Action, Effect, Input, InputEffect, Jet, Row};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::NUMBER;
@@ -36,7 +36,7 @@ impl Effect for FibreCount {
             source: "S1, eqs. 5, 28 and 29; lobes instead of flat cloth are another effect",
             evidence: Evidence::Paper,
             group: Group::Geometry,
-            kind: Some(Kind::Pleated),
+            kind: PLEATED,
             signature: Signature { pressure: "1", parity: Parity::Even, shape: "as the force" },
             twins: &[
                 Twin { name: "pressure-gain", how: "identical" },

@@ -1,11 +1,11 @@
 //! Fibre misalignment: the fibres of a pleated muscle run as a slight helix (catalogue G7).
 
 use bulge_fibre::{Jet, Parts};
-use bulge_muscles::{Kind, MuscleError};
+use bulge_muscles::{MuscleError};
 use bulge_numerics::Real;
 use std::f64::consts::FRAC_PI_2;
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::card::{Card, Evidence, Group, Needs, PLEATED, ParameterCard, Parity, Signature, Twin};
 use crate::effect::{Action, Effect, ShapeEffect};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::DEGREE;
@@ -29,7 +29,7 @@ impl Effect for FibreMisalignment {
             source: "equilibrium of the net, derived; the law of pinned crossings",
             evidence: Evidence::Derived,
             group: Group::Geometry,
-            kind: Some(Kind::Pleated),
+            kind: PLEATED,
             signature: Signature {
                 pressure: "1",
                 parity: Parity::Even,

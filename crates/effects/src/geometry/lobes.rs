@@ -1,10 +1,10 @@
 //! Lobes: inextensible cloth bulges between the fibres and stops the unfolding (catalogue G5).
 
 use bulge_fibre::{Jet, Parts};
-use bulge_muscles::{Kind, Length, MuscleError, Parameter, Quantity, check};
+use bulge_muscles::{Length, MuscleError, Parameter, Quantity, check};
 use bulge_numerics::Real;
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::card::{Card, Evidence, Group, Needs, PLEATED, ParameterCard, Parity, Signature, Twin};
 use crate::effect::{Action, Effect, ShapeEffect};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::MILLIMETRE;
@@ -30,7 +30,7 @@ impl Effect for Lobes {
             source: "geometry and virtual work, derived",
             evidence: Evidence::Derived,
             group: Group::Geometry,
-            kind: Some(Kind::Pleated),
+            kind: PLEATED,
             signature: Signature {
                 pressure: "1",
                 parity: Parity::Even,

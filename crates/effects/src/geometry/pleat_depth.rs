@@ -1,10 +1,10 @@
 //! Pleat depth: under pressure the crests of the cloth stand outside the fibres (catalogue G3).
 
 use bulge_fibre::{Jet, Parts};
-use bulge_muscles::{Kind, Length, MuscleError, Parameter, Quantity, check};
+use bulge_muscles::{Length, MuscleError, Parameter, Quantity, check};
 use bulge_numerics::Real;
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::card::{Card, Evidence, Group, Needs, PLEATED, ParameterCard, Parity, Signature, Twin};
 use crate::effect::{Action, Effect, ShapeEffect};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::MILLIMETRE;
@@ -28,7 +28,7 @@ impl Effect for PleatDepth {
             source: "equilibrium of the fibres, derived; S1 discusses 11.5 mm against 16 mm",
             evidence: Evidence::Derived,
             group: Group::Geometry,
-            kind: Some(Kind::Pleated),
+            kind: PLEATED,
             signature: Signature {
                 pressure: "1",
                 parity: Parity::Even,

@@ -1,10 +1,10 @@
 //! Radius error: the braid has another radius at rest than stated (S5, table 2: three candidates for one muscle).
 
 use bulge_fibre::{Jet, Parts};
-use bulge_muscles::{Kind, Length, MuscleError, Parameter, Quantity, check};
+use bulge_muscles::{Length, MuscleError, Parameter, Quantity, check};
 use bulge_numerics::Real;
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::card::{BRAIDED, Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
 use crate::effect::{Action, Effect, ShapeEffect};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::MILLIMETRE;
@@ -28,7 +28,7 @@ impl Effect for RadiusError {
             source: "S5, table 2: b sin(alpha0)/(2 pi N) = 10.725 mm, the middle of the wall",
             evidence: Evidence::Derived,
             group: Group::Geometry,
-            kind: Some(Kind::Braided),
+            kind: BRAIDED,
             signature: Signature {
                 pressure: "1",
                 parity: Parity::Even,

@@ -1,8 +1,7 @@
 //! Uneven fibres: the fibres of a pleated muscle are not all of the same length (catalogue G8).
 
-use bulge_muscles::Kind;
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::card::{Card, Evidence, Group, Needs, PLEATED, ParameterCard, Parity, Signature, Twin};
 use crate::effect::{Action, Effect, Input, InputEffect, Row};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::PERCENT;
@@ -25,7 +24,7 @@ impl Effect for UnevenFibres {
             source: "expansion of the equilibrium for stiff fibres, derived",
             evidence: Evidence::Derived,
             group: Group::Geometry,
-            kind: Some(Kind::Pleated),
+            kind: PLEATED,
             signature: Signature {
                 pressure: "1",
                 parity: Parity::Even,

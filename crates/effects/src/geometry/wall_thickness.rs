@@ -1,10 +1,10 @@
 //! Wall thickness: the gas acts inside a wall of constant thickness, not at the braid (Chou and Hannaford 1996; catalogue G9).
 
 use bulge_fibre::{Jet, Parts};
-use bulge_muscles::{Kind, Length, MuscleError, Parameter, Quantity, check};
+use bulge_muscles::{Length, MuscleError, Parameter, Quantity, check};
 use bulge_numerics::Real;
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::card::{BRAIDED, Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
 use crate::effect::{Action, Effect, ShapeEffect};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::MILLIMETRE;
@@ -28,7 +28,7 @@ impl Effect for WallThickness {
             source: "Chou and Hannaford 1996; formula derived again",
             evidence: Evidence::Derived,
             group: Group::Geometry,
-            kind: Some(Kind::Braided),
+            kind: BRAIDED,
             signature: Signature {
                 pressure: "1",
                 parity: Parity::Even,

@@ -1,10 +1,10 @@
 //! The braid by fibre length and turns (S5 eqs. 9, 11, 12, Table 2), and its efficiency (S5 eq. 13).
 
+use crate::card::BRAIDED;
 use super::coefficient::{Coefficient, CoefficientTable, Measure};
 use super::definition::{Form, Law};
 use super::point::LawPoint;
 use crate::Evidence;
-use bulge_muscles::Kind;
 use bulge_numerics::Real;
 use std::f64::consts::PI;
 
@@ -17,7 +17,7 @@ pub(super) const LAW: Law = Law {
     equation: "F = p (3 l0^2 (1 - kappa)^2 - b^2)/(4 pi N^2)\n\
                = (pi/4) D_M^2 p (3 cos^2(alpha) - 1), D_M = b/(pi N), cos(alpha) = l/b\n\
                kappa a fraction",
-    kind: Some(Kind::Braided),
+    kind: BRAIDED,
     directional: false,
     range: "a long thin braid without ends, wall, bladder and friction; no force at alpha = 54.7 deg",
     coefficients: &[

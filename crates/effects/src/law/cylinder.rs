@@ -1,10 +1,10 @@
 //! The braid as a cylinder (S2 eq. 12, S3 eq. 1) and its two empirical corrections: end factor k, Kerscher's factors (S2 eq. 15, S3 eq. 2).
 
+use crate::card::BRAIDED;
 use super::coefficient::{Coefficient, CoefficientTable, Measure};
 use super::definition::{Form, Law};
 use super::point::LawPoint;
 use crate::Evidence;
-use bulge_muscles::Kind;
 use bulge_numerics::Real;
 use std::f64::consts::PI;
 
@@ -25,7 +25,7 @@ pub(super) const CYLINDER: Law = Law {
     source: "S2 eq. 12; S3 eq. 1 corrected",
     evidence: Evidence::Paper,
     equation: "F = pi r0^2 p (a (1 - kappa)^2 - b)\na = 3/tan^2(alpha0), b = 1/sin^2(alpha0), kappa a fraction",
-    kind: Some(Kind::Braided),
+    kind: BRAIDED,
     directional: false,
     range: "a long thin braid without ends, wall, bladder and friction; 0 <= kappa <= 1 - sqrt(b/a), the contraction of no force",
     coefficients: &[RADIUS, BRAID_ANGLE],
@@ -48,7 +48,7 @@ pub(super) const TONDU_LOPEZ: Law = Law {
     source: "S2 section III, there only named; by memory",
     evidence: Evidence::Literature,
     equation: "F = pi r0^2 p (a (1 - k kappa)^2 - b)\na = 3/tan^2(alpha0), b = 1/sin^2(alpha0), kappa a fraction",
-    kind: Some(Kind::Braided),
+    kind: BRAIDED,
     directional: false,
     range: "braids above 2 bar (S2); k depends on the length, k - 1 ~ r0/l0",
     coefficients: &[
@@ -90,7 +90,7 @@ pub(super) const KERSCHER: Law = Law {
     equation: "F = mu pi r0^2 p (a (1 - e kappa)^2 - b)\n\
                e = a_eps exp(-p) - b_eps, mu = a_kappa exp(-40 kappa) - b_kappa\n\
                a = 3/tan^2(alpha0), b = 1/sin^2(alpha0), p in bar inside exp, kappa a fraction",
-    kind: Some(Kind::Braided),
+    kind: BRAIDED,
     directional: false,
     range: "Festo muscles up to 5 bar and 25 %; rms 1.5 to 2.8 % of full scale",
     coefficients: &[

@@ -1,11 +1,11 @@
 //! General exponential functions of Festo muscles: isobaric (S3 eq. 3) and with pressure (S3 eq. 4).
 
+use crate::card::BRAIDED;
 use super::coefficient::{Coefficient, CoefficientTable};
 use super::definition::{Form, Law};
 use super::point::LawPoint;
 use super::sarosi::{TABLE_1, TABLE_2};
 use crate::Evidence;
-use bulge_muscles::Kind;
 use bulge_numerics::Real;
 
 const AT_3_BAR: [f64; 5] = isobar(TABLE_1, 3.0);
@@ -18,7 +18,7 @@ pub(super) const ISOBARIC: Law = Law {
     source: "S3 eq. 3",
     evidence: Evidence::Paper,
     equation: "F = a exp(b kappa + c) + d kappa + e\nF in N, kappa in %",
-    kind: Some(Kind::Braided),
+    kind: BRAIDED,
     directional: false,
     range: "one pressure: it does not read the pressure, and every isobar has its own coefficients",
     coefficients: &[
@@ -48,7 +48,7 @@ pub(super) const EIGHT: Law = Law {
     source: "S3 eq. 4",
     evidence: Evidence::Paper,
     equation: "F = (a p + b) exp(c kappa + d) + (e p + f) kappa + g p + h\nF in N, p in bar, kappa in %",
-    kind: Some(Kind::Braided),
+    kind: BRAIDED,
     directional: false,
     range: "Festo muscles; the tables about 1 to 5 bar, 0 to 25 % and F > 0",
     coefficients: &[

@@ -1,10 +1,10 @@
 //! Polynomials of a pleated muscle: force (S1 eq. 31, Table 1) and enclosed volume (S1 eq. 32, Table 2).
 
+use crate::card::PLEATED;
 use super::coefficient::{Coefficient, CoefficientTable};
 use super::definition::{Form, Law};
 use super::point::LawPoint;
 use crate::Evidence;
-use bulge_muscles::Kind;
 use bulge_numerics::Real;
 use serde::Serialize;
 
@@ -20,7 +20,7 @@ pub(super) const LAW: Law = Law {
     source: "S1 eq. 31, Table 1",
     evidence: Evidence::Paper,
     equation: "F = p l0^2 (f4 kappa^3 + f3 kappa^2 + f2 kappa + f1 + f0/kappa)\nF in N, p in bar, l0 in m, kappa in %",
-    kind: Some(Kind::Pleated),
+    kind: PLEATED,
     directional: false,
     range: "100 to 3000 N at 1 to 3 bar, slenderness l0/R = 110/16 = 6.9; the force is 0 at 36.5 % and infinite at 0 %",
     coefficients: &[
@@ -96,7 +96,7 @@ pub static S1_VOLUME: VolumeLaw = VolumeLaw {
     source: "S1 eq. 32, Table 2",
     evidence: Evidence::Paper,
     equation: "V = l0^3 (v5 kappa^5 + v4 kappa^4 + v3 kappa^3 + v2 kappa^2 + v1 kappa + v0)\nV in ml, l0 in m, kappa in %",
-    kind: Some(Kind::Pleated),
+    kind: PLEATED,
     range: "0 to 35 %, slenderness l0/R = 110/16 = 6.9",
     coefficients: &[
         Coefficient::linear("v5", "ml/(m^3 %^5)", "fifth power", TABLE_2[0], 1e-4),

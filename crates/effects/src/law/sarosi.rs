@@ -1,10 +1,10 @@
 //! Empirical functions of Festo muscles: six parameters (S2 eq. 16, Tables 1 and 2; S4 eq. 1, Table 1), five (S2 eq. 17, Tables 3 to 6).
 
+use crate::card::BRAIDED;
 use super::coefficient::{Coefficient, CoefficientTable};
 use super::definition::{Form, Law};
 use super::point::LawPoint;
 use crate::Evidence;
-use bulge_muscles::Kind;
 use bulge_numerics::Real;
 
 /// S2 Table 1, DMSP-20-200N: a to f of eq. 16.
@@ -39,7 +39,7 @@ pub(super) const SIX: Law = Law {
     source: "S2 eq. 16, Tables 1 and 2; S4 eq. 1, Table 1",
     evidence: Evidence::Paper,
     equation: "F = (a p + b) exp(c kappa) + d p kappa + e p + f\nF in N, p in bar, kappa in %",
-    kind: Some(Kind::Braided),
+    kind: BRAIDED,
     directional: false,
     range: "Festo muscles of any length and diameter (S2); no limits are printed, the tables are good for about 1 to 5 bar, 0 to 25 % and F > 0",
     coefficients: &[
@@ -93,7 +93,7 @@ pub(super) const BRANCH: Law = Law {
     source: "S2 eq. 17, Tables 3 to 6",
     evidence: Evidence::Paper,
     equation: "F = (p + a) exp(b kappa) + c p kappa + d p + e\nF in N, p in bar, kappa in %",
-    kind: Some(Kind::Braided),
+    kind: BRAIDED,
     directional: false,
     range: "Festo muscles of 20 mm diameter only (S2); about 1 to 5 bar, 0 to 25 % and F > 0",
     coefficients: &[
@@ -151,7 +151,7 @@ pub(super) const FIVE: Law = Law {
     equation: "F = F_s while shortening, F_l while lengthening, (F_s + F_l)/2 on the mean line\n\
                F_i = (p + a_i) exp(b_i kappa) + c_i p kappa + d_i p + e_i\n\
                F in N, p in bar, kappa in %",
-    kind: Some(Kind::Braided),
+    kind: BRAIDED,
     directional: true,
     range: "Festo muscles of 20 mm diameter only (S2); about 1 to 5 bar, 0 to 25 % and F > 0; full loops, not what follows a reversal",
     coefficients: &[

@@ -1,8 +1,7 @@
 //! Bladder hysteresis: the rubber of the bladder loses work when the gas fills it out and when the muscle stretches it.
 
-use bulge_muscles::Kind;
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::card::{BRAIDED, Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
 use crate::effect::{Action, Balance, Effect, Jet, LoadEffect, Row};
 use crate::load::dragged::dragged;
 use crate::load::filled_bladder::filled;
@@ -28,7 +27,7 @@ impl Effect for BladderHysteresis {
             source: "loss factors of 0.05 to 0.2 of filled rubber; loops of 3 to 20 % of the bladder's force in filling and venting of fluidic muscles",
             evidence: Evidence::Derived,
             group: Group::Load,
-            kind: Some(Kind::Braided),
+            kind: BRAIDED,
             signature: Signature {
                 pressure: "0",
                 parity: Parity::Odd,

@@ -1,8 +1,7 @@
 //! Bladder relaxation: rubber that was stretched by filling or shortening yields within a time.
 
-use bulge_muscles::Kind;
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::card::{BRAIDED, Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
 use crate::effect::{Action, Balance, Effect, Jet, LoadEffect, Row};
 use crate::load::filled_bladder::filled;
 use crate::load::relaxed::relaxed;
@@ -27,7 +26,7 @@ impl Effect for BladderRelaxation {
             source: "Zener 1948 for the rubber; exact for a stretch that runs straight between two rows",
             evidence: Evidence::Derived,
             group: Group::Load,
-            kind: Some(Kind::Braided),
+            kind: BRAIDED,
             signature: Signature {
                 pressure: "0",
                 parity: Parity::Mixed,

@@ -1,10 +1,9 @@
 //! Contact friction: friction on the area between braid and bladder (Tondu and Lopez 2000; catalogue F4).
 
-use bulge_muscles::Kind;
 use bulge_numerics::Real;
 use std::f64::consts::PI;
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::card::{BRAIDED, Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
 use crate::effect::{Action, Balance, Effect, Jet, LoadEffect, Row};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::NUMBER;
@@ -32,7 +31,7 @@ impl Effect for ContactFriction {
             source: "Tondu and Lopez 2000, as coded in a public repository; f about 0.015 there (24 N/bar at 250 mm), 0.001 for Festo's muscles",
             evidence: Evidence::LookedUp,
             group: Group::Load,
-            kind: Some(Kind::Braided),
+            kind: BRAIDED,
             signature: Signature {
                 pressure: "1",
                 parity: Parity::Odd,

@@ -1,9 +1,8 @@
 //! Crossing friction: crossing strands turn against each other under the gas pressure (catalogue F3; virtual work derived).
 
-use bulge_muscles::Kind;
 use std::f64::consts::PI;
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::card::{BRAIDED, Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
 use crate::effect::{Action, Balance, Effect, Jet, LoadEffect, Row};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::MILLIMETRE;
@@ -30,7 +29,7 @@ impl Effect for CrossingFriction {
             source: "virtual work on the contacts, which carry p on the whole wall; mu 0.1 to 0.4, rho_e 0.1 to 0.5 mm",
             evidence: Evidence::Derived,
             group: Group::Load,
-            kind: Some(Kind::Braided),
+            kind: BRAIDED,
             signature: Signature { pressure: "1", parity: Parity::Odd, shape: "1 - eps" },
             twins: &[
                 Twin { name: "contact-friction", how: "0.999" },

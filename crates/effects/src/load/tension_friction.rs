@@ -1,8 +1,7 @@
 //! Tension friction: fibres rub where they are bent, in proportion to their tension (catalogue F5, variant of the PPAM).
 
-use bulge_muscles::Kind;
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::card::{Card, Evidence, Group, Needs, PLEATED, ParameterCard, Parity, Signature, Twin};
 use crate::effect::{Action, Balance, Effect, Jet, LoadEffect, Row};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::PERCENT;
@@ -25,7 +24,7 @@ impl Effect for TensionFriction {
             source: "rope friction, Euler 1769 and Eytelwein 1808, with the tension of the fibres",
             evidence: Evidence::Literature,
             group: Group::Load,
-            kind: Some(Kind::Pleated),
+            kind: PLEATED,
             signature: Signature {
                 pressure: "1",
                 parity: Parity::Odd,

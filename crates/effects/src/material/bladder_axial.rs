@@ -1,8 +1,7 @@
 //! Axial bladder stiffness: the bladder resists being shortened, linearly (Chou and Hannaford 1996; catalogue E5).
 
-use bulge_muscles::Kind;
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::card::{BRAIDED, Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
 use crate::effect::{Action, Balance, Effect, Jet, LoadEffect, Row};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::NEWTON;
@@ -25,7 +24,7 @@ impl Effect for BladderAxial {
             source: "Chou and Hannaford 1996 (their passive stiffness), by memory",
             evidence: Evidence::Literature,
             group: Group::Material,
-            kind: Some(Kind::Braided),
+            kind: BRAIDED,
             signature: Signature { pressure: "0", parity: Parity::Even, shape: "-eps" },
             twins: &[
                 Twin { name: "membrane-axial", how: "identical: the same spring in another part" },

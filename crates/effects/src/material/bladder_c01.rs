@@ -1,9 +1,9 @@
 //! Second constant of the bladder: the part of rubber that a neo-Hookean law misses (Mooney-Rivlin; catalogue E8).
 
 use bulge_fibre::{Jet, Parts};
-use bulge_muscles::{Kind, MuscleError};
+use bulge_muscles::{MuscleError};
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::card::{BRAIDED, Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
 use crate::effect::{Action, Effect, ShapeEffect};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::MEGAPASCAL;
@@ -26,7 +26,7 @@ impl Effect for BladderC01 {
             source: "Mooney 1940, Rivlin 1948; latex c10 = 118.4 and c01 = 105.7 kPa after Klute and Hannaford 2000",
             evidence: Evidence::Literature,
             group: Group::Material,
-            kind: Some(Kind::Braided),
+            kind: BRAIDED,
             signature: Signature {
                 pressure: "0",
                 parity: Parity::Even,

@@ -1,9 +1,9 @@
 //! Bladder elasticity: the rubber tube inside a braid resists being deformed (Mooney-Rivlin; catalogue E7 and E8).
 
 use bulge_fibre::{Jet, Parts};
-use bulge_muscles::{Kind, MuscleError};
+use bulge_muscles::{MuscleError};
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::card::{BRAIDED, Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
 use crate::effect::{Action, Effect, ShapeEffect};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::MEGAPASCAL;
@@ -27,7 +27,7 @@ impl Effect for BladderElasticity {
             source: "Mooney 1940, Rivlin 1948; energy of the net derived; 285 to 390 kPa fitted to published Festo data",
             evidence: Evidence::Derived,
             group: Group::Material,
-            kind: Some(Kind::Braided),
+            kind: BRAIDED,
             signature: Signature {
                 pressure: "0",
                 parity: Parity::Even,

@@ -1,11 +1,10 @@
 //! Bladder pre-strain: the bladder was wider or narrower than the braid before it was put in (Ball and Garcia 2016; catalogue E9).
 
-use bulge_muscles::Kind;
 use bulge_numerics::Real;
 use std::f64::consts::TAU;
 
 use super::tube::Tube;
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::card::{BRAIDED, Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
 use crate::effect::{Action, Balance, Effect, Jet, LoadEffect, Row};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::NEWTON_PER_METRE;
@@ -30,7 +29,7 @@ impl Effect for BladderPrestrain {
             source: "Ball and Garcia 2016 for the idea, by memory; formula derived",
             evidence: Evidence::Literature,
             group: Group::Material,
-            kind: Some(Kind::Braided),
+            kind: BRAIDED,
             signature: Signature { pressure: "0", parity: Parity::Even, shape: "constant to within 7 %" },
             twins: &[
                 Twin { name: "force-offset", how: "1.000 at first order" },

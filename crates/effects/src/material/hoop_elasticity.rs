@@ -1,10 +1,9 @@
 //! Hoop elasticity: a bladder that resists being widened, linearly (catalogue E6).
 
-use bulge_muscles::Kind;
 use std::f64::consts::TAU;
 
 use super::tube::Tube;
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::card::{BRAIDED, Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
 use crate::effect::{Action, Balance, Effect, Jet, LoadEffect, Row};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::KILONEWTON_PER_METRE;
@@ -29,7 +28,7 @@ impl Effect for HoopElasticity {
             source: "virtual work; Martens and Boblan 2017 use it with a modulus that depends on the length (DMSP-20, t = 1.8 mm)",
             evidence: Evidence::LookedUp,
             group: Group::Material,
-            kind: Some(Kind::Braided),
+            kind: BRAIDED,
             signature: Signature {
                 pressure: "0",
                 parity: Parity::Even,

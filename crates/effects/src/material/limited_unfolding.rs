@@ -1,10 +1,10 @@
 //! Limited unfolding: the cloth of a pleated muscle unfolds only so far and then stretches (S1, section 2; catalogue G6).
 
 use bulge_fibre::{Jet, Parts, TautCloth};
-use bulge_muscles::{Kind, Length, LineStiffness, MuscleError, Parameter, Quantity, check};
+use bulge_muscles::{Length, LineStiffness, MuscleError, Parameter, Quantity, check};
 use bulge_numerics::Real;
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::card::{Card, Evidence, Group, Needs, PLEATED, ParameterCard, Parity, Signature, Twin};
 use crate::effect::{Action, Effect, ShapeEffect};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::{KILONEWTON_PER_METRE, MILLIMETRE};
@@ -28,7 +28,7 @@ impl Effect for LimitedUnfolding {
             source: "S1 (unfolding seen in photographs); derived; 81 kN/m and 52.6 mm fitted to S1, table 1",
             evidence: Evidence::Derived,
             group: Group::Material,
-            kind: Some(Kind::Pleated),
+            kind: PLEATED,
             signature: Signature {
                 pressure: "0 and 1",
                 parity: Parity::Even,

@@ -26,6 +26,14 @@ VARIABLES = (
 )  # fmt: skip
 
 
+#: Variables of a formula of the shape (``energy``, ``area``, ``twist``), SI: stretches ``l1`` along the meridian and ``l2`` around the axis, radius ``r`` of the
+#: fibres and reference radius ``r0`` [m], gauge pressure ``p`` [Pa], braid angle at rest ``alpha0`` [rad], length at rest ``l0`` [m].
+SHAPE_VARIABLES = ("l1", "l2", "r", "r0", "p", "alpha0", "l0")
+
+#: What an effect may state a formula for, and its variables.
+_QUANTITIES = {"force": VARIABLES, "energy": SHAPE_VARIABLES, "area": SHAPE_VARIABLES, "twist": SHAPE_VARIABLES}
+
+
 @dataclass(frozen=True)
 class Parameter:
     """A number of an effect.
@@ -67,7 +75,7 @@ class Parameter:
 
 @dataclass(frozen=True, eq=False)
 class Effect:
-    """A physical effect of one's own: a force that is added to that of the muscle.
+    """A physical effect of one's own: a force that is added to that of the muscle, or a formula that the shape of the muscle is solved with.
 
     ``force`` is an expression (``"-k * (eps - eps_free)"``) or a Python function of some of :data:`VARIABLES` and the parameters, by their names:
 
@@ -84,12 +92,19 @@ class Effect:
     checked, runs on all cores, and travels to other machines. It may use arithmetic, NumPy's ``abs sign sqrt exp log log10 sin cos tan arcsin arctan
     sinh cosh tanh minimum maximum clip where`` and constants with a unit (:func:`quantity`); with arrays it is an ordinary vectorised function.
 
+    Instead of ``force``, one of ``energy`` (of the wall per area at rest [N/m]), ``area`` (on which the pressure acts [m^2]) and ``twist`` (turn of the fibres
+    per length of fibre [1/m]) changes the shape; they are formulas of :data:`SHAPE_VARIABLES` and at most six parameters:
+
+    >>> rubber = bulge.Effect("my-rubber", energy="h * c10 * (l1^2 + l2^2 + 1/(l1*l2)^2 - 3)", parameters={
+    ...     "c10": bulge.Parameter("MPa", typical=0.3, low=0, high=3),
+    ...     "h": bulge.Parameter("mm", typical=2, low=0.5, high=5)})
+
     ``mechanism`` is one of the catalogue's (``"dry-friction"``, ``"rubber"``, ...), by default that of the family; ``form`` says how exact the
     formula can be: ``"exact"``, ``"near"`` (to 5 %) or ``"loose"`` (to 40 %), by default loose.
     """
 
     name: str
-    force: str | Callable[..., Any]
+    force: str | Callable[..., Any] | None = None
     parameters: Mapping[str, Parameter] = field(default_factory=dict)
     title: str = ""
     about: str = ""
@@ -98,23 +113,35 @@ class Effect:
     twins: tuple[str, ...] = ()
     mechanism: str = ""
     form: str = ""
+    energy: str | Callable[..., Any] | None = None
+    area: str | Callable[..., Any] | None = None
+    twist: str | Callable[..., Any] | None = None
 
     def __post_init__(self) -> None:
         if isinstance(self.twins, str):
             object.__setattr__(self, "twins", (self.twins,))
         own = {name: value if isinstance(value, Parameter) else Parameter(**value) for name, value in self.parameters.items()}
         object.__setattr__(self, "parameters", own)
+        stated = [key for key in _QUANTITIES if getattr(self, key) is not None]
+        if len(stated) != 1:
+            raise _bulge.InputError(f"an effect has one formula, for {', '.join(_QUANTITIES)}: this one has {', '.join(stated) or 'none'}")
         # Complaints come here and not at the first use.
         _bulge.effect_names(self.to_toml())
 
     @property
+    def quantity(self) -> str:
+        """What it states a formula for: ``"force"``, ``"energy"``, ``"area"`` or ``"twist"``."""
+        return next(key for key in _QUANTITIES if getattr(self, key) is not None)
+
+    @property
     def expression(self) -> str:
-        """The force as an expression."""
-        return self.force if isinstance(self.force, str) else _traced(self.force, self.parameters)
+        """Its formula as an expression."""
+        formula = getattr(self, self.quantity)
+        return formula if isinstance(formula, str) else _traced(formula, self.quantity, self.parameters)
 
     def to_toml(self) -> str:
         """The effect as part of an effect file: what ``--effects FILE`` of the command line reads."""
-        lines = [f"[effects.{_key(self.name)}]", f"title = {_quoted(self.title or self.name)}", f"force = {_quoted(self.expression)}"]
+        lines = [f"[effects.{_key(self.name)}]", f"title = {_quoted(self.title or self.name)}", f"{self.quantity} = {_quoted(self.expression)}"]
         texts = {"about": self.about, "source": self.source, "family": self.family, "mechanism": self.mechanism, "form": self.form}
         lines += [f"{key} = {_quoted(value)}" for key, value in texts.items() if value]
         if self.twins:
@@ -130,8 +157,9 @@ class Effect:
 
     def __reduce__(self) -> Any:
         # A function may be of a notebook; its expression goes anywhere.
-        own = (self.name, self.expression, dict(self.parameters), self.title, self.about, self.source, self.family, self.twins, self.mechanism, self.form)
-        return (Effect, own)
+        formulas = {key: self.expression if key == self.quantity else None for key in _QUANTITIES}
+        words = (self.title, self.about, self.source, self.family, self.twins, self.mechanism, self.form)
+        return (Effect, (self.name, formulas.pop("force"), dict(self.parameters), *words, *formulas.values()))
 
 
 #: Effects of one's own: an effect, a list, or the name of an effect file.
@@ -471,13 +499,13 @@ def _call(name: str, *args: Any) -> _Symbol:
     return _Symbol(f"{name}({', '.join(_text(arg) for arg in args)})")
 
 
-def _traced(function: Callable[..., Any], parameters: Mapping[str, Parameter]) -> str:
+def _traced(function: Callable[..., Any], quantity: str, parameters: Mapping[str, Parameter]) -> str:
     """What a function does with symbols."""
     names = list(inspect.signature(function).parameters)
-    known = [*VARIABLES, *parameters]
+    variables = _QUANTITIES[quantity]
     for name in names:
-        if name not in known:
-            raise _bulge.InputError(f"the force takes `{name}`, which is neither a parameter of the effect nor one of {', '.join(VARIABLES)}")
+        if name not in (*variables, *parameters):
+            raise _bulge.InputError(f"the {quantity} takes `{name}`, which is neither a parameter of the effect nor one of {', '.join(variables)}")
     found = function(**{name: _Symbol(name) for name in names})
     return _text(found)
 
