@@ -25,7 +25,9 @@ mod stated;
 mod unit;
 pub mod user;
 
-pub use card::{BRAIDED, Card, Evidence, Group, Needs, PLEATED, ParameterCard, Parity, Signature, Stage, Twin};
+pub use card::{
+    BRAIDED, Card, Evidence, Group, Needs, PLEATED, ParameterCard, Parity, Signature, Stage, Twin,
+};
 pub use catalogue::{Catalogue, CatalogueError};
 pub use describe::{CardDocument, ParameterDocument, SignatureDocument, TwinDocument, describe, overview};
 pub use effect::{

@@ -1,7 +1,7 @@
 //! Braid angle error: the fibres run at another angle at rest than stated (catalogue G14).
 
 use bulge_fibre::{Jet, Parts};
-use bulge_muscles::{MuscleError};
+use bulge_muscles::MuscleError;
 use bulge_numerics::Real;
 use std::f64::consts::FRAC_PI_2;
 

@@ -1,6 +1,5 @@
 //! End factor: the taper of the ends as a factor on the contraction (Tondu and Lopez 2000; catalogue G10).
 
-
 use crate::card::{BRAIDED, Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
 use crate::effect::{Action, Effect, Input, InputEffect, Row};
 use crate::mechanism::{Form, Mechanism};

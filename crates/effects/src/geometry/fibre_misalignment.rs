@@ -1,7 +1,7 @@
 //! Fibre misalignment: the fibres of a pleated muscle run as a slight helix (catalogue G7).
 
 use bulge_fibre::{Jet, Parts};
-use bulge_muscles::{MuscleError};
+use bulge_muscles::MuscleError;
 use bulge_numerics::Real;
 use std::f64::consts::FRAC_PI_2;
 

@@ -1,6 +1,5 @@
 //! Uneven fibres: the fibres of a pleated muscle are not all of the same length (catalogue G8).
 
-
 use crate::card::{Card, Evidence, Group, Needs, PLEATED, ParameterCard, Parity, Signature, Twin};
 use crate::effect::{Action, Effect, Input, InputEffect, Row};
 use crate::mechanism::{Form, Mechanism};

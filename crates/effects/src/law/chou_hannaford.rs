@@ -1,10 +1,10 @@
 //! The braid by fibre length and turns (S5 eqs. 9, 11, 12, Table 2), and its efficiency (S5 eq. 13).
 
-use crate::card::BRAIDED;
 use super::coefficient::{Coefficient, CoefficientTable, Measure};
 use super::definition::{Form, Law};
 use super::point::LawPoint;
 use crate::Evidence;
+use crate::card::BRAIDED;
 use bulge_numerics::Real;
 use std::f64::consts::PI;
 

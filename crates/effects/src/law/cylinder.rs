@@ -1,10 +1,10 @@
 //! The braid as a cylinder (S2 eq. 12, S3 eq. 1) and its two empirical corrections: end factor k, Kerscher's factors (S2 eq. 15, S3 eq. 2).
 
-use crate::card::BRAIDED;
 use super::coefficient::{Coefficient, CoefficientTable, Measure};
 use super::definition::{Form, Law};
 use super::point::LawPoint;
 use crate::Evidence;
+use crate::card::BRAIDED;
 use bulge_numerics::Real;
 use std::f64::consts::PI;
 

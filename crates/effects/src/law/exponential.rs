@@ -1,11 +1,11 @@
 //! General exponential functions of Festo muscles: isobaric (S3 eq. 3) and with pressure (S3 eq. 4).
 
-use crate::card::BRAIDED;
 use super::coefficient::{Coefficient, CoefficientTable};
 use super::definition::{Form, Law};
 use super::point::LawPoint;
 use super::sarosi::{TABLE_1, TABLE_2};
 use crate::Evidence;
+use crate::card::BRAIDED;
 use bulge_numerics::Real;
 
 const AT_3_BAR: [f64; 5] = isobar(TABLE_1, 3.0);

@@ -1,10 +1,11 @@
 //! Polynomials of a pleated muscle: force (S1 eq. 31, Table 1) and enclosed volume (S1 eq. 32, Table 2).
 
-use crate::card::PLEATED;
 use super::coefficient::{Coefficient, CoefficientTable};
 use super::definition::{Form, Law};
 use super::point::LawPoint;
 use crate::Evidence;
+use crate::card::PLEATED;
+use bulge_muscles::Kind;
 use bulge_numerics::Real;
 use serde::Serialize;
 

@@ -1,10 +1,10 @@
 //! Empirical functions of Festo muscles: six parameters (S2 eq. 16, Tables 1 and 2; S4 eq. 1, Table 1), five (S2 eq. 17, Tables 3 to 6).
 
-use crate::card::BRAIDED;
 use super::coefficient::{Coefficient, CoefficientTable};
 use super::definition::{Form, Law};
 use super::point::LawPoint;
 use crate::Evidence;
+use crate::card::BRAIDED;
 use bulge_numerics::Real;
 
 /// S2 Table 1, DMSP-20-200N: a to f of eq. 16.

@@ -1,6 +1,5 @@
 //! Bladder hysteresis: the rubber of the bladder loses work when the gas fills it out and when the muscle stretches it.
 
-
 use crate::card::{BRAIDED, Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
 use crate::effect::{Action, Balance, Effect, Jet, LoadEffect, Row};
 use crate::load::dragged::dragged;

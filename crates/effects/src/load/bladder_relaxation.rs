@@ -1,6 +1,5 @@
 //! Bladder relaxation: rubber that was stretched by filling or shortening yields within a time.
 
-
 use crate::card::{BRAIDED, Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
 use crate::effect::{Action, Balance, Effect, Jet, LoadEffect, Row};
 use crate::load::filled_bladder::filled;

@@ -1,6 +1,5 @@
 //! Tension friction: fibres rub where they are bent, in proportion to their tension (catalogue F5, variant of the PPAM).
 
-
 use crate::card::{Card, Evidence, Group, Needs, PLEATED, ParameterCard, Parity, Signature, Twin};
 use crate::effect::{Action, Balance, Effect, Jet, LoadEffect, Row};
 use crate::mechanism::{Form, Mechanism};

@@ -1,6 +1,5 @@
 //! Axial bladder stiffness: the bladder resists being shortened, linearly (Chou and Hannaford 1996; catalogue E5).
 
-
 use crate::card::{BRAIDED, Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
 use crate::effect::{Action, Balance, Effect, Jet, LoadEffect, Row};
 use crate::mechanism::{Form, Mechanism};

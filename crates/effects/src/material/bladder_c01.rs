@@ -1,7 +1,7 @@
 //! Second constant of the bladder: the part of rubber that a neo-Hookean law misses (Mooney-Rivlin; catalogue E8).
 
 use bulge_fibre::{Jet, Parts};
-use bulge_muscles::{MuscleError};
+use bulge_muscles::MuscleError;
 
 use crate::card::{BRAIDED, Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
 use crate::effect::{Action, Effect, ShapeEffect};

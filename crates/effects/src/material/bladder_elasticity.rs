@@ -1,7 +1,7 @@
 //! Bladder elasticity: the rubber tube inside a braid resists being deformed (Mooney-Rivlin; catalogue E7 and E8).
 
 use bulge_fibre::{Jet, Parts};
-use bulge_muscles::{MuscleError};
+use bulge_muscles::MuscleError;
 
 use crate::card::{BRAIDED, Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
 use crate::effect::{Action, Effect, ShapeEffect};
