@@ -4,7 +4,7 @@
 
 #![expect(clippy::unwrap_used, reason = "a benchmark that can't be set up has nothing to measure")]
 
-use bulge_benches::{SLENDERNESS, bladder, braid, cylinder, pleated, solve};
+use bulge_benches::{SLENDERNESS, bladder, braid, cylinder, pleated, rubber_as_formula, solve};
 use bulge_fibre::{Approach, Given, Problem, closed_form};
 use bulge_numerics::elliptic;
 use criterion::{BenchmarkGroup, Criterion, criterion_group, criterion_main, measurement::WallTime};
@@ -63,7 +63,15 @@ fn shooting(c: &mut Criterion) {
         one(&mut group, &name, &usual, Approach::Shooting, contraction);
     }
     one(&mut group, "braid l0/r0 = 100, 20 %", &braid(100.0).unwrap(), Approach::Shooting, 0.2);
-    one(&mut group, "braid l0/r0 = 25 + bladder, 20 %", &bladder().unwrap(), Approach::Shooting, 0.2);
+    let (shipped, formula) = (bladder().unwrap(), rubber_as_formula().unwrap());
+    for (name, problem) in [("bladder", &shipped), ("rubber as a formula", &formula)] {
+        one(&mut group, &format!("braid l0/r0 = 25 + {name}, 20 %"), problem, Approach::Shooting, 0.2);
+        // As a fit asks for it.
+        let moving = problem.parts().still();
+        group.bench_function(format!("linearised, {name}, 20 %"), |b| {
+            b.iter(|| problem.linearised(black_box(0.2), &moving, Approach::Auto));
+        });
+    }
 }
 
 fn around(c: &mut Criterion) {

@@ -1,5 +1,6 @@
 //! Benchmarks of Bulge: the muscles that are measured, and the timing that the programs share.
 
+use bulge_effects::{Effect, user};
 use bulge_fibre::{Approach, FibreError, Given, Problem, Response};
 use bulge_muscles::{
     Angle, Bladder, Braided, Construction, Ends, Length, Muscle, MuscleError, Parameter, Pressure, preset,
@@ -63,6 +64,25 @@ pub fn bladder() -> Result<Problem, Failure> {
     let rubber = Bladder::new(Pressure::kpa(200.0), Pressure::kpa(50.0), Length::mm(1.5))?;
     let muscle = braid_muscle(25.0, Ends::Clamped)?.with_bladder(rubber)?;
     Ok(Problem::new(&muscle, Pressure::bar(3.0))?)
+}
+
+/// The rubber of [`bladder`] as a formula of one's own.
+const RUBBER: &str = r#"[effects.rubber]
+title = "Mooney-Rivlin"
+energy = "h*(c10*(l1^2 + l2^2 + 1/(l1*l2)^2 - 3) + c01*(1/l1^2 + 1/l2^2 + (l1*l2)^2 - 3))"
+parameters.c10 = { unit = "kPa", typical = "200 kPa", low = "0 kPa", high = "3000 kPa" }
+parameters.c01 = { unit = "kPa", typical = "50 kPa", low = "0 kPa", high = "3000 kPa" }
+parameters.h = { unit = "mm", typical = "1.5 mm", low = "0.5 mm", high = "5 mm" }
+"#;
+
+/// The same braid as [`bladder`], its rubber a formula.
+///
+/// # Errors
+/// Never: the numbers are valid.
+pub fn rubber_as_formula() -> Result<Problem, Failure> {
+    let rubber: Box<dyn Effect> = Box::new(user::from_toml(RUBBER, "rubber")?.remove(0));
+    let parts = rubber.reshaped(&[2e5, 5e4, 1.5e-3], &braid_muscle(25.0, Ends::Clamped)?)?;
+    Ok(Problem::new(parts, Pressure::bar(3.0))?)
 }
 
 /// The textbook cylinder, at 3 bar.
