@@ -89,7 +89,7 @@ pub struct Setting {
     pub braid_angle: f64,
     /// Number of fibres, if known.
     pub fibres: Option<u32>,
-    /// Whether the equilibrium holds a bladder.
+    /// Whether the equilibrium holds a bladder, or a wall energy of one's own.
     pub has_bladder: bool,
 }
 
@@ -112,7 +112,7 @@ impl Setting {
     pub fn with(self, parts: &Parts) -> Self {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a count of at least 3")]
         let fibres = parts.fibres.map(|count| count.round() as u32);
-        Self { fibres, has_bladder: parts.rubber.is_some(), ..self }
+        Self { fibres, has_bladder: parts.rubber.is_some() || parts.energy.is_some(), ..self }
     }
 }
 

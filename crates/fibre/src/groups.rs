@@ -12,7 +12,7 @@
 
 use bulge_numerics::{Dual, Real};
 
-use crate::net::{NUMBERS, Net};
+use crate::net::{NUMBERS, Net, OWN_NUMBERS};
 use crate::shooting::Total;
 
 /// Groups, at most: length, fitting, angle, compliance, section, depth, two of the lobes or of the bladder, two of the cloth.
@@ -39,23 +39,26 @@ impl<const N: usize> Groups<N> {
             size[row] = if number.value() == 0.0 { 1.0 } else { number.value().abs() };
             rows[row] = number.gradient().map(|slope| slope / size[row]);
         });
-        let norm =
-            |rows: &[[f64; N]; NUMBERS], i: usize| rows.iter().map(|row| row[i] * row[i]).sum::<f64>().sqrt();
-        let whole: [f64; N] = std::array::from_fn(|i| norm(&rows, i));
+        let rows = &mut rows[..net.places()];
+        let norm = |rows: &[[f64; N]], i: usize| rows.iter().map(|row| row[i] * row[i]).sum::<f64>().sqrt();
+        let whole: [f64; N] = std::array::from_fn(|i| norm(rows, i));
         let mut found =
             Self { numbers: [[0.0; GROUPS]; NUMBERS], size, variables: [[0.0; N]; GROUPS], count: 0 };
         while found.count < GROUPS {
-            let share = |i: usize| if whole[i] > 0.0 { norm(&rows, i) / whole[i] } else { 0.0 };
+            let share = |i: usize| if whole[i] > 0.0 { norm(rows, i) / whole[i] } else { 0.0 };
             let Some(pivot) = (2..N).max_by(|a, b| share(*a).total_cmp(&share(*b))) else { break };
             if share(pivot) < REST {
                 break;
             }
-            let (k, length) = (found.count, norm(&rows, pivot));
-            let direction = rows.map(|row| row[pivot] / length);
+            let (k, length) = (found.count, norm(rows, pivot));
+            let mut direction = [0.0; NUMBERS];
+            for (along, row) in direction.iter_mut().zip(&*rows) {
+                *along = row[pivot] / length;
+            }
             for i in 2..N {
-                let along: f64 = rows.iter().zip(direction).map(|(row, d)| row[i] * d).sum();
+                let along: f64 = rows.iter().zip(&direction).map(|(row, d)| row[i] * d).sum();
                 found.variables[k][i] = along;
-                for (row, d) in rows.iter_mut().zip(direction) {
+                for (row, d) in rows.iter_mut().zip(&direction) {
                     row[i] -= along * d;
                 }
             }
@@ -82,7 +85,7 @@ impl<const N: usize> Groups<N> {
     }
 
     /// The derivatives by the numbers of the net along the directions of the groups, from those by the groups; none across them.
-    pub(crate) fn by_number<const M: usize>(&self, by_group: &Total<M>) -> [f64; NUMBERS] {
+    pub(crate) fn by_number<const M: usize>(&self, by_group: &Total<M>) -> [f64; OWN_NUMBERS] {
         std::array::from_fn(|row| {
             let pairs = self.numbers[row].iter().zip(by_group.by_parameter.iter().skip(2)).take(self.count);
             pairs.map(|(slope, by)| slope * by).sum::<f64>() / (self.size[row] * self.size[row])

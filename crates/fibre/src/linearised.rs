@@ -13,7 +13,7 @@ pub use repeated::Repeated;
 
 use crate::FibreError;
 use crate::closed_form::Near;
-use crate::net::NUMBERS;
+use crate::net::{Net, OWN_NUMBERS};
 use crate::outcome::Follow;
 use crate::outcome::{Approach, Outcome, Solution};
 use crate::parts::{Jet, LANES, Parts};
@@ -88,7 +88,7 @@ struct Shot {
     unknowns: Unknowns,
     contraction: f64,
     /// The numbers of its net.
-    numbers: [f64; NUMBERS],
+    numbers: [f64; OWN_NUMBERS],
     follow: Follow,
 }
 
@@ -98,8 +98,10 @@ const FARTHEST: [f64; 2] = [0.5, 20.0];
 impl Shot {
     /// The unknowns to start with at a contraction of another problem.
     fn towards(&self, problem: &Problem, contraction: f64) -> Unknowns {
-        let mut change = [0.0; NUMBERS];
-        problem.net.each(|i, number| change[i] = number - self.numbers[i]);
+        let mut change = numbers_of(&problem.net);
+        for (change, before) in change.iter_mut().zip(self.numbers) {
+            *change -= before;
+        }
         let logs = std::array::from_fn(|z| {
             let along: f64 =
                 self.follow.by_number[z].iter().zip(&change).map(|(slope, step)| slope * step).sum();
@@ -188,10 +190,20 @@ impl Problem {
     fn start_of<const N: usize>(&self, contraction: f64, outcome: &Outcome<N>) -> Option<Start> {
         let Solution::Shooting(unknowns) = outcome.solution else { return None };
         let follow = outcome.follow.clone()?;
-        let mut numbers = [0.0; NUMBERS];
-        self.net.each(|i, number| numbers[i] = number);
+        let numbers = numbers_of(&self.net);
         Some(Start(Found::Shooting(Box::new(Shot { unknowns, contraction, numbers, follow }))))
     }
+}
+
+/// The numbers of a net but for those of formulas, in their places.
+fn numbers_of(net: &Net<f64>) -> [f64; OWN_NUMBERS] {
+    let mut numbers = [0.0; OWN_NUMBERS];
+    net.each(|place, number| {
+        if let Some(own) = numbers.get_mut(place) {
+            *own = number;
+        }
+    });
+    numbers
 }
 
 /// What is asked for.

@@ -31,7 +31,7 @@ use crate::formulas::Formulas;
 use crate::lobes::{Lobes, Section};
 
 /// Numbers of a net without formulas, at most: with lobes, bladder and cloth.
-const OWN_NUMBERS: usize = 17;
+pub(crate) const OWN_NUMBERS: usize = 17;
 /// Numbers of a net, at most.
 pub(crate) const NUMBERS: usize = OWN_NUMBERS + Formulas::<f64>::NUMBERS;
 
@@ -317,6 +317,11 @@ impl<D: Real> Net<D> {
                 .as_ref()
                 .map(|formulas| Box::new(formulas.map(|i, d| f(OWN_NUMBERS + i, d)))),
         }
+    }
+
+    /// Beyond the last place of its numbers.
+    pub(crate) fn places(&self) -> usize {
+        if self.formulas.is_some() { NUMBERS } else { OWN_NUMBERS }
     }
 
     /// Its numbers with their places.

@@ -7,7 +7,7 @@ use crate::closed_form::{self, ClosedForm, Graded};
 use crate::cylinder;
 use crate::groups::Groups;
 use crate::meridian::{COS, SIN, TENSION};
-use crate::net::{NUMBERS, Net};
+use crate::net::{Net, OWN_NUMBERS};
 use crate::problem::{MOST_STRAIN, Problem};
 use crate::shape::{Convergence, Method};
 use crate::shooting::{self, Ending, Total, Way};
@@ -61,11 +61,12 @@ pub(crate) struct Outcome<const N: usize> {
     pub(crate) follow: Option<Follow>,
 }
 
-/// How the two unknowns of a shooting follow the contraction and the numbers of the net: by these as far as the variables moved them.
+/// How the two unknowns of a shooting follow the contraction and the numbers of the net, those of formulas left out: by these as far as the variables
+/// moved them.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Follow {
     pub(crate) by_contraction: [f64; 2],
-    pub(crate) by_number: [[f64; NUMBERS]; 2],
+    pub(crate) by_number: [[f64; OWN_NUMBERS]; 2],
 }
 
 impl Problem {

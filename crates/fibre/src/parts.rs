@@ -21,8 +21,10 @@ pub const LANES: usize = 8;
 /// A number with its derivatives by up to [`LANES`] variables.
 pub type Jet = Dual<LANES>;
 
+/// Numbers of [`Parts`] without formulas, at most.
+pub(crate) const OWN_PARTS: usize = 14;
 /// Numbers of [`Parts`], at most.
-pub(crate) const PARTS: usize = 14 + 3 * MOST_PARAMETERS;
+pub(crate) const PARTS: usize = OWN_PARTS + 3 * MOST_PARAMETERS;
 
 /// What a fibre net is made of, in SI; with [`Jet`]s, and how each number depends on the variables of whoever made it.
 ///
@@ -341,6 +343,11 @@ impl<D: Real> Parts<D> {
     #[must_use]
     pub fn values(&self) -> Parts {
         self.map(|_, number| number.value())
+    }
+
+    /// Whether a formula of a user's own says something of it.
+    pub(crate) fn has_formulas(&self) -> bool {
+        self.energy.is_some() || self.area.is_some() || self.twist.is_some()
     }
 
     /// Whether a formula may depend on the pressure.

@@ -5,7 +5,7 @@ use bulge_numerics::Dual;
 
 use crate::FibreError;
 use crate::outcome::{Approach, Outcome, Solution};
-use crate::parts::{PARTS, Parts};
+use crate::parts::{OWN_PARTS, PARTS, Parts};
 use crate::problem::Problem;
 use crate::search::{FAR, Goal, Seen};
 use crate::shape::{Method, Response};
@@ -186,7 +186,18 @@ impl Problem {
     /// # Errors
     /// See [`FibreError`].
     pub fn gradient(&self, contraction: f64, approach: Approach) -> Result<Gradient, FibreError> {
-        const N: usize = 3 + PARTS;
+        if self.parts.has_formulas() {
+            self.gradient_of::<{ 3 + PARTS }>(contraction, approach)
+        } else {
+            self.gradient_of::<{ 3 + OWN_PARTS }>(contraction, approach)
+        }
+    }
+
+    fn gradient_of<const N: usize>(
+        &self,
+        contraction: f64,
+        approach: Approach,
+    ) -> Result<Gradient, FibreError> {
         let (mut names, mut place) = (Vec::with_capacity(PARTS), 2);
         let parts: Parts<Dual<N>> = self.parts.map(|name, number| {
             names.push(name);

@@ -325,7 +325,8 @@ impl Model {
             None => Jet::from(theta[index]),
         };
         let mut parts = body.parts.still();
-        let mut stated = (body.muscle != self.muscle).then(|| Parts::of(&self.muscle).still());
+        let all = Parts::of(&self.muscle);
+        let mut stated = (body.parts != all).then(|| all.still());
         for chosen in self.effects.iter().filter(|chosen| chosen.effect.stage() == Stage::Shape) {
             let theta: Vec<Jet> = self.range(chosen, 0).map(seeded).collect();
             let before = parts.clone();

@@ -68,7 +68,7 @@ impl Class {
 
     /// The class of an effect without which no model can be fitted. It has no rivals, and its length follows
     /// from the decrease of the base's misfit.
-    pub(crate) fn alone(stage: &Stage, place: usize, base: &Stage) -> Self {
+    pub(crate) fn without_baseline(stage: &Stage, place: usize, base: &Stage) -> Self {
         let effect = Arc::clone(&stage.added[place]);
         let scatter = stage.scatter();
         let gain = (base.confirmed.cost() - stage.confirmed.cost()).max(0.0) / scatter;

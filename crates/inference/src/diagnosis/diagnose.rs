@@ -304,7 +304,7 @@ fn classes(context: &Context<'_>, model: &Model, search: &Search) -> Vec<Judged>
         let holds = |stage: &&Stage| stage.added.iter().any(|effect| effect.card().name == name);
         let before = search.stages.iter().take_while(|stage| !holds(stage)).last().unwrap_or(last);
         let confidence = Confidence::of_tried(&before.tried, name, &before.linear.sensitivities.effects);
-        Judged { class: Class::alone(last, place, before), confidence, models: None }
+        Judged { class: Class::without_baseline(last, place, before), confidence, models: None }
     };
     let judged: Vec<Judged> = (0..last.added.len()).into_par_iter().map(of).collect();
     for one in &judged {
