@@ -309,7 +309,9 @@ impl Parts<Jet> {
             Kind::Pleated => self.radius = radius,
             // Fittings that follow the braid go on following where they are as wide.
             Kind::Braided
-                if self.fitting.is_none() && radius.value() == self.radius.value() && !moves(&radius) => {}
+                if self.fitting.is_none()
+                    && radius.value().to_bits() == self.radius.value().to_bits()
+                    && !moves(&radius) => {}
             Kind::Braided => self.fitting = Some(radius),
         }
     }

@@ -107,7 +107,7 @@ impl Model {
     }
 
     /// The same with parts that effects outside the model have changed.
-    pub(crate) fn of_parts(mut self, parts: Parts) -> Self {
+    pub(crate) fn of_parts(mut self, parts: &Parts) -> Self {
         for body in &mut self.bodies {
             body.parts = parts.clone();
         }

@@ -59,7 +59,7 @@ impl MuscleWithEffects {
             model = model.with(effect, Some(numbers))?;
         }
         let parts = model.parts(&model.start())?;
-        let bare = Model::new(&plain).of_parts(parts.clone());
+        let bare = Model::new(&plain).of_parts(&parts);
         let adds = !model.effects().is_empty();
         Ok(Self { parts, model, bare, adds, used, left_out })
     }

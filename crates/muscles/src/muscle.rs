@@ -231,27 +231,6 @@ impl Muscle {
         changed.with_room()
     }
 
-    /// A copy with several parameters changed, in SI and in their order. A number that stays what it is leaves the muscle as it is, to the bit; the
-    /// two numbers of a limit to the unfolding may be new together.
-    ///
-    /// # Errors
-    /// As [`Muscle::with`].
-    pub fn with_all(&self, numbers: &[(Parameter, f64)]) -> Result<Self, MuscleError> {
-        let mut muscle = self.clone();
-        let number = |wanted| numbers.iter().find(|(parameter, _)| *parameter == wanted).map(|(_, v)| *v);
-        let limit = number(Parameter::HoopStiffness).zip(number(Parameter::UnfoldedRadius));
-        if let Some((stiffness, radius)) = limit.filter(|_| muscle.unfolding.is_none()) {
-            let limit = Unfolding::new(LineStiffness::n_per_m(stiffness), Length::m(radius))?;
-            muscle = muscle.with_unfolding(limit);
-        }
-        for &(parameter, value) in numbers {
-            if muscle.get(parameter) != Some(value) {
-                muscle = muscle.with(parameter, value)?;
-            }
-        }
-        Ok(muscle)
-    }
-
     /// The value of a parameter in SI; none if the muscle does not have it.
     #[must_use]
     pub fn get(&self, parameter: Parameter) -> Option<f64> {

@@ -4,8 +4,10 @@ use crate::error::MuscleError;
 use crate::file_error::FileError;
 use crate::keys;
 use crate::learnt::{Place, SourceFile};
+use crate::material::Unfolding;
 use crate::muscle::Muscle;
 use crate::parameter::Parameter;
+use crate::quantity::{Length, LineStiffness};
 use crate::settings::{Setting, Settings, nearest, shortened};
 use serde::Serialize;
 use std::sync::Arc;
@@ -96,6 +98,27 @@ impl Muscle {
 
     fn with_numbers_of(&self, specimen: &Specimen) -> Result<Self, MuscleError> {
         self.clone().without_specimens().with_all(&specimen.numbers)
+    }
+
+    /// A copy with several parameters changed, in SI and in their order. A number that stays what it is leaves the muscle as it is, to the bit; the
+    /// two numbers of a limit to the unfolding may be new together.
+    ///
+    /// # Errors
+    /// As [`Muscle::with`].
+    pub fn with_all(&self, numbers: &[(Parameter, f64)]) -> Result<Self, MuscleError> {
+        let mut muscle = self.clone();
+        let number = |wanted| numbers.iter().find(|(parameter, _)| *parameter == wanted).map(|(_, v)| *v);
+        let limit = number(Parameter::HoopStiffness).zip(number(Parameter::UnfoldedRadius));
+        if let Some((stiffness, radius)) = limit.filter(|_| muscle.unfolding().is_none()) {
+            let limit = Unfolding::new(LineStiffness::n_per_m(stiffness), Length::m(radius))?;
+            muscle = muscle.with_unfolding(limit);
+        }
+        for &(parameter, value) in numbers {
+            if muscle.get(parameter) != Some(value) {
+                muscle = muscle.with(parameter, value)?;
+            }
+        }
+        Ok(muscle)
     }
 
     /// Compares the specimens that are stated with those of the data; returns those of the data of which nothing is stated: they are the muscle as it is.

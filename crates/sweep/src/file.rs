@@ -118,7 +118,7 @@ impl Plan {
     /// let plan = Plan::from_toml(SWEEP_EXAMPLE, "sweep.toml", None)?;
     /// assert_eq!((plan.points(), plan.axes[1].name.as_str()), (5050, "slenderness"));
     /// let error = Plan::from_toml(&SWEEP_EXAMPLE.replace("spacing", "spacin"), "sweep.toml", None).unwrap_err();
-    /// assert_eq!((error.line(), error.instead()), (Some(15), "did you mean `spacing`?"));
+    /// assert_eq!((error.line(), error.instead()), (Some(16), "did you mean `spacing`?"));
     /// # Ok::<(), bulge_muscles::FileError>(())
     /// ```
     ///

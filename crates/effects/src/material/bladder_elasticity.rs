@@ -69,6 +69,7 @@ impl ShapeEffect for BladderElasticity {
 mod tests {
     use super::*;
     use crate::geometry::bench::{cylinder, force, pleated, with};
+    use bulge_fibre::Rubber;
     use bulge_muscles::Parameter;
     use std::f64::consts::PI;
 
@@ -96,6 +97,6 @@ mod tests {
         let stated = cylinder().with(Parameter::Wall, 0.002).unwrap().with(Parameter::C10, 2e5).unwrap();
         assert_eq!(with(&BladderElasticity, &[0.0], &stated).unwrap(), Parts::of(&stated));
         let other = with(&BladderElasticity, &[3e5], &stated).unwrap();
-        assert_eq!(other.rubber.unwrap().c10, 3e5);
+        assert_eq!(other.rubber.unwrap(), Rubber { c10: 3e5, c01: 0.0, wall: 0.002 });
     }
 }
