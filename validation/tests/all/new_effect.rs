@@ -89,12 +89,11 @@ fn an_effect_is_named_in_its_file_and_in_the_list() {
     let texts: Vec<(PathBuf, String)> =
         files.into_iter().map(|path| (path.clone(), fs::read_to_string(path).unwrap())).collect();
     // By its path, as code names it: prose may use the word.
-    let names = |text: &str, name: &str| {
-        let path = format!("::{name}");
+    let names = |text: &str, path: &str| {
         let is_whole = |at: usize| {
             !text[at + path.len()..].starts_with(|c: char| c.is_alphanumeric() || c == '_' || c == ':')
         };
-        text.match_indices(&path).any(|(at, _)| is_whole(at))
+        text.match_indices(path).any(|(at, _)| is_whole(at))
     };
     let mut seen = 0;
     for (own, text) in &texts {
@@ -105,10 +104,12 @@ fn an_effect_is_named_in_its_file_and_in_the_list() {
             if !is_own || name == "UserEffect" || own.ends_with("catalogue.rs") {
                 continue;
             }
+            let module = own.file_stem().unwrap().to_string_lossy();
+            let path = format!("{module}::{name}");
             let others: Vec<&PathBuf> = texts
                 .iter()
-                .filter(|(path, text)| path != own && names(text, name))
-                .map(|(path, _)| path)
+                .filter(|(file, text)| file != own && names(text, &path))
+                .map(|(file, _)| file)
                 .collect();
             let entry = |path: &&PathBuf| path.ends_with("mod.rs") || path.ends_with("new_effect.rs");
             assert!(others.len() == 1 && others.iter().all(entry), "{name}: {others:?}");

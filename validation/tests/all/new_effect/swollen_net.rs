@@ -32,7 +32,7 @@ impl Effect for SwollenNet {
     }
 
     fn parameters(&self) -> Vec<ParameterCard<'_>> {
-        vec![ParameterCard::new("part", ("%", 0.01), (-0.2, 0.2), 0.02, "how much")]
+        vec![ParameterCard::new("part", ("%", 0.01), (-20.0, 20.0), 2.0, "how much")]
     }
 
     fn action(&self) -> Action<'_> {
