@@ -260,14 +260,26 @@ impl<D: Real> Net<D> {
     /// T_r: sigma T_r/(1+e)^2 + (T/(1+e) + w_11) sigma_r + w_12 = h,       sigma sigma_r = (1 + e) c T_r - q^2 r
     /// ```
     fn local_of_everything(&self, r: D, tension: D) -> Local<D> {
+        let sigma = self.sigma(r, tension);
+        self.local_in(&self.wall(sigma, r), sigma, r, tension)
+    }
+
+    /// Tension and local quantities of fibres that don't stretch where H has a value: what the wall stores is asked for once.
+    pub(crate) fn local_with_energy(&self, r: D, energy: D) -> (D, Local<D>) {
+        let sigma = self.sigma(r, D::from(0.0));
+        let wall = self.wall(sigma, r);
+        let tension = (energy + wall.w - sigma * wall.w_1) / (sigma * sigma);
+        (tension, self.local_in(&wall, sigma, r, tension))
+    }
+
+    /// The same with the energy of the wall known.
+    fn local_in(&self, w: &Wall<D>, sigma: D, r: D, tension: D) -> Local<D> {
         let c = self.compliance;
         let stretch = c * tension + 1.0;
         let q2 = self.turn * self.turn;
         let q2r = q2 * r;
-        let sigma = (stretch * stretch - q2r * r).sqrt();
         let per_sigma = D::from(1.0) / sigma;
         let per_stretch = D::from(1.0) / stretch;
-        let w = self.wall(sigma, r);
         let pull = tension * per_stretch;
         let force = pull * sigma + w.w_1;
         let hoop = (pull * q2r + w.w_2) * per_sigma;

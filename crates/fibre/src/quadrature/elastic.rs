@@ -143,6 +143,11 @@ fn tension_at(net: &Net<f64>, r: f64, energy: f64, near: f64) -> Option<f64> {
     None
 }
 
+/// Whether the tension follows from H without a search.
+fn is_inextensible(net: &Net<f64>) -> bool {
+    net.compliance == 0.0
+}
+
 /// dH/dT = sigma dN/dT.
 fn slope_of_energy(net: &Net<f64>, r: f64, tension: f64) -> f64 {
     let local = net.local(r, tension);
@@ -210,11 +215,18 @@ impl<D: Real> Elastic<D> {
         let mut tension = self.tension;
         for (part, value) in span.parts().zip(values) {
             let r = self.radius(part);
-            // One Newton step that carries the derivatives.
-            let gap = net.hamiltonian(r, D::from(*value)) - self.energy;
-            tension = -gap / slope_of_energy(&plain, r.value(), *value) + *value;
+            let local = if is_inextensible(&plain) {
+                let (found, local) = net.local_with_energy(r, self.energy);
+                tension = found;
+                local
+            } else {
+                // One Newton step that carries the derivatives.
+                let gap = net.hamiltonian(r, D::from(*value)) - self.energy;
+                tension = -gap / slope_of_energy(&plain, r.value(), *value) + *value;
+                net.local(r, tension)
+            };
             strains.push(net.compliance * tension);
-            bends.push(net.local(r, tension).hoop_r - net.section(r).area_rr);
+            bends.push(local.hoop_r - net.section(r).area_rr);
         }
         let sum = |weights: &[f64]| {
             let terms = weights.iter().zip(&bends);
@@ -268,6 +280,12 @@ impl Elastic<f64> {
         let net = self.law(span);
         let (mut r, mut tension) = (self.radius(span.from), self.tension);
         let mut values = ArrayVec::new();
+        if is_inextensible(&net) {
+            // There is no root to look for.
+            values.extend(span.parts().map(|_| tension));
+            *evaluations += u32::try_from(values.len()).unwrap_or(u32::MAX);
+            return Some(values);
+        }
         for part in span.parts() {
             let next = self.radius(part);
             let near = tension + net.local(r, tension).tension_r * (next - r);
