@@ -121,6 +121,7 @@ impl Context<'_> {
         let list = singles(&without.linear, &without.confirmed.prepared.model);
         let best = list.iter().map(|h| h.log_evidence).fold(f64::NEG_INFINITY, f64::max);
         let mut fitted = 0;
+        let known_of = |place: usize| without.tried.iter().find(|tried| tried.hypothesis.effects == [place]);
         let rivals: Vec<(Hypothesis, f64, bool)> = list
             .into_iter()
             .filter(|h| Some(h.effects[0]) != own)
@@ -130,6 +131,8 @@ impl Context<'_> {
                 let near = (h.log_evidence > best - FITTED * scatter || separation < RULE.separation)
                     && fitted < MOST;
                 fitted += usize::from(near);
+                // A fit that is there says more than a linear step, which is far off where an effect is large.
+                let near = near || known_of(h.effects[0]).is_some();
                 (h, separation, near)
             })
             .collect();
@@ -138,7 +141,7 @@ impl Context<'_> {
             .map(|(hypothesis, separation, near)| {
                 let (linear, gain_of) = (hypothesis.log_evidence, hypothesis.gain);
                 let place = hypothesis.effects[0];
-                let known = without.tried.iter().find(|tried| tried.hypothesis.effects == [place]);
+                let known = known_of(place);
                 let tried =
                     near.then(|| known.cloned().unwrap_or_else(|| beside.fitted(base, without, hypothesis)));
                 let fit = tried.as_ref().and_then(|tried| tried.confirmed.as_ref());
