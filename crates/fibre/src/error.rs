@@ -57,6 +57,22 @@ pub enum FibreError {
         /// r0/sin(alpha0) \[m\].
         widest_m: f64,
     },
+    /// A formula of a user's own that has no value.
+    #[error(
+        "the formula for `{what}` is {value} at rest (l1 = l2 = 1, r = r0): it needs a finite value there; look at its logarithms, roots and divisions"
+    )]
+    FormulaWithoutValue {
+        /// Which one.
+        what: &'static str,
+        /// What it gives.
+        value: f64,
+    },
+    /// A formula for the area beside cloth that has one.
+    #[error("a formula for `area` says the area, and so does `{other}`: leave one of them out")]
+    AreaTwice {
+        /// The effect that has an area too.
+        other: &'static str,
+    },
     /// The contraction lies beyond the one at which the force vanishes.
     #[error(
         "no equilibrium with a pulling force at contraction {:.4} %: the limit of this muscle is {:.4} %, where the force vanishes",
@@ -211,6 +227,8 @@ impl FibreError {
             | Self::NotPositive { .. }
             | Self::ClothTooNarrow { .. }
             | Self::FittingTooWide { .. }
+            | Self::FormulaWithoutValue { .. }
+            | Self::AreaTwice { .. }
             | Self::NoLength { .. }
             | Self::NoClosedForm { .. }
             | Self::NothingToShoot => Fault::Input,

@@ -142,6 +142,12 @@ impl<D: Real> Net<D> {
         self.formulas.as_ref().is_some_and(|formulas| formulas.energy.is_some())
     }
 
+    /// Whether that formula has a kink: what follows from it is no smooth function of the radius.
+    pub(crate) fn has_kinked_energy(&self) -> bool {
+        let energy = self.formulas.as_ref().and_then(|formulas| formulas.energy.as_ref());
+        energy.is_some_and(|energy| energy.tape.has_kinks())
+    }
+
     /// Whether a formula of a user's own is the area.
     pub(crate) fn has_area(&self) -> bool {
         self.formulas.as_ref().is_some_and(|formulas| formulas.area.is_some())

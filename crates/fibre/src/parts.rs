@@ -15,6 +15,9 @@ use crate::problem::{
     BRAID_ANGLE, BRAIDED_SLENDERNESS, LOBED_FIBRES, LOBED_LENGTH, PLEATED_SLENDERNESS, WIDEST_FITTING,
 };
 
+/// Any pressure will do to see whether a formula has a value \[Pa\].
+const ANY_PRESSURE: f64 = 1e5;
+
 /// Derivatives that a [`Jet`] carries.
 pub const LANES: usize = 8;
 
@@ -202,12 +205,31 @@ impl Parts {
         }
     }
 
+    /// Refuses formulas without a value at rest, and a formula for an area that cloth has already.
+    fn check_formulas(&self) -> Result<(), FibreError> {
+        let at_rest = [1.0, 1.0, self.radius, self.radius, ANY_PRESSURE, self.angle, self.length];
+        let of = |formula: &Formula| formula.run::<1>(at_rest)[0];
+        let all = [("energy", &self.energy), ("area", &self.area), ("twist", &self.twist)];
+        for (what, formula) in all.into_iter().filter_map(|(what, formula)| Some((what, formula.as_ref()?))) {
+            let value = of(formula);
+            if !value.is_finite() {
+                return Err(FibreError::FormulaWithoutValue { what, value });
+            }
+        }
+        match &self.area {
+            Some(_) if self.lobes.is_some() => Err(FibreError::AreaTwice { other: "lobes" }),
+            Some(_) if self.cloth.is_some() => Err(FibreError::AreaTwice { other: "limited-unfolding" }),
+            _ => Ok(()),
+        }
+    }
+
     /// Refuses what is out of the ranges that are computed.
     pub(crate) fn check_ranges(&self) -> Result<(), FibreError> {
         let end_m = self.fitting.unwrap_or(self.radius);
         if let Some(cloth) = self.cloth.filter(|cloth| cloth.radius < end_m) {
             return Err(FibreError::ClothTooNarrow { taut_m: cloth.radius, end_m });
         }
+        self.check_formulas()?;
         let inside = |what, value: f64, [low, high]: [f64; 2]| {
             // A ratio of two decimal lengths may miss a round limit by rounding.
             let slack = 1e-9 * high;

@@ -63,9 +63,9 @@ const LEAST_RATIO: f64 = 0.1;
 /// Largest 1 - cos(chi), as in the integration of the ODE.
 const MOST_TURNED: f64 = 1.999;
 
-/// Whether the meridians of a net are quadratures: without lobes, and without a formula for the area.
+/// Whether the meridians of a net are quadratures: without lobes, without a formula for the area, and without a kink in one for the energy.
 pub(crate) fn suits<D: Real>(net: &Net<D>) -> bool {
-    net.lobes.is_none() && !net.has_area()
+    net.lobes.is_none() && !net.has_area() && !net.has_kinked_energy()
 }
 
 /// Whether the tension follows from the energy of rubber in closed form; else it is interpolated as that of fibres that stretch.

@@ -374,6 +374,19 @@ impl Tape {
         self.steps.is_empty()
     }
 
+    /// Whether it has a function with a kink, so that its derivatives may jump.
+    #[must_use]
+    pub fn has_kinks(&self) -> bool {
+        use Function::{Abs, Clamp, If, Max, Min, Sign};
+        let is_kink = |step: &Step| match step {
+            Step::Call(function, _) => {
+                matches!(function, Abs | Sign | Function::Step | Min | Max | Clamp | If)
+            }
+            _ => false,
+        };
+        self.steps.iter().any(|(_, step)| is_kink(step))
+    }
+
     /// How many numbers it needs at a time.
     #[must_use]
     pub fn registers(&self) -> usize {

@@ -318,8 +318,39 @@ mod tests {
         assert!(problem.solve(Given::Force(0.0), Approach::Auto).unwrap().contraction - limit < 1e-9);
     }
 
+    /// A sling that comes taut on the way: its energy has a kink, so the meridian is integrated.
+    #[test]
+    fn a_kink_is_integrated() {
+        let sling = "[effects.sling]\ntitle = \"Sling\"\nenergy = \"k*max(0, l2 - 1.2)^2\"\n\
+            parameters.k = { unit = \"N/m\", typical = \"2000 N/m\", low = \"0 N/m\", high = \"1e6 N/m\" }\n";
+        let at = |k: f64, contraction: f64| {
+            let parts = own(sling).reshaped(&[k], &clamped()).unwrap();
+            let problem = Problem::new(&parts, Pressure::bar(3.0)).unwrap();
+            let found = problem.follow(contraction, Approach::Auto).unwrap();
+            (found.force_n, problem.gradient(contraction, Approach::Auto).unwrap())
+        };
+        // Slack up to a contraction, then a loss that grows with the stiffness.
+        assert!((at(2e3, 0.03).0 / at(0.0, 0.03).0 - 1.0).abs() < 1e-9);
+        let [soft, stiff] = [2e3, 4e3].map(|k| at(0.0, 0.18).0 - at(k, 0.18).0);
+        assert!(soft > 1.0 && stiff > 1.5 * soft, "{soft} {stiff}");
+        // dF/dp = -dV/dl, as exactly as derivatives pass a kink whose place moves within a step of the integration.
+        let gradient = at(2e3, 0.18).1;
+        let volume = gradient.by_contraction[1] / clamped().length().to_m();
+        assert!((gradient.by_pressure[0] / volume - 1.0).abs() < 2e-4);
+    }
+
     #[test]
     fn what_cannot_be_is_refused() {
+        let none = SHAPE_EXAMPLE.replace("l1^2 +", "ln(l1 - 2) +");
+        let parts = own(&none).reshaped(&[3e5, 0.002], &clamped()).unwrap();
+        let message = Problem::new(&parts, Pressure::bar(1.0)).unwrap_err().to_string();
+        assert!(message.contains("`energy` is NaN at rest"), "{message}");
+        let lobed = preset("ppam-2-r16").unwrap().with(Parameter::ClothCircumference, 0.33).unwrap();
+        let area = "[effects.x]\ntitle = \"x\"\narea = \"pi*(r + t)^2\"\n\
+            parameters.t = { unit = \"mm\", typical = \"1 mm\", low = \"0 mm\", high = \"5 mm\" }\n";
+        let parts = own(area).reshaped(&[0.001], &lobed).unwrap();
+        let message = Problem::new(&parts, Pressure::bar(1.0)).unwrap_err().to_string();
+        assert!(message.contains("so does `lobes`"), "{message}");
         let two = own(SHAPE_EXAMPLE);
         let mut parts = two.reshaped(&[3e5, 0.002], &clamped()).unwrap().still();
         let theta = [3e5, 0.002].map(Jet::from);
