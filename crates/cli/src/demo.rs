@@ -8,9 +8,7 @@ use bulge_effects::Catalogue;
 use bulge_fibre::{Approach, FibreError, Given, Problem, Response, isobars};
 use bulge_inference::{Comparison, Diagnosis, Options, Verdict, compare_with_rows};
 use bulge_measurements::Data;
-use bulge_muscles::{
-    Bladder, Braided, Construction, Ends, Length, Muscle, MuscleError, Pressure, from_toml, preset,
-};
+use bulge_muscles::{Bladder, Ends, Length, Muscle, MuscleError, Pressure, from_toml, preset};
 use bulge_sweep::TableDescription;
 use bulge_vtk::{write_series, write_vtp};
 use clap::Args;
@@ -266,17 +264,9 @@ fn models(
     textbook: &Muscle,
     bladder: Result<Bladder, MuscleError>,
 ) -> Result<[(&'static str, Muscle); 3], MuscleError> {
-    let Construction::Braided(braid) = *textbook.construction() else {
-        return Ok([
-            ("as shipped", textbook.clone()),
-            ("as shipped", textbook.clone()),
-            ("as shipped", textbook.clone()),
-        ]);
-    };
-    let with = |braid: Braided| Muscle::new(textbook.name(), textbook.length(), Construction::Braided(braid));
-    let clamped = with(braid.with_ends(Ends::Clamped))?;
+    let clamped = textbook.clone().with_ends(Ends::Clamped);
     Ok([
-        ("textbook cylinder", with(braid.with_ends(Ends::Cylinder))?),
+        ("textbook cylinder", textbook.clone().with_ends(Ends::Cylinder)),
         ("exact clamped ends", clamped.clone()),
         ("exact ends and rubber bladder", clamped.with_bladder(bladder?)?),
     ])

@@ -5,8 +5,8 @@
 //! ratio of the area of the polygon to that of the circle.
 
 use bulge_fibre::{
-    ADIABATIC, AMBIENT_PRESSURE, Approach, Convergence, FibreError, Given, MeridianPoint, Method, Problem,
-    Response, Shape,
+    ADIABATIC, AMBIENT_PRESSURE, Approach, Convergence, FibreError, Given, MeridianPoint, Method, Parts,
+    Problem, Response, Shape,
 };
 use bulge_membrane::mesher::{Grading, revolved};
 use bulge_membrane::{
@@ -14,7 +14,7 @@ use bulge_membrane::{
     Structure, Support, Thread, Tolerance,
 };
 use bulge_model::MuscleWithEffects;
-use bulge_muscles::{Construction, Ends, Muscle, Pressure, Quantity};
+use bulge_muscles::{Ends, Pressure, Quantity};
 use std::f64::consts::{PI, TAU};
 
 /// Elements at least.
@@ -63,11 +63,11 @@ pub fn shape(
     given: Given,
     points: usize,
 ) -> Result<Shape, ElementsError> {
-    let muscle = extended.muscle();
-    check(muscle, extended)?;
+    check(extended)?;
+    let parts = extended.parts();
     // The meridian knows what is possible; of a force or a volume it also tells where they are, corrected below.
-    let near = Problem::new(muscle, pressure)?.solve(given, Approach::Auto)?.contraction;
-    let mut elements = Elements::new(muscle, pressure, points)?;
+    let near = Problem::new(parts, pressure)?.solve(given, Approach::Auto)?.contraction;
+    let mut elements = Elements::new(parts, pressure, points)?;
     let contraction = match given {
         Given::Contraction(contraction) => contraction,
         Given::Length(length) => 1.0 - length / elements.length,
@@ -89,22 +89,21 @@ pub fn shape(
     Ok(elements.drawn(contraction, &state, slopes, pressure.si()))
 }
 
-fn check(muscle: &Muscle, extended: &MuscleWithEffects) -> Result<(), ElementsError> {
-    let refused = |what| Err(ElementsError::Unknown(what));
-    if extended.adds_force() || !extended.used().is_empty() {
-        return refused("effects");
-    }
-    if muscle.unfolding().is_some() {
-        return refused("limited unfolding");
-    }
-    match muscle.construction() {
-        Construction::Pleated(p) if p.cloth_circumference().is_some() => refused("lobes"),
-        Construction::Pleated(p) if p.pleat_depth().si() > 0.0 => refused("pleat depth"),
-        Construction::Pleated(p) if p.misalignment().si() > 0.0 => refused("misaligned fibres"),
-        Construction::Braided(b) if b.ends() == Ends::Cylinder => refused("cylinder without ends"),
-        Construction::Braided(b) if b.fitting_radius() != b.radius() => refused("fittings of another radius"),
-        Construction::Braided(_) if muscle.gas_wall().is_some() => refused("gas inside a thick wall"),
-        _ => Ok(()),
+fn check(extended: &MuscleWithEffects) -> Result<(), ElementsError> {
+    let parts = extended.parts();
+    let strange = [
+        (extended.adds_force() || !extended.used().is_empty(), "effects"),
+        (parts.cloth.is_some(), "limited unfolding"),
+        (parts.lobes.is_some(), "lobes"),
+        (parts.depth > 0.0, "pleat depth"),
+        (parts.is_pleated() && parts.angle != 0.0, "misaligned fibres"),
+        (parts.ends == Ends::Cylinder, "cylinder without ends"),
+        (parts.fitting.is_some_and(|fitting| fitting != parts.radius), "fittings of another radius"),
+        (parts.depth < 0.0, "gas inside a thick wall"),
+    ];
+    match strange.into_iter().find(|(is_there, _)| *is_there) {
+        Some((_, what)) => Err(ElementsError::Unknown(what)),
+        None => Ok(()),
     }
 }
 
@@ -124,21 +123,19 @@ fn slope(places: &[[f64; 3]], node: usize) -> f64 {
 }
 
 impl Elements {
-    fn new(muscle: &Muscle, pressure: Pressure, points: usize) -> Result<Self, ElementsError> {
-        let (length, radius) = (muscle.length().si(), muscle.end_radius().si());
-        let fibres = muscle.fibres().map(f64::from);
-        let (angle, share) = match muscle.construction() {
-            Construction::Pleated(_) => (0.0, fibres.map_or(1.0, |n| (TAU / n).sin() / (TAU / n))),
-            Construction::Braided(braided) => (braided.braid_angle().si(), 1.0),
+    fn new(parts: &Parts, pressure: Pressure, points: usize) -> Result<Self, ElementsError> {
+        let Parts { length, radius, angle, .. } = *parts;
+        let of_polygon = |n: f64| (TAU / n).sin() / (TAU / n);
+        let share = parts.fibres.filter(|_| parts.is_polygon).map_or(1.0, of_polygon);
+        let threads = parts.fibres.unwrap_or(1.0);
+        let thread = if parts.compliance > 0.0 {
+            Thread::Elastic { stiffness: 1.0 / (parts.compliance * threads) }
+        } else {
+            Thread::Inextensible
         };
-        let threads = fibres.unwrap_or(1.0);
-        let thread = muscle
-            .fibre()
-            .map_or(Thread::Inextensible, |fibre| Thread::Elastic { stiffness: fibre.stiffness().si() });
         let mut layers = vec![RingLayer::Threads { thread, count: threads, angle }];
-        if let Some(bladder) = muscle.bladder() {
-            let wall = bladder.wall().si();
-            let law = Law::MooneyRivlin { c1: wall * bladder.c10().si(), c2: wall * bladder.c01().si() };
+        if let Some(rubber) = parts.rubber {
+            let law = Law::MooneyRivlin { c1: rubber.wall * rubber.c10, c2: rubber.wall * rubber.c01 };
             let sheet = Sheet { cloth: Cloth::Isotropic(law), wrinkles: false, residual: 0.0 };
             layers.push(RingLayer::Sheet { sheet, fullness: 1.0 });
         }
@@ -148,8 +145,8 @@ impl Elements {
         let mesh = revolved(|t| [radius, length * t], halves * every, true, Grading::Ends(3.0));
         let ends = [("first", 0), ("last", 1)];
         let supports = ends.map(|(group, fitting)| (group.to_owned(), Support::Fitting { fitting }));
-        let parts = [("wall".to_owned(), Part::Revolved { layers })];
-        let structure = Structure::new(&mesh, &parts, &supports, &[Fitting::Placed; 2])?;
+        let walls = [("wall".to_owned(), Part::Revolved { layers })];
+        let structure = Structure::new(&mesh, &walls, &supports, &[Fitting::Placed; 2])?;
         let solver = Solver::new(structure, Copies::ONE, Tolerance::default())?;
         let pressure = pressure.si() * share;
         Ok(Self { solver, pressure, share, length, radius, sine: angle.sin(), threads, every })

@@ -107,6 +107,12 @@ impl Setting {
         }
     }
 
+    /// Whether it is a pleated muscle.
+    #[must_use]
+    pub fn is_pleated(&self) -> bool {
+        self.kind == Kind::Pleated
+    }
+
     /// The same with the fibres and the bladder of parts that effects have changed.
     #[must_use]
     pub fn with(self, parts: &Parts) -> Self {

@@ -369,6 +369,12 @@ impl<D: Real> Parts<D> {
         self.map(|_, number| number.value())
     }
 
+    /// Whether they are those of a pleated muscle.
+    #[must_use]
+    pub fn is_pleated(&self) -> bool {
+        self.kind == Kind::Pleated
+    }
+
     /// Whether a formula of a user's own says something of it.
     pub(crate) fn has_formulas(&self) -> bool {
         self.energy.is_some() || self.area.is_some() || self.twist.is_some()

@@ -1,6 +1,6 @@
 //! Fibre count: a pleated muscle has another number of fibres than stated (S1, eqs. 5 and 29; catalogue G1).
 
-use bulge_muscles::{Kind, Parameter};
+use bulge_muscles::Parameter;
 use bulge_numerics::Real;
 use std::f64::consts::TAU;
 
@@ -65,7 +65,7 @@ impl Effect for FibreCount {
 
 impl InputEffect for FibreCount {
     fn act(&self, Row { setting, theta, .. }: Row<'_>, input: &mut Input) {
-        if setting.kind == Kind::Pleated
+        if setting.is_pleated()
             && let Some(stated) = setting.fibres
         {
             let count = if theta[0].value() < LEAST { Jet::from(LEAST) } else { theta[0] };
@@ -81,6 +81,7 @@ mod tests {
     use super::*;
     use crate::effect::{Moment, Setting};
     use crate::probe::SETTING;
+    use bulge_muscles::Kind;
 
     fn area(stated: Option<u32>, count: f64) -> f64 {
         let setting = Setting { kind: Kind::Pleated, fibres: stated, ..SETTING };

@@ -1,7 +1,5 @@
 //! Fibre creep: fibres under tension get longer with the logarithm of time (catalogue R6).
 
-use bulge_muscles::Kind;
-
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
 use crate::effect::{Action, Effect, Input, InputEffect, Row};
 use crate::mechanism::{Form, Mechanism};
@@ -61,9 +59,10 @@ impl Effect for FibreCreep {
 impl InputEffect for FibreCreep {
     fn act(&self, Row { moment, setting, theta, .. }: Row<'_>, input: &mut Input) {
         let strain = theta[0] * (1.0 + moment.time).log10();
-        input.give_tension.linear += match setting.kind {
-            Kind::Pleated => strain * (-input.contraction + 1.0),
-            Kind::Braided => strain / setting.braid_angle.cos(),
+        input.give_tension.linear += if setting.is_pleated() {
+            strain * (-input.contraction + 1.0)
+        } else {
+            strain / setting.braid_angle.cos()
         };
     }
 }
@@ -73,6 +72,7 @@ mod tests {
     use super::*;
     use crate::effect::{Jet, Moment, Setting};
     use crate::probe::{SETTING, input};
+    use bulge_muscles::Kind;
     use bulge_numerics::Real;
 
     #[test]

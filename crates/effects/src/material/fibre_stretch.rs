@@ -1,7 +1,7 @@
 //! Fibre stretch: the fibres are not inextensible (Daerden 1999 for the PPAM, Davis 2003 for the braid; catalogue E1, E2 and B3).
 
 use bulge_fibre::{Jet, Parts};
-use bulge_muscles::{Force, Kind, MuscleError, Quantity, check};
+use bulge_muscles::{Force, MuscleError, Quantity, check};
 use bulge_numerics::Real;
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
@@ -77,7 +77,7 @@ impl ShapeEffect for FibreStretch {
         }
         check::positive("fibre.stiffness", Force::from_si(compliance.value().recip()))?;
         // Tension and stress are told of one fibre.
-        if parts.kind == Kind::Braided && parts.fibres.is_none() {
+        if !parts.is_pleated() && parts.fibres.is_none() {
             parts.fibres = Some(Jet::from(ASSUMED_FIBRES));
         }
         parts.compliance = compliance;

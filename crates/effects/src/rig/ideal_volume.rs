@@ -1,6 +1,5 @@
 //! The volume of a muscle of inextensible fibres from its dimensions alone: braid a cylinder, pleated muscle of circular meridians.
 
-use bulge_muscles::Kind;
 use bulge_numerics::Real;
 
 use crate::effect::{Jet, Setting};
@@ -31,9 +30,10 @@ impl IdealVolume {
     /// Against the equilibrium of the shipped muscles the slope is right to 1 % up to 20 % and 6 % too small at 35 % (pleated), 7 % too large
     /// at 10 % and 17 % at 25 % (clamped braid of 250 mm, whose ends hold gas back); where it is worst the force is smallest.
     pub(crate) fn at(contraction: Jet, setting: &Setting) -> Self {
-        match setting.kind {
-            Kind::Braided => Self::cylinder(contraction, setting.braid_angle.cos()),
-            Kind::Pleated => Self::barrel(contraction, setting.radius / setting.length),
+        if setting.is_pleated() {
+            Self::barrel(contraction, setting.radius / setting.length)
+        } else {
+            Self::cylinder(contraction, setting.braid_angle.cos())
         }
     }
 

@@ -1,7 +1,7 @@
 //! Materials of the groups of a case's mesh.
 
 use bulge_muscles::settings::{Keys, Setting, Settings};
-use bulge_muscles::{Construction, Dimension, FileError, Muscle, Parameter};
+use bulge_muscles::{Dimension, FileError, Muscle, Parameter};
 use std::collections::BTreeSet;
 
 use super::read::{direction, in_range, name, number, positive};
@@ -169,10 +169,7 @@ fn part(
                 // Only their sum matters if they are inextensible.
                 (None, None) => 1,
             };
-            let braid = muscle.and_then(|muscle| match muscle.construction() {
-                Construction::Braided(_) => muscle.get(Parameter::BraidAngle),
-                Construction::Pleated(_) => None,
-            });
+            let braid = muscle.and_then(|muscle| muscle.get(Parameter::BraidAngle));
             let steepest = 89.0_f64.to_radians();
             let range = "from 0 to 89 degrees to the meridian";
             let angle = in_range(table, "angle", Dimension::NONE, |a| (0.0..=steepest).contains(&a), range)?;

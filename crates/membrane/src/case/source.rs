@@ -1,7 +1,7 @@
 //! The mesh of a case: from a file, or from one of our meshers.
 
 use bulge_muscles::settings::{Keys, Settings};
-use bulge_muscles::{Construction, Dimension, FileError, Length, Muscle};
+use bulge_muscles::{Dimension, FileError, Length, Muscle, Parameter};
 use std::io::Read as _;
 use std::path::Path;
 
@@ -53,7 +53,7 @@ pub(super) struct Source {
 }
 
 #[derive(Debug, Clone, Copy)]
-enum Kind {
+enum Mesher {
     Tube,
     Disc,
     Sphere,
@@ -61,12 +61,12 @@ enum Kind {
     Pleated,
 }
 
-const KINDS: &[(&str, Kind)] = &[
-    ("tube", Kind::Tube),
-    ("disc", Kind::Disc),
-    ("sphere", Kind::Sphere),
-    ("square", Kind::Square),
-    ("pleated", Kind::Pleated),
+const MESHERS: &[(&str, Mesher)] = &[
+    ("tube", Mesher::Tube),
+    ("disc", Mesher::Disc),
+    ("sphere", Mesher::Sphere),
+    ("square", Mesher::Square),
+    ("pleated", Mesher::Pleated),
 ];
 
 pub(super) fn read(settings: &Settings<'_>, folder: Option<&Path>) -> Result<Source, FileError> {
@@ -152,12 +152,12 @@ fn bytes(path: &Path) -> Result<Vec<u8>, String> {
 }
 
 /// The keys of a kind of mesh.
-fn known(kind: Kind) -> &'static [&'static str] {
+fn known(kind: Mesher) -> &'static [&'static str] {
     match kind {
-        Kind::Tube => &["muscle", "radius", "length", "grading"],
-        Kind::Disc | Kind::Sphere => &["radius"],
-        Kind::Square => &["side"],
-        Kind::Pleated => &["muscle", "radius", "length", "fibres", "circumference", "depth"],
+        Mesher::Tube => &["muscle", "radius", "length", "grading"],
+        Mesher::Disc | Mesher::Sphere => &["radius"],
+        Mesher::Square => &["side"],
+        Mesher::Pleated => &["muscle", "radius", "length", "fibres", "circumference", "depth"],
     }
 }
 
@@ -170,7 +170,7 @@ struct MesherOptions<'a, 't> {
 }
 
 fn made(table: &Settings<'_>, folder: Option<&Path>) -> Result<Source, FileError> {
-    let kind = table.word("kind", KINDS)?.ok_or_else(|| table.missing("kind"))?;
+    let kind = table.word("kind", MESHERS)?.ok_or_else(|| table.missing("kind"))?;
     for (key, _) in KEYS {
         let is_known = ["kind", "cells", "order"].contains(key) || known(kind).contains(key);
         if table.get(key).is_some() && !is_known {
@@ -189,11 +189,11 @@ fn made(table: &Settings<'_>, folder: Option<&Path>) -> Result<Source, FileError
     let muscle = table.get("muscle").map(|_| table.muscle("muscle", folder)).transpose()?;
     let wish = MesherOptions { table, cells: cells(table)?, is_quadratic, muscle };
     let mut source = match kind {
-        Kind::Tube => wish.tube(),
-        Kind::Disc => wish.disc(),
-        Kind::Sphere => wish.sphere(),
-        Kind::Square => wish.square(),
-        Kind::Pleated => wish.pleated(),
+        Mesher::Tube => wish.tube(),
+        Mesher::Disc => wish.disc(),
+        Mesher::Sphere => wish.sphere(),
+        Mesher::Square => wish.square(),
+        Mesher::Pleated => wish.pleated(),
     }?;
     source.muscle = wish.muscle;
     Ok(source)
@@ -320,11 +320,7 @@ impl MesherOptions<'_, '_> {
 
 fn pleated(wish: &MesherOptions<'_, '_>) -> Result<Pleated, FileError> {
     let (table, muscle) = (wish.table, wish.muscle.as_ref());
-    let own = muscle.and_then(|muscle| match muscle.construction() {
-        Construction::Pleated(pleated) => Some(*pleated),
-        Construction::Braided(_) => None,
-    });
-    if muscle.is_some() && own.is_none() {
+    if muscle.is_some_and(|muscle| !muscle.is_pleated()) {
         let what = "a pleated mesh needs a pleated muscle, and this one is braided";
         return Err(table.error(table.value_span("muscle"), what, "write `kind = \"tube\"`"));
     }
@@ -334,8 +330,9 @@ fn pleated(wish: &MesherOptions<'_, '_>) -> Result<Pleated, FileError> {
         let what = format!("{fibres} fibres are not possible: 3 to 10000 are");
         return Err(table.error(table.value_span("fibres"), what, "write such as `fibres = 40`"));
     }
-    let radius = wish.length("radius", |_| own.map(|own| own.radius()))?;
-    let circumference = wish.length("circumference", |_| own.and_then(|own| own.cloth_circumference()))?;
+    let own = |parameter| muscle.and_then(|muscle| muscle.get(parameter)).map(Length::m);
+    let radius = wish.length("radius", |_| muscle.map(Muscle::radius))?;
+    let circumference = wish.length("circumference", |_| own(Parameter::ClothCircumference))?;
     if circumference < 2.0 * PI * radius {
         let what = format!(
             "a cloth of {:.4} mm doesn't reach round the fibres' circle of {:.4} mm",
@@ -350,7 +347,7 @@ fn pleated(wish: &MesherOptions<'_, '_>) -> Result<Pleated, FileError> {
         radius,
         length: wish.length("length", |muscle| Some(muscle.length()))?,
         circumference,
-        depth: depth.or(own.map(|own| own.pleat_depth().to_m())).unwrap_or(0.0),
+        depth: depth.or(own(Parameter::PleatDepth).map(Length::to_m)).unwrap_or(0.0),
         cells: wish.surface()?,
         is_quadratic: wish.is_quadratic,
     })

@@ -1,10 +1,8 @@
 //! What the axes of a sweep file can't be, together or with its muscle.
 
 use bulge_effects::{Catalogue, known};
-use bulge_fibre::{Approach, Problem};
-use bulge_muscles::{
-    Construction, Ends, FibreCount, FileError, Learnt, Muscle, Parameter, Pressure, Quantity as _,
-};
+use bulge_fibre::{Approach, Parts, Problem};
+use bulge_muscles::{Ends, FileError, Learnt, Muscle, Parameter, Pressure, Quantity as _};
 use std::f64::consts::TAU;
 
 use super::axes::Placed;
@@ -65,22 +63,19 @@ impl Family<'_, '_> {
     fn check_group(&self, placed: &Placed<'_>) -> Result<(), FileError> {
         let refused =
             |what: &str, instead: &str| Err(placed.settings.error(placed.name.clone(), what, instead));
-        match self.muscle.construction() {
-            Construction::Braided(_) => refused(
+        if !self.muscle.is_pleated() {
+            return refused(
                 "the elastic group p sin(2 pi/n) R^2/EA belongs to pleated muscles",
                 "vary the stiffness of the fibres: `[axes.fibre_stiffness]`",
-            ),
-            Construction::Pleated(pleated)
-                if pleated.fibres() == FibreCount::Continuous
-                    && !self.varies(&Quantity::Parameter(Parameter::Fibres)) =>
-            {
-                refused(
-                    "the elastic group p sin(2 pi/n) R^2/EA is 0 for continuous fibres, n -> infinity",
-                    "name a muscle with a number of fibres, or add such as `axes.fibres.list = [40]`",
-                )
-            }
-            Construction::Pleated(_) => Ok(()),
+            );
         }
+        if self.muscle.fibres().is_none() && !self.varies(&Quantity::Parameter(Parameter::Fibres)) {
+            return refused(
+                "the elastic group p sin(2 pi/n) R^2/EA is 0 for continuous fibres, n -> infinity",
+                "name a muscle with a number of fibres, or add such as `axes.fibres.list = [40]`",
+            );
+        }
+        Ok(())
     }
 
     /// The muscle at the ends of each axis. Axes that are set before it are at their lower ends, as it may need them: a fibre's stiffness needs a number
@@ -174,10 +169,7 @@ impl Family<'_, '_> {
 
     /// Why the method is not possible.
     pub(super) fn obstacle(&self, approach: Approach, shoots: bool) -> Option<&'static str> {
-        let is_cylinder = matches!(
-            self.muscle.construction(),
-            Construction::Braided(braid) if braid.ends() == Ends::Cylinder
-        );
+        let is_cylinder = Parts::of(self.muscle).ends == Ends::Cylinder;
         match approach {
             Approach::ClosedForm if shoots => Some("this muscle has no closed form"),
             Approach::Shooting if is_cylinder => {
