@@ -110,7 +110,7 @@ impl Setting {
     /// Whether it is a pleated muscle.
     #[must_use]
     pub fn is_pleated(&self) -> bool {
-        self.kind == Kind::Pleated
+        self.kind.is_pleated()
     }
 
     /// The same with the fibres and the bladder of parts that effects have changed.

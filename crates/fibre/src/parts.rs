@@ -372,7 +372,7 @@ impl<D: Real> Parts<D> {
     /// Whether they are those of a pleated muscle.
     #[must_use]
     pub fn is_pleated(&self) -> bool {
-        self.kind == Kind::Pleated
+        self.kind.is_pleated()
     }
 
     /// Whether a formula of a user's own says something of it.

@@ -26,6 +26,12 @@ pub enum Kind {
 }
 
 impl Kind {
+    /// Whether it is the pleated muscle.
+    #[must_use]
+    pub const fn is_pleated(self) -> bool {
+        matches!(self, Self::Pleated)
+    }
+
     /// The word in a muscle file.
     #[must_use]
     pub const fn name(self) -> &'static str {

@@ -34,10 +34,7 @@ impl Limits {
     /// Those of a kind.
     #[must_use]
     pub const fn of(kind: Kind) -> Self {
-        match kind {
-            Kind::Pleated => Self::PLEATED,
-            Kind::Braided => Self::FLUIDIC,
-        }
+        if kind.is_pleated() { Self::PLEATED } else { Self::FLUIDIC }
     }
 
     fn check(&self) -> Result<(), SizeError> {
