@@ -284,8 +284,8 @@ fn search(start: [f64; 2], of: [f64; 3], last_step: f64, first: f64) -> Result<C
 }
 
 /// Starting values (t, y), a few per cent off: the small- and large-bulge limits of
-/// `2 F D (1 + t^2) = eps L^2`, joined. A muscle longer than at rest has two of them. In a short one the
-/// bulge is no shallow arc, and the strain is below [`natural_strain`].
+/// `2 F D (1 + t^2) = eps L^2`, joined. A muscle longer than at rest has two of them. If it is short, its
+/// bulge is no shallow arc, and its strain is below [`natural_strain`].
 fn starts(contraction: f64, slenderness: f64, kappa: f64) -> [Option<(f64, f64)>; 2] {
     if kappa == 0.0 {
         return [(contraction > 0.0).then(|| inextensible_start(contraction, slenderness)), None];

@@ -15,7 +15,7 @@ use bulge_numerics::{Dual, Real};
 use crate::FibreError;
 use crate::net::Net;
 
-/// Tension that counts as none, in parts of p R^2.
+/// Tension that counts as zero, in parts of p R^2.
 const SLACK: f64 = 1e-12;
 
 /// A cylinder in equilibrium; dimensionless.

@@ -47,8 +47,8 @@ pub struct Linearised {
     pub contraction: f64,
     /// Axial force F \[N\].
     pub force_n: Linear,
-    /// Meridional force at mid-length, N = F + p A(r_mid) \[N\]: what all fibres and walls carry together
-    /// there.
+    /// Meridional force at mid-length, N = F + p A(r_mid) \[N\]: the force that all fibres and walls
+    /// carry together there.
     pub equator_force_n: Linear,
     /// Radius of the fibres at mid-length, r_mid \[m\].
     pub mid_radius_m: Linear,

@@ -130,7 +130,7 @@ impl<D: Real> Lobes<D> {
                 // The last step carries the derivatives.
                 let gap = rate * newton - section.area_r;
                 let bulge = -(gap / (rate - section.area_rr).value()) + newton;
-                // Within rounding of the limit the bulge may lie on either side. Both formulas go on there.
+                // Within rounding of the limit the bulge may lie on either side. Both formulas hold there.
                 return (bulge.value() > 0.0 && bulge.value() < most * (1.0 + 1e-12)).then_some(bulge);
             }
             at = if newton > low && newton < high { newton } else { 0.5 * (low + high) };

@@ -159,7 +159,7 @@ pub(crate) struct NoTrajectory {
     pub(crate) evaluations: u32,
 }
 
-/// The middle of a meridian: what a trajectory starts from.
+/// The middle of a meridian, from which a trajectory starts.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Middle<D> {
     /// r_mid - r_fitting, positive for a bulge, negative for a waist.

@@ -51,7 +51,7 @@ pub struct Parts<D = f64> {
     /// The family. It sets the ranges that are computed, and whether the reference radius is that of the
     /// fittings.
     pub kind: Kind,
-    /// What holds the ends.
+    /// How the ends are held.
     pub ends: Ends,
     /// Whether the cloth between the fibres is flat, so that a cross-section is a polygon; else it is a
     /// circle.
@@ -339,7 +339,7 @@ impl Parts<Jet> {
     pub fn set_fitting(&mut self, radius: Jet) {
         match self.kind {
             Kind::Pleated => self.radius = radius,
-            // Fittings that follow the braid go on following it if they are as wide as it.
+            // Fittings that follow the braid go on following it if their radius is the same.
             Kind::Braided
                 if self.fitting.is_none()
                     && radius.value().to_bits() == self.radius.value().to_bits()

@@ -38,7 +38,7 @@ const LEAST_ROOM: f64 = 1e-5;
 /// Newton steps from a place on a path, and the largest one allowed.
 const NEAR_STEPS: u32 = 12;
 const NEARBY: f64 = 1e-4;
-/// The same for elastic fibres: how far they are drawn beyond their length.
+/// How far elastic fibres are drawn beyond their length in search of such an equilibrium, after `DRAWN_OUT`.
 const STRETCHED: [f64; 5] = [1e-3, 3e-3, 1e-2, 3e-2, 0.1];
 
 /// The extremes that a search has come across.
@@ -132,7 +132,7 @@ impl<E: Fn(&Found) -> f64> Walk<'_, E> {
                     failures += 1;
                     stride *= 0.3;
                 }
-                // The start itself is longer than the fibres bear. That isn't checked at rest.
+                // The start itself overstretches the fibres. At rest this isn't checked.
                 (Err(FibreError::Overstretched { .. }), None) if x < end.min(0.0) => {
                     x = end.min(0.0);
                     continue;
@@ -231,7 +231,7 @@ impl<E: Fn(&Found) -> f64> Walk<'_, E> {
     }
 }
 
-/// How a way up ends.
+/// The end of a way up.
 enum Step {
     Root(f64),
     Between(f64, f64),

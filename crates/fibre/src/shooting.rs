@@ -488,7 +488,7 @@ mod tests {
         assert!(full.1 < 1e-10);
     }
 
-    /// A start given by a neighbour leads to the same solution as none.
+    /// A start given by a neighbour leads to the same solution as a search without one.
     #[test]
     fn the_start_does_not_matter() {
         let net = braid(25.0, 25.0);

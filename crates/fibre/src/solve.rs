@@ -74,8 +74,8 @@ pub struct Gradient {
 }
 
 impl Gradient {
-    /// dF/da and dV/da for a parameter of the muscle whose parts were asked, by the chain rule. `None` if the
-    /// muscle doesn't state it. The radius of a pleated muscle is that at its fittings.
+    /// dF/da and dV/da for a parameter of the muscle whose parts were solved, by the chain rule. `None` if
+    /// the muscle doesn't state it. The radius of a pleated muscle is that at its fittings.
     #[must_use]
     pub fn by(&self, muscle: &Muscle, parameter: Parameter) -> Option<[f64; 2]> {
         if !muscle.is_stated(parameter) || parameter == Parameter::FittingRadius && muscle.is_pleated() {
@@ -103,8 +103,8 @@ impl Found {
 }
 
 impl Problem {
-    /// Solves for what is given. A contraction, force or volume beyond the limit at which the force vanishes
-    /// is an error.
+    /// Solves for a given quantity. A contraction, force or volume beyond the limit at which the force
+    /// vanishes is an error.
     ///
     /// # Errors
     /// See [`FibreError`]; every variant carries the numbers.

@@ -1,4 +1,4 @@
-//! Straight fibres in closed form, asked many times: only pressure and contraction change.
+//! Straight fibres in closed form, solved many times: only pressure and contraction change.
 //!
 //! With f, v and rho = 1/cos(phi_R) of the closed form, all functions of (eps, L, kappa), with kappa
 //! proportional to p, and with the depth h of the pleats:
