@@ -103,7 +103,7 @@ impl Muscle {
         Ok(self)
     }
 
-    /// The same muscle with a rubber bladder in the braid, which is its wall if it has none of its own.
+    /// The same muscle with a rubber bladder in the braid. The bladder is the wall if there is no other.
     ///
     /// # Errors
     /// If the muscle is pleated, or the wall leaves no room for gas.
@@ -144,8 +144,8 @@ impl Muscle {
     /// and a braid that lies in the wall at the stated radius then needs no correction at all.
     ///
     /// # Errors
-    /// If the thickness is negative, not finite or leaves no room for gas, none is given and the wall's is
-    /// not known, or the muscle is pleated.
+    /// If the thickness is negative, not finite or leaves no room for gas, if none is given and that of the
+    /// wall is not known, or if the muscle is pleated.
     pub fn with_gas_wall(mut self, thickness: Option<Length>) -> Result<Self, MuscleError> {
         if self.is_pleated() {
             let (parameter, kind) = (Parameter::GasWall, Kind::Pleated);

@@ -18,7 +18,7 @@ const OFFSET: &[&str] = &["degC", "degF", "celsius", "fahrenheit"];
 /// dimension.
 ///
 /// Products are written with a blank, `*` or `.`, quotients with `/`, powers with `^` and a whole number (or
-/// one and a half, as in `m^1.5`). Nothing, "1" and "-" mean a pure number. What stands behind a `/` ends at
+/// one and a half, as in `m^1.5`). Nothing, "1" and "-" mean a pure number. The divisor behind a `/` ends at
 /// the next `/`: a product there needs parentheses. Symbols are those of the quantities of this crate and s,
 /// ms, us, min, h, K, kg, g, J, Hz and decade.
 ///

@@ -395,7 +395,7 @@ fn learnt_effects() {
     assert!(error.to_string().starts_with("m.toml:12:11: this is too late"), "{error}");
     assert_eq!(muscle.learnt_error(0, "w", "i").line(), Some(6));
     assert_eq!(muscle.learnt_error(9, "w", "i").line(), None);
-    // Equal wherever it stands, and whatever the file is called.
+    // Effects are equal wherever they stand, and whatever the file is called.
     let moved = from_toml(&text.replace("[effects.coulomb", "\n\n[effects.coulomb"), "n.toml").unwrap();
     assert_eq!(moved, muscle);
     assert_eq!(from_toml(&to_toml(&muscle), "copy").unwrap(), muscle);
