@@ -1,7 +1,9 @@
-//! The closed form: straight fibres (theta = 0) and pressure alone, by elliptic integrals, inextensible or elastic.
+//! The closed form: straight fibres (theta = 0) and pressure alone, by elliptic integrals, inextensible or
+//! elastic.
 //!
-//! S1 eqs. 19 to 28 (B. Verrelst et al., *Second generation pleated pneumatic artificial muscle and its robotic applications*, after
-//! F. Daerden's thesis of 1999). With R the fibre radius at the fittings and L = l0/R:
+//! S1 eqs. 19 to 28 (B. Verrelst et al., *Second generation pleated pneumatic artificial muscle and its
+//! robotic applications*, after F. Daerden's thesis of 1999). With R the fibre radius at the fittings and
+//! L = l0/R:
 //!
 //! ```text
 //! r = R cos(phi)/cos(phi_R)          x = R/(sqrt(m) cos phi_R) (E(phi|m) - F(phi|m)/2)         0 <= phi <= phi_R
@@ -11,14 +13,16 @@
 //! F_t = p (n/2 pi) sin(2 pi/n) l0^2 f,     f = (pi/2)(1 - 2m)/(m cos^2 phi_R L^2)              force
 //! ```
 //!
-//! What is solved is the same pair in variables that stay regular. With `t = tan(phi_R)`, `y = sqrt(m) cos(phi_R)` (so that `T ~ 1/y^2` and
-//! `m = y^2 (1 + t^2)`), `D = (F - E)/m` and the elastic group `kappa = p sin(2 pi/n) R^2/(4 EA)` of one fibre (so that `T/EA = kappa/y^2`):
+//! The same pair is solved in variables that stay regular. With `t = tan(phi_R)`, `y = sqrt(m) cos(phi_R)`
+//! (so that `T ~ 1/y^2` and `m = y^2 (1 + t^2)`), `D = (F - E)/m` and the elastic group
+//! `kappa = p sin(2 pi/n) R^2/(4 EA)` of one fibre (so that `T/EA = kappa/y^2`):
 //!
 //! ```text
 //! 2 m D = L (eps y + kappa/y)        F = L (y + kappa/y)
 //! ```
 //!
-//! No term cancels as eps -> 0, where m -> 0 and the inextensible force diverges. Newton's method runs on (ln t, ln y).
+//! No term cancels as eps -> 0, where m -> 0 and the inextensible force diverges. Newton's method runs on
+//! (ln t, ln y).
 
 use bulge_numerics::elliptic::{Pair, incomplete};
 use bulge_numerics::root::illinois;
@@ -32,7 +36,7 @@ const MAX_ITERATIONS: u32 = 60;
 const MAX_STEP: f64 = 0.7;
 /// Relative change of the stretched length at which the starting values are as good as their fit.
 const ENOUGH: f64 = 3e-3;
-/// A last step of this size is the error of the derivatives; that of the values is its square.
+/// Size of the last step. The error of the derivatives is of this size, that of the values of its square.
 const LAST_STEP: f64 = 1e-10;
 /// The same in a fit: values to 1e-13, derivatives to 3e-7.
 const LAST_STEP_OF_FITS: f64 = 3e-7;
@@ -81,7 +85,7 @@ pub struct ClosedForm {
     pub(crate) follow: [[f64; 2]; 3],
 }
 
-/// A solved meridian from which a neighbour is searched for.
+/// A solved meridian from which the search for a neighbour starts.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Near {
     /// t and y.
@@ -93,12 +97,13 @@ pub(crate) struct Near {
 }
 
 impl Near {
-    /// What was found for a contraction, slenderness and elastic group.
+    /// The solution for a contraction, slenderness and elastic group.
     pub(crate) fn new(found: &ClosedForm, of: [f64; 3]) -> Self {
         Self { at: [found.t, found.y], of, by: found.follow }
     }
 
-    /// (t, y) to start with for another contraction, slenderness and elastic group; none too far away.
+    /// (t, y) to start with for another contraction, slenderness and elastic group. `None` if these are too
+    /// far away.
     fn towards(&self, of: [f64; 3]) -> Option<[f64; 2]> {
         let mut moves = [0.0; 2];
         for ((new, old), by) in of.iter().zip(&self.of).zip(&self.by) {
@@ -123,14 +128,14 @@ impl ClosedForm {
         self.t.hypot(1.0)
     }
 
-    /// Angle of the meridian against the axis at the left fitting: [`Self::point`] without its elliptic integrals, which cost a tenth of
-    /// a solve.
+    /// Angle of the meridian against the axis at the left fitting, as in [`Self::point`] but without the
+    /// elliptic integrals, which cost a tenth of a solve.
     pub(crate) fn end_slope(&self) -> f64 {
         2.0 * (self.m.sqrt() * self.t / self.max_radius()).asin()
     }
 
-    /// Point of the meridian at amplitude phi in \[-phi_R, phi_R\]: x and r over R (x from mid-length), slope against the axis
-    /// (positive where r grows with x) and unstretched fibre length from mid-length over R.
+    /// Point of the meridian at amplitude phi in \[-phi_R, phi_R\]: x and r over R (x from mid-length), slope
+    /// against the axis (positive where r grows with x) and unstretched fibre length from mid-length over R.
     ///
     /// `cos(slope) = 1 - 2 m sin^2(phi)`, hence `sin(slope/2) = -sqrt(m) sin(phi)`.
     #[must_use]
@@ -143,7 +148,7 @@ impl ClosedForm {
     }
 }
 
-/// The two integrals at (t, m) with what Newton's method needs of their derivatives.
+/// The two integrals at (t, m), with the terms that Newton's method needs for their derivatives.
 struct Integrals {
     f: f64,
     d: f64,
@@ -207,19 +212,20 @@ impl Equations {
     }
 }
 
-/// Solves the closed form at a contraction (below 0 only with elastic fibres), for a slenderness L = l0/R and an elastic group
-/// kappa = p sin(2 pi/n) R^2/(4 EA) >= 0.
+/// Solves the closed form at a contraction (below 0 only with elastic fibres), for a slenderness L = l0/R and
+/// an elastic group kappa = p sin(2 pi/n) R^2/(4 EA) >= 0.
 ///
-/// Contractions beyond the limit (m > 1/2, the muscle pushes) are followed; the caller decides whether they make sense.
+/// Contractions beyond the limit (m > 1/2, the muscle pushes) are followed; the caller decides whether they
+/// make sense.
 ///
 /// # Errors
-/// [`FibreError::NotConverged`] with the last residual where no equilibrium is found (fibres so soft that they balloon, contraction far
-/// beyond the limit).
+/// [`FibreError::NotConverged`] with the last residual where no equilibrium is found (fibres so soft that
+/// they balloon, contraction far beyond the limit).
 pub fn solve(contraction: f64, slenderness: f64, kappa: f64) -> Result<ClosedForm, FibreError> {
     let mut answer = Err(FibreError::NotConverged { contraction, residual: f64::INFINITY, iterations: 0 });
     for start in starts(contraction, slenderness, kappa).into_iter().flatten() {
         answer = search(start.into(), [contraction, slenderness, kappa], LAST_STEP, f64::INFINITY);
-        // Beyond a strain of 1 lies the other root, of a muscle that has ballooned.
+        // A strain above 1 belongs to the other root, a muscle that has ballooned.
         if answer.as_ref().is_ok_and(|found| found.strain < 1.0) {
             break;
         }
@@ -243,7 +249,8 @@ fn search(start: [f64; 2], of: [f64; 3], last_step: f64, first: f64) -> Result<C
     let failed = |residual: f64, iterations| FibreError::NotConverged { contraction, residual, iterations };
     let [mut t, mut y] = start;
     let stretched = contraction < 0.0;
-    // A stretched muscle is nearly straight and T/EA is nearly -eps: there the gap eps + T/EA takes the place of y.
+    // A stretched muscle is nearly straight and T/EA is nearly -eps. The gap eps + T/EA therefore takes the
+    // place of y.
     let mut gap = if stretched { 2.0 * y * (1.0 + t * t) * straight_d(t) / slenderness } else { 0.0 };
     let mut last = f64::INFINITY;
     for iteration in 1..=MAX_ITERATIONS {
@@ -261,8 +268,8 @@ fn search(start: [f64; 2], of: [f64; 3], last_step: f64, first: f64) -> Result<C
             return Err(failed(last, iteration));
         }
         if size < last_step {
-            // The derivatives at this point serve for the outputs as well: their error is of the size of the step, the corrected values'
-            // of its square.
+            // The derivatives at this point serve for the outputs as well. Their error is of the size of the
+            // step, and that of the corrected values of its square.
             return Ok(outputs(&integrals, &equations, [t, y], of, step, iteration));
         }
         last = equations.residual[0].abs().max(equations.residual[1].abs());
@@ -276,8 +283,9 @@ fn search(start: [f64; 2], of: [f64; 3], last_step: f64, first: f64) -> Result<C
     Err(failed(last, MAX_ITERATIONS))
 }
 
-/// Starting values (t, y), a few per cent off: the small- and large-bulge limits of `2 F D (1 + t^2) = eps L^2`, joined. For a muscle longer than
-/// at rest one of two: in a short one the bulge is no shallow arc, and the strain below [`natural_strain`].
+/// Starting values (t, y), a few per cent off: the small- and large-bulge limits of
+/// `2 F D (1 + t^2) = eps L^2`, joined. A muscle longer than at rest has two of them. If it is short, its
+/// bulge is no shallow arc, and its strain is below [`natural_strain`].
 fn starts(contraction: f64, slenderness: f64, kappa: f64) -> [Option<(f64, f64)>; 2] {
     if kappa == 0.0 {
         return [(contraction > 0.0).then(|| inextensible_start(contraction, slenderness)), None];
@@ -299,7 +307,8 @@ fn natural_strain(slenderness: f64, kappa: f64) -> f64 {
     kappa.cbrt() * slenderness.powf(2.0 / 3.0)
 }
 
-/// Elastic fibres, muscle contracted or hardly stretched: the strain by fixed-point iteration on the inextensible muscle with the stretched length.
+/// Elastic fibres, muscle contracted or hardly stretched. A fixed-point iteration on the inextensible muscle
+/// with the stretched length gives the strain.
 fn contracted_start(contraction: f64, slenderness: f64, kappa: f64) -> (f64, f64) {
     let mut strain = natural_strain(slenderness, kappa);
     let mut inner = (contraction, slenderness);
@@ -307,7 +316,7 @@ fn contracted_start(contraction: f64, slenderness: f64, kappa: f64) -> (f64, f64
         inner = (((contraction + strain) / (1.0 + strain)).clamp(1e-12, 0.6), slenderness * (1.0 + strain));
         let (t, y) = inextensible_start(inner.0, inner.1);
         let next = (strain * kappa).sqrt().min(3.0 * y) / y;
-        // Some per cent of a strain of some per cent: nothing to Newton's method.
+        // An error of some per cent in a strain of some per cent is nothing to Newton's method.
         if (next - strain).abs() < ENOUGH * (1.0 + strain) {
             return (t, y);
         }
@@ -316,8 +325,9 @@ fn contracted_start(contraction: f64, slenderness: f64, kappa: f64) -> (f64, f64
     inextensible_start(inner.0, inner.1)
 }
 
-/// Elastic fibres, muscle longer than at rest. For a given t the fibre length `F = L (y + kappa/y)` is a quadratic in y and the end distance
-/// `eps = 2 y (1 + t^2) D/L - kappa/y^2` rises with t: one monotone equation, here with F and D at m = 0.
+/// Elastic fibres, muscle longer than at rest. For a given t the fibre length `F = L (y + kappa/y)` is a
+/// quadratic in y. The end distance `eps = 2 y (1 + t^2) D/L - kappa/y^2` rises with t. This leaves one
+/// monotone equation, here with F and D at m = 0.
 fn stretched_start(contraction: f64, slenderness: f64, kappa: f64) -> Option<(f64, f64)> {
     let y_at = |phi: f64| {
         let half = 0.5 * phi / slenderness;
@@ -341,8 +351,8 @@ fn straight_d(t: f64) -> f64 {
 }
 
 fn inextensible_start(contraction: f64, slenderness: f64) -> (f64, f64) {
-    // phi (phi - sin phi cos phi)(1 + t^2) = X at m = 0, solved to 1 % by a fit between t^4 = 3X/2 and t^2 = 4X/pi^2; the product F D
-    // grows with m, which tends to eps for a slender muscle.
+    // phi (phi - sin phi cos phi)(1 + t^2) = X at m = 0, solved to 1 % by a fit between t^4 = 3X/2 and
+    // t^2 = 4X/pi^2; the product F D grows with m, which tends to eps for a slender muscle.
     let growth = contraction * (0.65 + 0.75 * contraction);
     let guess = |x: f64| (x * (1.5 + 0.98 * x.sqrt() + 0.1643 * x)).sqrt();
     let whole = contraction * slenderness * slenderness;

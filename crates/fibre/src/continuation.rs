@@ -1,4 +1,5 @@
-//! Where a start is not good enough: an equilibrium that is easy to find, moved in steps that adapt to the one that is asked for.
+//! Continuation, for contractions without a good enough start. An equilibrium that is easy to find is moved
+//! in adaptive steps to the one asked for.
 
 use bulge_numerics::Real;
 
@@ -10,13 +11,14 @@ use crate::shooting::{Effort, Ending, TOLERANCE, USUAL, newton, straight_contrac
 use crate::start::{drawn_out, linear_start, start};
 use crate::unknowns::{Unknowns, is_limited};
 
-/// On the way to the asked equilibrium.
+/// Ending and first tolerance of the solves on the way to the equilibrium asked for.
 const ON_THE_WAY: (Ending, f64) = (USUAL, USUAL.first);
 
-/// Least growth of the contraction from one equilibrium to the next.
+/// Smallest growth factor from one equilibrium to the next.
 const SMALLEST: f64 = 1.0005;
 
-/// The same contraction with a bladder and a cloth that are soft at first and stiffen, by steps that adapt: the starts know nothing of them.
+/// Solves at the same contraction with a soft bladder and a soft cloth first, then stiffens both in adaptive
+/// steps. The starts know nothing of bladder and cloth.
 pub(crate) fn stiffening(
     net: &Net<f64>,
     contraction: f64,
@@ -42,6 +44,7 @@ pub(crate) fn stiffening(
     };
     let mut rate = [0.0, 0.0]; // d(unknowns)/d ln(part)
     let mut grow: f64 = 3.0;
+    // Predict along the last secant and correct by Newton's method; adapt the step to success or failure.
     while part < 1.0 {
         let next = (part * grow).min(1.0);
         let jump = (next / part).ln();
@@ -60,17 +63,19 @@ pub(crate) fn stiffening(
     Ok(at)
 }
 
-/// Tensions of a drawn-out braid over what pressure and rubber make of them: the less, the farther from the contraction at which fibres are straight.
+/// Tensions of a drawn-out braid, as multiples of the tension that pressure and rubber cause. The multiple
+/// falls with the distance from the contraction at which the fibres are straight.
 const TAUT: [f64; 4] = [1e3, 1e2, 1e1, 3.0];
-/// Largest strain with which elastic fibres are drawn out.
+/// Largest strain to which elastic fibres are drawn out.
 const DRAWN: f64 = 0.1;
 /// Newton iterations for the radius of a drawn-out braid.
 const RADIUS_ITERATIONS: u32 = 20;
-/// Step of ln|B| at which they end: that of a start.
+/// Step of ln|B| at which these iterations end: that of a start.
 const CLOSE: f64 = 1e-7;
 
-/// A braid drawn out by a tension far larger than what pressure and rubber make, with its contraction: the radius at mid-length that goes with the length
-/// of the fibres, from that of an infinite tension. It exists whatever else the braid carries.
+/// A braid drawn out by a tension far larger than the one that pressure and rubber cause, with its
+/// contraction. The radius at mid-length follows from the length of the fibres, starting at the radius of an
+/// infinite tension. This equilibrium exists whatever else the braid carries.
 pub(crate) fn drawn_taut(net: &Net<f64>) -> Option<(f64, Unknowns)> {
     if net.turn == 0.0 {
         return None;
@@ -78,6 +83,7 @@ pub(crate) fn drawn_taut(net: &Net<f64>) -> Option<(f64, Unknowns)> {
     let radius = drawn_out(&Net { compliance: 0.0, ..net.clone() }).0;
     let end = net.acting_at(radius);
     let cylinder = end.balancing_tension(radius, end.push(radius), 0.0)?;
+    // Tension of a cylinder without rubber.
     let alone = end.push(radius) / end.local(radius, cylinder).hoop_t;
     let least = 1.0 + (cylinder / alone).abs();
     let lifted = net.lift::<2>();
@@ -102,7 +108,8 @@ pub(crate) fn drawn_taut(net: &Net<f64>) -> Option<(f64, Unknowns)> {
     })
 }
 
-/// From a shallow bulge (or waist), where the start is good, towards the asked contraction in steps that adapt.
+/// Goes from a shallow bulge (or waist), where the start is good, to the contraction asked for in adaptive
+/// steps.
 pub(crate) fn continuation(
     net: &Net<f64>,
     contraction: f64,
@@ -114,6 +121,7 @@ pub(crate) fn continuation(
     let whole = contraction - straight;
     let slack = |at: &Unknowns| at.is_slack(net).then_some(FibreError::Slack { contraction, limit: None });
     let mut part = 0.02;
+    // Closer to the straight meridian, until a start converges.
     let mut at = loop {
         let there = straight + part * whole;
         let starts = [start(net, there), linear_start(net, there)];
@@ -130,7 +138,7 @@ pub(crate) fn continuation(
     if let Some(error) = slack(&at) {
         return Err(error);
     }
-    // d(unknowns)/d ln(part) of a shallow bulge, where B, k and 1/T grow with the root of the contraction.
+    // d(unknowns)/d ln(part) of a shallow bulge: B, k and 1/T grow with the root of the contraction.
     let first = match (is_limited(net, at.side), net.turn == 0.0) {
         (true, _) if net.has_wall() => 0.0,
         (true, true) => -1.0,
@@ -139,6 +147,7 @@ pub(crate) fn continuation(
     };
     let mut rate = [first, 0.5];
     let mut grow: f64 = 2.0;
+    // Predict along the last secant and correct by Newton's method; adapt the step to success or failure.
     while part < 1.0 {
         let next = (part * grow).min(1.0);
         let jump = (next / part).ln();
@@ -147,7 +156,7 @@ pub(crate) fn continuation(
             Ok(found) => {
                 rate = [(found.logs[0] - at.logs[0]) / jump, (found.logs[1] - at.logs[1]) / jump];
                 (at, part) = (found, next);
-                // Once slack, they are so further on.
+                // Fibres that are slack here are slack further on, too.
                 if let Some(error) = slack(&at) {
                     return Err(error);
                 }

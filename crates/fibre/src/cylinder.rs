@@ -1,4 +1,5 @@
-//! The textbook braid: a cylinder up to the fittings (psi = 0 everywhere), with all that the net can carry.
+//! The textbook braid: a cylinder up to the fittings (psi = 0 everywhere), with everything that the net can
+//! carry.
 //!
 //! At a given end distance sigma is known, and radius and tension follow from the net and the radial balance:
 //!
@@ -6,15 +7,15 @@
 //! (1 + e)^2 = sigma^2 + q^2 r^2          A'(r) = h(r, T)          F = N - A
 //! ```
 //!
-//! For inextensible fibres without bladder this is the formula of Schulte, Chou and Hannaford, Tondu and Lopez (S2 eq. 12, S5 eq. 11):
-//! `F = pi r0^2 p (3 (1 - eps)^2/tan^2(alpha0) - 1/sin^2(alpha0))`.
+//! For inextensible fibres without bladder this is the formula of Schulte, Chou and Hannaford, Tondu and
+//! Lopez (S2 eq. 12, S5 eq. 11): `F = pi r0^2 p (3 (1 - eps)^2/tan^2(alpha0) - 1/sin^2(alpha0))`.
 
 use bulge_numerics::{Dual, Real};
 
 use crate::FibreError;
 use crate::net::Net;
 
-/// A tension that is none, in parts of p R^2.
+/// Tension that counts as zero, in parts of p R^2.
 const SLACK: f64 = 1e-12;
 
 /// A cylinder in equilibrium; dimensionless.
@@ -27,8 +28,8 @@ pub(crate) struct Cylinder<D> {
     pub(crate) iterations: u32,
 }
 
-/// Radius, tension and radial imbalance A' - h with a tension `more` beyond the one that stretches the fibres to the end distance:
-/// `q^2 r^2 = (1 + e)^2 - sigma^2` without a difference of two nearly equal numbers.
+/// Radius, tension and radial imbalance A' - h with a tension `more` beyond the one that stretches the fibres
+/// to the end distance: `q^2 r^2 = (1 + e)^2 - sigma^2` without a difference of two nearly equal numbers.
 fn balance<D: Real>(net: &Net<D>, sigma: D, more: D) -> (D, D, D) {
     let stretch = net.compliance * more;
     let (least, square) = if sigma.value() > 1.0 {
@@ -43,8 +44,8 @@ fn balance<D: Real>(net: &Net<D>, sigma: D, more: D) -> (D, D, D) {
 /// The cylinder at a contraction.
 ///
 /// # Errors
-/// [`FibreError::TooLong`] if inextensible fibres can't reach the end distance, [`FibreError::Slack`] if the rubber alone carries the pressure,
-/// [`FibreError::NotConverged`] otherwise.
+/// [`FibreError::TooLong`] if inextensible fibres can't reach the end distance, [`FibreError::Slack`] if the
+/// rubber alone carries the pressure, [`FibreError::NotConverged`] otherwise.
 pub(crate) fn solve<D: Real>(net: &Net<D>, contraction: D) -> Result<Cylinder<D>, FibreError> {
     let sigma = net.cos_rest * (-contraction + 1.0);
     let inextensible = net.compliance.value() == 0.0;
@@ -61,8 +62,8 @@ pub(crate) fn solve<D: Real>(net: &Net<D>, contraction: D) -> Result<Cylinder<D>
     Ok(Cylinder { radius, tension, force, volume, iterations })
 }
 
-/// The tension of the radial balance, see [`balance`]: linear for inextensible fibres, else Newton's method in ln T on the values and one step more for the
-/// derivatives.
+/// The tension of the radial balance, see [`balance`]. The balance is linear for inextensible fibres.
+/// Otherwise Newton's method in ln T solves it for the values, and one more step gives the derivatives.
 fn tension<D: Real>(net: &Net<D>, sigma: D, contraction: f64) -> Result<(D, u32), FibreError> {
     let plain = net.constant();
     let s = sigma.value();
@@ -88,7 +89,7 @@ fn tension<D: Real>(net: &Net<D>, sigma: D, contraction: f64) -> Result<(D, u32)
         }
         ln_t -= step.clamp(-1.0, 1.0);
     }
-    // Hardly any tension, and still the wall holds more than the pressure.
+    // The wall may hold more than the pressure at hardly any tension.
     let (r, gap, _) = residual(SLACK.ln());
     if r.is_finite() && gap < 0.0 {
         return Err(FibreError::Slack { contraction, limit: None });

@@ -24,8 +24,8 @@ pub struct PleatedNumbers {
 }
 
 impl Problem {
-    /// One equilibrium with its meridian at `points` points (made odd, so that the middle is one of them; at least 3), equally spaced in
-    /// fibre length (shooting) or amplitude (closed form).
+    /// One equilibrium with its meridian at `points` points (made odd, so that the middle is one of them; at
+    /// least 3), equally spaced in fibre length (shooting) or amplitude (closed form).
     ///
     /// # Errors
     /// See [`FibreError`].
@@ -34,7 +34,8 @@ impl Problem {
         self.drawn(&found, points)
     }
 
-    /// S1's numbers for a response of this problem; none if the fibres are not straight or something but pressure acts.
+    /// S1's numbers for a response of this problem. `None` if the fibres are not straight or if anything but
+    /// pressure acts.
     #[must_use]
     pub fn pleated_numbers(&self, response: &Response) -> Option<PleatedNumbers> {
         let net = &self.net;
@@ -64,7 +65,7 @@ impl Problem {
         };
         let half = match found.solution {
             Solution::ClosedForm(closed) => {
-                // The closed form is that of the crests, in units of their radius at the fittings.
+                // The closed form describes the crests, in units of their radius at the fittings.
                 let crest = 1.0 + self.net.depth;
                 let tension = found.response.fibre_tension_n * self.parts.fibre_number()
                     / (self.pressure * self.parts.radius.powi(2));

@@ -1,19 +1,20 @@
-//! The middle of a meridian, where it is parallel to the axis: which radius and which tension go with a curvature, and whether fibres are slack.
+//! The middle of a meridian, where it is parallel to the axis: the radius and the tension that go with a
+//! curvature, and whether fibres are slack.
 
 use bulge_numerics::Real;
 use std::f64::consts::PI;
 
 use crate::net::Net;
 
-/// Radii at which fibres may be found slack.
+/// Radii at which the fibres are tested for slackness.
 const SAMPLES: u32 = 16;
-/// A push over the bulge next to nothing.
+/// A ratio of push to bulge that is next to nothing.
 const SLIGHT: f64 = 1e-304;
-/// Part of H by which it must be too small for that.
+/// Margin, as a part of H, by which H must be too small for the fibres to count as slack.
 const SLACK: f64 = 1e-12;
 
 impl<D: Real> Net<D> {
-    /// A'(r) less the hoop term of the cloth: what fibres and bladder carry.
+    /// A'(r) less the hoop term of the cloth: the part that fibres and bladder carry.
     pub(crate) fn push(&self, r: D) -> D {
         match &self.cloth {
             Some(cloth) => self.area_r(r) - cloth.scale() * (r - cloth.radius) * 2.0,
@@ -21,10 +22,11 @@ impl<D: Real> Net<D> {
         }
     }
 
-    /// The bulge B > 0 for which the [`Net::push`] at the radius of the fitting and B is B times `rate`: it falls with the rate, which is positive
-    /// but for a bladder.
+    /// The bulge B > 0 at which the [`Net::push`] is B times `rate`, at the radius of the fitting plus B. The
+    /// bulge falls with the rate, which is positive except with a bladder.
     ///
-    /// Where lobes or a stiff cloth limit the radius, the push is the small difference of two numbers, and B times the rate has it exactly.
+    /// Where lobes or a stiff cloth limit the radius, the push is the small difference of two numbers. B
+    /// times the rate gives it exactly.
     pub(crate) fn bulge(&self, rate: D) -> Option<D> {
         let Some(lobes) = &self.lobes else { return self.bulge_of_polygon(rate) };
         let Some(cloth) = &self.cloth else { return lobes.bulge(self.end_radius + self.depth, -rate.ln()) };
@@ -33,7 +35,8 @@ impl<D: Real> Net<D> {
         if free.value() <= room.value() {
             return Some(free);
         }
-        // Between the cloth's radius and what the lobes alone would do: the gap rises steadily.
+        // The root lies between the cloth's radius and the bulge that the lobes alone would have. The gap
+        // rises steadily.
         let gap = |bulge: D| {
             let r = self.end_radius + bulge;
             let acting = self.acting_at(r.value().max(cloth.radius.value() * (1.0 + 1e-15)));
@@ -73,7 +76,7 @@ impl<D: Real> Net<D> {
         (held.value() > 0.0).then_some(held)
     }
 
-    /// The largest bulge at which there is a push; infinite where nothing limits it.
+    /// The largest bulge at which there is a push. Infinite if nothing limits it.
     pub(crate) fn most_bulge(&self) -> f64 {
         let net = self.constant();
         let lobes = net.lobes.map_or(f64::INFINITY, |lobes| lobes.limit() - net.depth - net.end_radius);
@@ -81,14 +84,16 @@ impl<D: Real> Net<D> {
         lobes.min(held)
     }
 
-    /// The tension at which the meridian has curvature `curvature` where it is parallel to the axis at radius `r` with the [`Net::push`]
-    /// `push`: push - h = k N, with h of fibres and bladder.
+    /// The tension at which the meridian has curvature `curvature` where it is parallel to the axis, at
+    /// radius `r` with the [`Net::push`] `push`: push - h = k N, with h of fibres and bladder.
     ///
-    /// Linear in T for inextensible fibres; else a bracketed Newton's method on the values and one step more for the derivatives.
-    /// `None` if there is none with a positive tension (with a bladder: with a positive meridional force), or the fibres can't reach that radius.
+    /// The equation is linear in T for inextensible fibres. Otherwise a bracketed Newton's method solves it
+    /// for the values, and one more step gives the derivatives. `None` if no solution has a positive tension
+    /// (with a bladder: a positive meridional force), or if the fibres can't reach that radius.
     pub(crate) fn tension_at_equator(&self, r: D, push: D, curvature: D) -> Option<D> {
         let tension = self.balancing_tension(r, push, curvature)?;
-        // Rubber may carry more than the pressure: what fibres that can be pushed would do there tells when they become slack.
+        // Rubber may carry more than the pressure. The solution for fibres that can be pushed tells when they
+        // become slack.
         let holds = if self.compliance.value() != 0.0 {
             true
         } else if self.has_wall() {
@@ -100,7 +105,7 @@ impl<D: Real> Net<D> {
         holds.then_some(tension)
     }
 
-    /// The same with whatever sign of tension and meridional force, as rubber that is wide makes it.
+    /// The same for either sign of tension and meridional force, as occurs with wide rubber.
     pub(crate) fn balancing_tension(&self, r: D, push: D, curvature: D) -> Option<D> {
         // The cloth's force acts, and its hoop term is in the push.
         let bare = self.without_cloth();
@@ -146,7 +151,8 @@ impl<D: Real> Net<D> {
     }
 }
 
-/// The root of a `gap` with its slope at a negative tension, by Newton's method from the linear estimate.
+/// The root of a `gap` with its slope, at a negative tension. Newton's method starts from the linear
+/// estimate.
 fn pushed<D: Real>(gap: impl Fn(D) -> (D, D), linear: D) -> Option<D> {
     let mut tension = linear.value();
     for _ in 0..30 {
@@ -161,12 +167,14 @@ fn pushed<D: Real>(gap: impl Fn(D) -> (D, D), linear: D) -> Option<D> {
 }
 
 impl Net<f64> {
-    /// Whether a braid whose gas acts inside its fibres is too long for one middle at a contraction. Beside the cylinder that has the contraction,
+    /// Whether a braid whose gas acts inside its fibres is too long for one middle at a contraction. Beside
+    /// the cylinder of that contraction,
     ///
     /// ```text
     /// (r - r_c)'' = sigma^2 (h_r - A'')/N (r - r_c)
     /// ```
-    /// and where that is a wave instead of a saddle, half of one must reach from fitting to fitting. Not told of a braid with rubber or cloth.
+    /// Where the solution is a wave instead of a saddle, half a wave must reach from fitting to fitting. A
+    /// braid with rubber or cloth is not judged.
     pub(crate) fn undulates(&self, contraction: f64) -> bool {
         let sigma = self.cos_rest * (1.0 - contraction);
         let radius = (1.0 - sigma * sigma).sqrt() / self.turn;
@@ -181,8 +189,9 @@ impl Net<f64> {
         (-square).max(0.0).sqrt() * 2.0 * self.half_fibre > PI
     }
 
-    /// Whether fibres are slack somewhere between mid-length and the fitting. With the tension T and f = sigma w_1 - w of the walls on fibres
-    /// of their own length, H = sigma N - w is the same all along, and T has the sign of H - f. They count as slack up to a `part` of sigma N.
+    /// Whether fibres are slack somewhere between mid-length and the fitting. H = sigma N - w is constant
+    /// along the meridian, and the tension T has the sign of H - f, where f = sigma w_1 - w belongs to the
+    /// walls on fibres of their own length. Fibres count as slack up to a `part` of sigma N.
     pub(crate) fn is_slack(&self, mid_radius: f64, mid_tension: f64, part: f64) -> bool {
         if !self.has_wall() {
             return false;
@@ -195,7 +204,7 @@ impl Net<f64> {
             let r = mid_radius + (self.end_radius - mid_radius) * f64::from(i) / f64::from(SAMPLES);
             let sigma = (1.0 - (self.turn * r).powi(2)).sqrt();
             let wall = self.acting_at(r).wall(sigma, r);
-            // Where fibres of their own length don't reach, sigma is none, and they are taut.
+            // Where fibres of their own length don't reach, sigma is NaN, and the fibres are taut.
             energy
                 < sigma * wall.w_1 - wall.w - SLACK * energy.abs() + part * (local.sigma * local.force).abs()
         })
@@ -206,7 +215,8 @@ impl Net<f64> {
 mod tests {
     use super::*;
 
-    /// Of inextensible fibres alone, with the gas at r - d: h = 2 pi (r - d), N = h sigma^2/(q^2 r) and h_r = (h/r)(1 + 3 q^2 r^2/sigma^2).
+    /// For inextensible fibres alone, with the gas at r - d: h = 2 pi (r - d), N = h sigma^2/(q^2 r) and
+    /// h_r = (h/r)(1 + 3 q^2 r^2/sigma^2).
     #[test]
     fn a_cylinder_undulates_from_half_a_wave_on() {
         let (sin, cos) = 24.0_f64.to_radians().sin_cos();

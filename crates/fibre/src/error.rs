@@ -1,4 +1,4 @@
-//! What can go wrong in an equilibrium, with the numbers.
+//! Errors of an equilibrium, with their numbers.
 
 use bulge_muscles::Fault;
 
@@ -13,7 +13,7 @@ pub enum FibreError {
         /// Asked pressure \[Pa\].
         pressure_pa: f64,
     },
-    /// A number that is asked for is not a number.
+    /// A given number is not finite.
     #[error("the {what} is {value}: it must be a finite number")]
     NotFinite {
         /// Which number.
@@ -49,7 +49,7 @@ pub enum FibreError {
         /// Radius at the fittings \[m\].
         end_m: f64,
     },
-    /// Fittings on which the fibres of the braid would lie along the parallels.
+    /// The fibres of the braid would lie along the parallels at these fittings.
     #[error("the fittings have a radius of {:.4} mm, and this braid can't be wider than {:.4} mm, where its fibres lie along the circumference: at most {:.4} mm", 1e3 * end_m, 1e3 * widest_m, 1e3 * WIDEST_FITTING * widest_m)]
     FittingTooWide {
         /// Radius of the fittings \[m\].
@@ -57,20 +57,20 @@ pub enum FibreError {
         /// r0/sin(alpha0) \[m\].
         widest_m: f64,
     },
-    /// A formula of a user's own that has no value.
+    /// A user's own formula has no value.
     #[error(
         "the formula for `{what}` is {value} at rest (l1 = l2 = 1, r = r0): it needs a finite value there; look at its logarithms, roots and divisions"
     )]
     FormulaWithoutValue {
-        /// Which one.
+        /// Which formula.
         what: &'static str,
-        /// What it gives.
+        /// The value that it gives.
         value: f64,
     },
-    /// A formula for the area beside cloth that has one.
+    /// A formula gives the area, and so does the cloth.
     #[error("a formula for `area` says the area, and so does `{other}`: leave one of them out")]
     AreaTwice {
-        /// The effect that has an area too.
+        /// The effect that gives an area, too.
         other: &'static str,
     },
     /// The contraction lies beyond the one at which the force vanishes.
@@ -111,7 +111,7 @@ pub enum FibreError {
         /// Its limit for a slender muscle.
         limit: f64,
     },
-    /// The muscle would be drawn out so far that no fibre bears it.
+    /// The muscle would be drawn out farther than any fibre bears.
     #[error(
         "no equilibrium at contraction {:.4} %: its fibres would be stretched by {:.1} %, and none bears more than {:.0} %; ask for less length or force", 100.0 * contraction, 100.0 * strain, 100.0 * MOST_STRAIN
     )]
@@ -139,19 +139,19 @@ pub enum FibreError {
         /// Contraction at which the force is zero.
         limit: f64,
     },
-    /// More than the muscle holds at any contraction at which it pulls.
+    /// The volume is larger than at any contraction at which the muscle pulls.
     #[error("no equilibrium with a volume of {:.4} ml: this muscle holds at most {:.4} ml, at contraction {:.4} %, {why}", 1e6 * volume_m3, 1e6 * high_m3, 100.0 * contraction)]
     VolumeTooLarge {
         /// Asked volume \[m^3\].
         volume_m3: f64,
         /// The largest volume \[m^3\].
         high_m3: f64,
-        /// Where.
+        /// Its contraction.
         contraction: f64,
         /// Why it holds no more.
         why: &'static str,
     },
-    /// Less than the muscle holds drawn out as far as it goes, or contracted to its limit.
+    /// The volume is smaller than that of the muscle drawn out as far as it goes, or contracted to its limit.
     #[error("no equilibrium with a volume of {:.4} ml: it must be greater than {:.4} ml, the least that this muscle holds while it pulls", 1e6 * volume_m3, 1e6 * low_m3)]
     VolumeTooSmall {
         /// Asked volume \[m^3\].
@@ -159,14 +159,14 @@ pub enum FibreError {
         /// The least volume \[m^3\].
         low_m3: f64,
     },
-    /// A pull beyond what was found at any length.
+    /// The force is larger than any that was found at any length.
     #[error("no equilibrium with a force of {force_n:.6} N: the largest force found is {high_n:.6} N, at contraction {:.4} %", 100.0 * contraction)]
     ForceTooLarge {
         /// Asked force \[N\].
         force_n: f64,
         /// Largest force \[N\].
         high_n: f64,
-        /// Where.
+        /// Its contraction.
         contraction: f64,
     },
     /// No contraction with this volume was found at which the muscle pulls.
@@ -178,7 +178,7 @@ pub enum FibreError {
     /// The closed form was asked for a muscle that has none.
     #[error("there is no closed form for this muscle: {why}; use the method `shooting` or `auto`")]
     NoClosedForm {
-        /// What stands against it.
+        /// The reason why there is none.
         why: &'static str,
     },
     /// Shooting was asked for a muscle without a meridian to integrate.
@@ -186,15 +186,16 @@ pub enum FibreError {
         "there is nothing to shoot at in a muscle with ends = \"cylinder\": its meridian is straight; use the method `auto`, or ends = \"clamped\""
     )]
     NothingToShoot,
-    /// The rubber carries more than the pressure: there is no equilibrium with taut fibres, and one with slack ones isn't computed.
+    /// The rubber carries more than the pressure: there is no equilibrium with taut fibres, and one with
+    /// slack ones isn't computed.
     #[error("at contraction {:.4} % the fibres are slack{}: the bladder alone carries more than the pressure there; more pressure or less contraction makes them taut", 100.0 * contraction, slack_from(*limit))]
     Slack {
         /// Asked contraction.
         contraction: f64,
-        /// The contraction at which they become slack at this pressure, where it was asked for.
+        /// The contraction at which the fibres become slack at this pressure, if it was asked for.
         limit: Option<f64>,
     },
-    /// A long middle that the fibres don't hold: it would bulge and narrow in turn.
+    /// The fibres don't hold the long middle: it would bulge and narrow in turn.
     #[error("no equilibrium with one middle at contraction {:.4} %: the gas acts so far inside the fibres that they don't hold a cylinder of this length, it would bulge and narrow in turn; a thinner wall or a shorter muscle has one", 100.0 * contraction)]
     Undulates {
         /// Asked contraction.

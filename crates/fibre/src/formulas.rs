@@ -1,4 +1,5 @@
-//! Formulas of a user's own in a net: the energy of its wall and the area on which the pressure acts, each with its derivatives on one tape.
+//! A user's own formulas in a net: the energy of its wall and the area on which the pressure acts, each with
+//! its derivatives on one tape.
 
 use bulge_numerics::Real;
 use bulge_numerics::tape::Tape;
@@ -7,22 +8,23 @@ use std::sync::Arc;
 use crate::lobes::Section;
 use crate::net::Wall;
 
-/// Parameters of one formula, at most.
+/// Largest number of parameters of one formula.
 pub const MOST_PARAMETERS: usize = 6;
 
 /// A formula of one quantity, with its parameters.
 ///
-/// The tape takes the inputs in the order of [`FormulaInput`], then the parameters. Of an energy it gives W, dW/dl1, dW/dl2, d2W/dl1^2, d2W/dl1 dl2 and
-/// d2W/dl2^2 (by l2 with r = l2 r0 moving along), of an area A, dA/dr and d2A/dr^2, of a twist its value.
+/// The tape takes the inputs in the order of [`FormulaInput`], then the parameters. For an energy it gives W,
+/// dW/dl1, dW/dl2, d2W/dl1^2, d2W/dl1 dl2 and d2W/dl2^2 (the derivatives by l2 move r = l2 r0 along). For an
+/// area it gives A, dA/dr and d2A/dr^2, and for a twist its value.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Formula<D = f64> {
-    /// What computes it.
+    /// The tape that computes it.
     pub tape: Arc<Tape>,
     /// Its parameters in SI, at most [`MOST_PARAMETERS`].
     pub parameters: Vec<D>,
 }
 
-/// What a formula of the shape may depend on, by its place among the inputs of the tape.
+/// The inputs on which a formula of the shape may depend, in their order on the tape.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FormulaInput {
     /// Stretch along the meridian.
@@ -45,7 +47,7 @@ pub enum FormulaInput {
 const INPUTS: usize = 7;
 
 impl<D: Real> Formula<D> {
-    /// The outputs, by the value of every input that is not a parameter.
+    /// The outputs for the values of all inputs that are not parameters.
     pub(crate) fn run<const OUTPUTS: usize>(&self, inputs: [D; INPUTS]) -> [D; OUTPUTS] {
         let parameter = |i: usize| self.parameters.get(i).copied().unwrap_or(D::from(f64::NAN));
         self.tape.run_on(|i| inputs.get(i).copied().unwrap_or_else(|| parameter(i - INPUTS)))
@@ -57,10 +59,11 @@ impl<D: Real> Formula<D> {
     }
 }
 
-/// The formulas that act at every radius of a dimensionless net, and what they need of the muscle \[SI\].
+/// The formulas that act at every radius of a dimensionless net, and the numbers of the muscle that they need
+/// \[SI\].
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Formulas<D> {
-    /// Energy W of the wall per area at rest \[N/m\] by the stretches.
+    /// Energy W of the wall per area at rest \[N/m\], as a function of the stretches.
     pub(crate) energy: Option<Formula<D>>,
     /// Area A(r) on which the pressure acts \[m^2\].
     pub(crate) area: Option<Formula<D>>,
@@ -73,7 +76,7 @@ pub(crate) struct Formulas<D> {
 }
 
 impl<D> Formulas<D> {
-    /// Numbers of both together, at most.
+    /// Largest count of numbers in both formulas together.
     pub(crate) const NUMBERS: usize = 5 + 2 * MOST_PARAMETERS;
 }
 
@@ -96,7 +99,7 @@ impl<D: Real> Formulas<D> {
         wall.w_22 += self.scale * w_22;
     }
 
-    /// The cross-section, over R^2, if a formula says it.
+    /// The cross-section over R^2, if a formula gives it.
     pub(crate) fn section(&self, r: D) -> Option<Section<D>> {
         let area = self.area.as_ref()?;
         let [area, area_r, area_rr]: [D; 3] = area.run(self.inputs(D::from(1.0), r));
@@ -104,7 +107,7 @@ impl<D: Real> Formulas<D> {
         Some(Section { area: area * per_radius * per_radius, area_r: area_r * per_radius, area_rr })
     }
 
-    /// The same for another scalar; each number has its place.
+    /// The same for another scalar. Each number has its place.
     pub(crate) fn map<E>(&self, mut f: impl FnMut(usize, D) -> E) -> Formulas<E> {
         let mut of = |formula: &Option<Formula<D>>, first: usize| {
             let mut place = first;
@@ -129,7 +132,7 @@ impl<D: Real> Formulas<D> {
 }
 
 impl Formulas<f64> {
-    /// The same with a part of the energy.
+    /// The same with a fraction of the energy.
     pub(crate) fn with_part(&self, part: f64) -> Self {
         Self { scale: part * self.scale, ..self.clone() }
     }

@@ -1,30 +1,33 @@
 //! Fewer derivatives: the independent combinations of variables through which a net depends on them.
 //!
-//! A dimensionless net has fewer groups than the muscle has numbers: a braid with bladder depends on length, radius, wall, angle, both rubber
-//! constants and pressure through four of them. What an integration costs grows with the number of derivatives that it carries, so it carries
-//! those by the groups; the chain rule does the rest:
+//! A dimensionless net has fewer groups than the muscle has numbers: a braid with bladder depends on length,
+//! radius, wall, angle, both rubber constants and pressure through four of them. The cost of an integration
+//! grows with the number of derivatives that it carries. It therefore carries the derivatives by the groups,
+//! and the chain rule does the rest:
 //!
 //! ```text
 //! d(net)/d(variables) = C B        d(answer)/d(variables) = d(answer)/d(groups) B
 //! ```
 //!
-//! C has as many columns as the derivatives of the net are independent: Gram and Schmidt's method with pivots finds them.
+//! C has as many columns as the net has independent derivatives. Gram and Schmidt's method with pivots finds
+//! them.
 
 use bulge_numerics::{Dual, Real};
 
 use crate::net::{NUMBERS, Net, OWN_NUMBERS};
 use crate::shooting::Total;
 
-/// Groups, at most: length, fitting, angle, compliance, section, depth, two of the lobes or of the bladder, two of the cloth.
+/// Largest number of groups: length, fitting, angle, compliance, section, depth, two of the lobes or of the
+/// bladder, two of the cloth.
 const GROUPS: usize = 10;
-/// Part of a derivative that is left unexplained.
+/// Part of a derivative that may be left unexplained.
 const REST: f64 = 1e-11;
 
 /// The derivatives of a net by its `N` - 2 variables, in two factors.
 pub(crate) struct Groups<const N: usize> {
     /// C, row by row in the places of [`Net::map`].
     numbers: [[f64; GROUPS]; NUMBERS],
-    /// Sizes of the numbers, over which the columns of C are orthonormal.
+    /// Sizes of the numbers. The columns of C are orthonormal over them.
     size: [f64; NUMBERS],
     /// B.
     variables: [[f64; N]; GROUPS],
@@ -35,7 +38,7 @@ impl<const N: usize> Groups<N> {
     pub(crate) fn of(net: &Net<Dual<N>>) -> Self {
         let (mut size, mut rows) = ([1.0; NUMBERS], [[0.0; N]; NUMBERS]);
         net.each(|row, number| {
-            // Relative to the number, so that none is lost beside a larger one.
+            // Relative to the number, so that a small one is not lost beside a larger one.
             size[row] = if number.value() == 0.0 { 1.0 } else { number.value().abs() };
             rows[row] = number.gradient().map(|slope| slope / size[row]);
         });
@@ -75,7 +78,7 @@ impl<const N: usize> Groups<N> {
         self.count
     }
 
-    /// The net with the groups as the variables 2 .., of which there must be room for all.
+    /// The net with the groups as the variables 2 ..; there must be room for all of them.
     pub(crate) fn net<const M: usize>(&self, net: &Net<Dual<N>>) -> Net<Dual<M>> {
         net.map(|row, number| {
             let slopes = &self.numbers[row];
@@ -84,7 +87,8 @@ impl<const N: usize> Groups<N> {
         })
     }
 
-    /// The derivatives by the numbers of the net along the directions of the groups, from those by the groups; none across them.
+    /// The derivatives by the numbers of the net along the directions of the groups, from the derivatives by
+    /// the groups. Across these directions they are zero.
     pub(crate) fn by_number<const M: usize>(&self, by_group: &Total<M>) -> [f64; OWN_NUMBERS] {
         std::array::from_fn(|row| {
             let pairs = self.numbers[row].iter().zip(by_group.by_parameter.iter().skip(2)).take(self.count);
@@ -111,7 +115,8 @@ mod tests {
     use super::*;
     use crate::net::tests::rich;
 
-    /// A net whose numbers move with four variables, of which one does what two others do together and one does nothing.
+    /// A net whose numbers move with four variables. One of these does what two others do together, and one
+    /// does nothing.
     fn moving() -> Net<Dual<7>> {
         let v = |i: usize| Dual::<7>::variable(0.0, 2 + i);
         let mut net: Net<Dual<7>> = rich();

@@ -1,4 +1,4 @@
-//! Isobaric characteristics: force, volume and the rest over the contraction at several pressures.
+//! Isobaric characteristics: force, volume and the other results over the contraction at several pressures.
 
 use bulge_muscles::Pressure;
 use rayon::prelude::*;
@@ -12,7 +12,8 @@ use crate::shape::{Method, Response};
 use crate::solve::{ADIABATIC, Found, RangeEnd, closed_stiffness};
 use crate::unknowns::Unknowns;
 
-/// Contractions solved one after the other, each from its neighbour. A fixed number, so that results don't depend on the number of threads.
+/// Contractions solved one after the other, each from its neighbour. The number is fixed, so that results
+/// don't depend on the number of threads.
 const CHUNK: usize = 64;
 
 /// The characteristic at one pressure.
@@ -20,24 +21,27 @@ const CHUNK: usize = 64;
 pub struct Isobar {
     /// Gauge pressure \[Pa\].
     pub pressure_pa: f64,
-    /// Contraction at which the force vanishes, or the fibres slacken where that comes first; if it was found.
+    /// Contraction at which the force vanishes, or at which the fibres slacken if that comes first. `None` if
+    /// it was not found.
     pub contraction_limit: Option<f64>,
     /// Whether the fibres slacken there, with a force left.
     pub ends_slack: bool,
-    /// Equilibria in the order of the contractions asked for; those that don't exist are left out.
+    /// Equilibria in the order of the contractions asked for, without those that don't exist.
     pub points: Vec<Response>,
-    /// What was left out, and why.
+    /// Contractions that were left out, and why.
     #[serde(skip)]
     pub without: Vec<(f64, FibreError)>,
 }
 
-/// The characteristics at `pressures`, each at all `contractions`, on all cores. The same bytes whatever the number of threads.
+/// The characteristics at `pressures`, each at all `contractions`, on all cores. The bytes are the same for
+/// any number of threads.
 ///
-/// Where nothing but pressure acts on inextensible fibres, the shape doesn't depend on the pressure and is computed once.
+/// Where nothing but pressure acts on inextensible fibres, the shape doesn't depend on the pressure and is
+/// computed once.
 ///
 /// # Errors
-/// What [`Problem::new`] says, an approach that doesn't fit the muscle, or a contraction of 100 % and more. A contraction without
-/// equilibrium is no error: it is listed in [`Isobar::without`].
+/// Those of [`Problem::new`], an approach that doesn't fit the muscle, or a contraction of 100 % and more. A
+/// contraction without equilibrium is no error: it is listed in [`Isobar::without`].
 pub fn isobars(
     parts: impl Into<Parts>,
     pressures: &[Pressure],
@@ -104,7 +108,8 @@ impl Problem {
         Ok(isobar)
     }
 
-    /// What was not found on the way forth, on the way back: a drawn-out muscle is hard to find without a neighbour.
+    /// Solves on the way back what was not found on the way forth. A drawn-out muscle is hard to find without
+    /// a neighbour.
     fn backwards(&self, method: Method, solved: &mut [(f64, Result<Found, FibreError>)]) {
         let mut last = [None, None];
         for (contraction, found) in solved.iter_mut().rev() {
@@ -120,7 +125,8 @@ impl Problem {
         }
     }
 
-    /// The characteristic of a scale-free muscle at this pressure from that at another: forces are proportional to the pressure.
+    /// The characteristic of a scale-free muscle at this pressure, from the one at another pressure. Forces
+    /// are proportional to the pressure.
     fn rescaled(&self, other: &Isobar) -> Isobar {
         let p = self.pressure;
         let ratio = p / other.pressure_pa;
@@ -144,7 +150,7 @@ impl Problem {
     }
 }
 
-/// A start from the last two solutions on the same side: linear in the contraction.
+/// A start from the last two solutions on the same side, linear in the contraction.
 fn extrapolate(last: [Option<(f64, Unknowns)>; 2], contraction: f64) -> Option<Unknowns> {
     let (x1, one) = last[1]?;
     let Some((x0, zero)) = last[0] else { return Some(one) };

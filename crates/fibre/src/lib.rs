@@ -1,4 +1,5 @@
-//! Shape, force and volume of pressurised fibre nets: one meridian equation for pleated and braided pneumatic muscles.
+//! Shape, force and volume of pressurised fibre nets: one meridian equation for pleated and braided pneumatic
+//! muscles.
 pub mod closed_form;
 mod continuation;
 mod cylinder;

@@ -1,8 +1,10 @@
-//! A fast linearised answer for fits: force, meridional force, radius and volume with exact derivatives by the variables that are asked for.
+//! A fast linearised answer for fits: force, meridional force, radius and volume, with exact derivatives by
+//! the requested variables.
 //!
-//! The equilibrium is found with two derivatives, those by the unknowns; only the last integration carries more, as few as the question needs.
-//! Meridians are taken by quadrature where they can be, ten times faster than by the ODE. A start, from the answer at a neighbouring contraction,
-//! pressure or parameter, is moved along its own derivatives, so that most of the search is saved as well.
+//! The search for the equilibrium carries two derivatives, those by the unknowns. Only the last integration
+//! carries more, as few as the question needs. Meridians are computed by quadrature where possible, ten times
+//! faster than by the ODE. A start, from the answer at a neighbouring contraction, pressure or parameter, is
+//! moved along its own derivatives. This saves most of the search as well.
 
 use bulge_numerics::{Dual, Real};
 
@@ -37,14 +39,16 @@ pub struct Linear {
 
 /// An equilibrium with its exact first derivatives.
 ///
-/// The sign conventions are those of [`crate::Response`]; the force may be negative, as in [`Problem::follow`].
+/// The sign conventions are those of [`crate::Response`]; the force may be negative, as in
+/// [`Problem::follow`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Linearised {
     /// Contraction (l0 - l)/l0 \[-\].
     pub contraction: f64,
     /// Axial force F \[N\].
     pub force_n: Linear,
-    /// Meridional force at mid-length, N = F + p A(r_mid) \[N\]: what all fibres and walls carry together there.
+    /// Meridional force at mid-length, N = F + p A(r_mid) \[N\]: the force that all fibres and walls
+    /// carry together there.
     pub equator_force_n: Linear,
     /// Radius of the fibres at mid-length, r_mid \[m\].
     pub mid_radius_m: Linear,
@@ -56,33 +60,34 @@ pub struct Linearised {
 }
 
 impl Linearised {
-    /// Where a search for a neighbouring equilibrium may start; none where nothing is searched for (closed forms), but
-    /// [`Repeated`] has one for straight fibres.
+    /// A start for the search for a neighbouring equilibrium. `None` where nothing is searched for
+    /// (closed forms), except that [`Repeated`] has one for straight fibres.
     #[must_use]
     pub fn start(&self) -> Option<&Start> {
         self.start.as_ref()
     }
 
-    /// The same to keep.
+    /// The same start, to keep.
     #[must_use]
     pub fn into_start(self) -> Option<Start> {
         self.start
     }
 }
 
-/// An equilibrium from which to start a search for a neighbouring one: at another contraction, pressure, or parameters of a muscle of the same kind.
+/// An equilibrium from which the search for a neighbouring one can start: at another contraction or pressure,
+/// or for other parameters of a muscle of the same kind.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Start(Found);
 
-/// What was found.
+/// The solution that was found.
 #[derive(Debug, Clone, PartialEq)]
 enum Found {
     ClosedForm(Near),
-    /// Much larger, and a small part of what finding it costs.
+    /// Boxed, because it is much larger. The box costs a small part of the search.
     Shooting(Box<Shot>),
 }
 
-/// A solved meridian that was shot for.
+/// A meridian that was found by shooting.
 #[derive(Debug, Clone, PartialEq)]
 struct Shot {
     unknowns: Unknowns,
@@ -92,11 +97,12 @@ struct Shot {
     follow: Follow,
 }
 
-/// Largest moves of the unknowns along their derivatives; beyond them the derivatives say little. (ln|k| of a long braid moves fast, but straight.)
+/// Largest moves of the unknowns along their derivatives. Beyond them the derivatives say little. (ln|k| of a
+/// long braid moves fast, but straight.)
 const FARTHEST: [f64; 2] = [0.5, 20.0];
 
 impl Shot {
-    /// The unknowns to start with at a contraction of another problem.
+    /// The unknowns from which to start at a contraction of another problem.
     fn towards(&self, problem: &Problem, contraction: f64) -> Unknowns {
         let mut change = numbers_of(&problem.net);
         for (change, before) in change.iter_mut().zip(self.numbers) {
@@ -113,8 +119,9 @@ impl Shot {
 }
 
 impl Problem {
-    /// Force, meridional force, radius at mid-length and volume at a contraction, with exact derivatives by the contraction, the pressure
-    /// and what the parts move with; also where the force is negative. `moving` are the parts of this problem with derivatives.
+    /// Force, meridional force, radius at mid-length and volume at a contraction, also where the force is
+    /// negative. The derivatives by the contraction, the pressure and the variables of the parts are exact.
+    /// `moving` are the parts of this problem with derivatives.
     ///
     /// # Errors
     /// See [`FibreError`].
@@ -128,10 +135,12 @@ impl Problem {
         found.map_err(|error| self.explained(error, contraction, approach))
     }
 
-    /// The same from a neighbouring equilibrium, of this muscle or a similar one. The answer is the same within its accuracy.
+    /// The same, started from a neighbouring equilibrium of this muscle or a similar one. The answer is the
+    /// same within its accuracy.
     ///
     /// # Errors
-    /// Those of [`Problem::linearised`], but where nothing is found the limit isn't searched for: see [`Problem::explained`].
+    /// Those of [`Problem::linearised`], but where nothing is found the limit isn't searched for. See
+    /// [`Problem::explained`].
     pub fn linearised_from(
         &self,
         start: Option<&Start>,
@@ -195,7 +204,7 @@ impl Problem {
     }
 }
 
-/// The numbers of a net but for those of formulas, in their places.
+/// The numbers of a net in their places, without those of formulas.
 fn numbers_of(net: &Net<f64>) -> [f64; OWN_NUMBERS] {
     let mut numbers = [0.0; OWN_NUMBERS];
     net.each(|place, number| {
@@ -206,7 +215,7 @@ fn numbers_of(net: &Net<f64>) -> [f64; OWN_NUMBERS] {
     numbers
 }
 
-/// What is asked for.
+/// The question for which an answer is computed.
 struct Question<'a> {
     start: Option<&'a Start>,
     contraction: f64,
@@ -214,7 +223,7 @@ struct Question<'a> {
     approach: Approach,
 }
 
-/// How many lanes carry derivatives, counted to the last one that does.
+/// Number of lanes up to the last one that carries derivatives.
 fn used_lanes(moving: &Parts<Jet>) -> usize {
     let mut used = 0;
     moving.map(|_, number| {
@@ -224,7 +233,8 @@ fn used_lanes(moving: &Parts<Jet>) -> usize {
     used
 }
 
-/// The same number with the derivatives of the lanes in the places 3 .., after the two unknowns and the pressure.
+/// The same number with the derivatives of its lanes in the places 3 .., after the two unknowns and the
+/// pressure.
 fn widened<const N: usize>(number: &Jet) -> Dual<N> {
     let slope = |i: usize| i.checked_sub(3).and_then(|lane| number.gradient().get(lane)).copied();
     Dual::new(number.value(), std::array::from_fn(|i| slope(i).unwrap_or(0.0)))

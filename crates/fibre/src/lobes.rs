@@ -1,7 +1,9 @@
-//! Lobes: cloth between the fibres of a pleated muscle, inextensible around it, and the area that it encloses as a function of the fibre radius.
+//! Lobes: cloth between the fibres of a pleated muscle, inextensible around it, and the area that it encloses
+//! as a function of the fibre radius.
 //!
-//! Two neighbouring fibres at radius r are the ends of a chord 2w = 2 r sin(pi/n); the cloth between them has the width s = C/n all along the
-//! muscle (C: circumference of the cloth). Under pressure it is an arc of radius rho and half-opening v, like the lobes of a pumpkin balloon:
+//! Two neighbouring fibres at radius r are the ends of a chord 2w = 2 r sin(pi/n); the cloth between them has
+//! the width s = C/n all along the muscle (C: circumference of the cloth). Under pressure it is an arc of
+//! radius rho and half-opening v, like the lobes of a pumpkin balloon:
 //!
 //! ```text
 //! rho = s/(2 v)        sin(v)/v = 2w/s
@@ -10,18 +12,20 @@
 //! A'' = 2 n sin(pi/n) (cos(pi/n) - sin(pi/n) (v sin v + cos v)/(sin v - v cos v))
 //! ```
 //!
-//! Surplus cloth lets the lobes open until they touch their neighbours, where the arc is tangent to the radial plane of the fibre:
-//! v = pi/2 + pi/n =: v_c. From there on two layers lie back to back between the fibre and a radius a, where the arc begins:
+//! Surplus cloth lets the lobes open until they touch their neighbours, where the arc is tangent to the
+//! radial plane of the fibre: v = pi/2 + pi/n =: v_c. From there on two layers lie back to back between the
+//! fibre and a radius a, where the arc begins:
 //!
 //! ```text
 //! s/2 = (a - r) + rho v_c        rho = a tan(pi/n)        hence a = (s/2 + r)/(1 + v_c tan(pi/n))
 //! A = n tan(pi/n) (1 + v_c tan(pi/n)) a^2        A' = 2 n tan(pi/n) a        A'' = 2 n tan(pi/n)/(1 + v_c tan(pi/n))
 //! ```
 //!
-//! A, A' and A'' are continuous there. The simpler rule "touch at v = pi/2", with semicircles over the chord of the radius a, is not a
-//! minimum of energy: its A' jumps, by 0.03 % for n = 40 and by 7 % for n = 6.
+//! A, A' and A'' are continuous there. The simpler rule "touch at v = pi/2", with semicircles over the chord
+//! of the radius a, is not a minimum of energy: its A' jumps, by 0.03 % for n = 40 and by 7 % for n = 6.
 //!
-//! A' vanishes where the lobes form one circle, v = pi/n, rho = r = C/(2 pi): fibres there are straight, and no pressure opens the muscle further.
+//! A' vanishes where the lobes form one circle, v = pi/n, rho = r = C/(2 pi): fibres there are straight, and
+//! no pressure opens the muscle further.
 
 use bulge_numerics::Real;
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -62,12 +66,12 @@ impl<D: Real> Lobes<D> {
         Self { fibres, width: circumference / fibres, sin, cos, spread, touching: false }
     }
 
-    /// With the law that acts at a radius.
+    /// The same with the law that acts at a radius.
     pub(crate) fn acting_at(self, r: f64) -> Self {
         Self { touching: r < self.contact_radius().value(), ..self }
     }
 
-    /// The radius of the fibres from which on the lobes no longer touch.
+    /// The radius of the fibres beyond which the lobes no longer touch.
     pub(crate) fn contact_radius(&self) -> D {
         self.width * 0.5 / (self.spread - 1.0)
     }
@@ -77,7 +81,8 @@ impl<D: Real> Lobes<D> {
         self.fibres * self.width / (2.0 * PI)
     }
 
-    /// Area and derivatives by the law of [`Lobes::acting_at`]; not a number beyond the radius at which the cloth is the chord.
+    /// Area and derivatives by the law of [`Lobes::acting_at`]. Not a number beyond the radius at which the
+    /// cloth is the chord.
     pub(crate) fn section(&self, r: D) -> Section<D> {
         let Self { fibres: n, width: s, sin, cos, spread, touching } = *self;
         if touching {
@@ -100,10 +105,10 @@ impl<D: Real> Lobes<D> {
         }
     }
 
-    /// The bulge B > 0 over the radius `end` for which A'(end + B) = B exp(-y), which rises with y from 0 to the [`Lobes::limit`]; its law is that
-    /// of [`Lobes::acting_at`] there.
+    /// The bulge B > 0 over the radius `end` for which A'(end + B) = B exp(-y). It rises with y from 0 to the
+    /// [`Lobes::limit`]. Its law is that of [`Lobes::acting_at`] at that radius.
     ///
-    /// Close to the limit, where A' is the small difference of two numbers, B exp(-y) has it exactly.
+    /// Close to the limit A' is the small difference of two numbers. B exp(-y) gives it exactly.
     pub(crate) fn bulge(&self, end: D, y: D) -> Option<D> {
         let (edge, plain) = (end.value(), self.map(|_, d| d.value()));
         let rate = (-y).exp();
@@ -125,7 +130,7 @@ impl<D: Real> Lobes<D> {
                 // The last step carries the derivatives.
                 let gap = rate * newton - section.area_r;
                 let bulge = -(gap / (rate - section.area_rr).value()) + newton;
-                // Within rounding of the limit it may lie on either side; both formulas go on there.
+                // Within rounding of the limit the bulge may lie on either side. Both formulas hold there.
                 return (bulge.value() > 0.0 && bulge.value() < most * (1.0 + 1e-12)).then_some(bulge);
             }
             at = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
@@ -146,11 +151,13 @@ impl<D: Real> Lobes<D> {
     }
 }
 
-/// Coefficients of `v^2/(1 - q)` in powers of `1 - q`: a fit to 5e-6 in v on 0 < v < 2.65 (150 degrees, three fibres that touch).
+/// Coefficients of `v^2/(1 - q)` in powers of `1 - q`: a fit to 5e-6 in v on 0 < v < 2.65 (150 degrees, three
+/// fibres that touch).
 const OPENING: [f64; 7] =
     [6.000_016_55, 1.796_662_41, 0.892_954_38, -0.058_897_85, 1.883_829_22, -2.266_596, 1.582_291_62];
 
-/// The root v of sin(v)/v = q with its sine and cosine: the fit, one step of third order on the values and Newton's for the derivatives.
+/// The root v of sin(v)/v = q with its sine and cosine: the fit, one step of third order on the values, and a
+/// Newton step for the derivatives.
 fn half_opening<D: Real>(q: D) -> [D; 3] {
     let u = 1.0 - q.value();
     let v = (u * OPENING.iter().rev().fold(0.0, |sum, c| sum * u + c)).sqrt();
@@ -168,7 +175,8 @@ mod tests {
     use super::*;
     use bulge_numerics::Dual;
 
-    /// Area by Simpson's rule over the outline of one panel, from the geometry alone: an arc whose half-opening is found by bisection.
+    /// Area by Simpson's rule over the outline of one panel, from the geometry alone: an arc whose
+    /// half-opening is found by bisection.
     fn area_by_outline(n: u32, circumference: f64, r: f64) -> f64 {
         let n = f64::from(n);
         let (half, s) = (PI / n, circumference / n);
@@ -185,7 +193,8 @@ mod tests {
             }
             (r, r * half.sin() / low.sin(), low)
         };
-        // The centre of the arc lies on the panel's bisector; area = 1/2 integral (x dy - y dx) from the axis along the outline.
+        // The centre of the arc lies on the panel's bisector; area = 1/2 integral (x dy - y dx) from the axis
+        // along the outline.
         let centre = a * half.cos() - rho * v.cos();
         let steps = 2000;
         let mut area = 0.0;
@@ -261,7 +270,8 @@ mod tests {
         }
     }
 
-    /// Area, slope and curvature of the area go on where the lobes begin to touch; the rule "touch at 90 degrees" has a step in the slope.
+    /// Area, slope and curvature of the area are continuous where the lobes begin to touch. The rule "touch
+    /// at 90 degrees" has a step in the slope.
     #[test]
     fn the_laws_join_with_the_second_derivative() {
         for n in [3.0, 6.0, 40.0, 200.0] {
@@ -279,7 +289,8 @@ mod tests {
         }
     }
 
-    /// No surplus: the polygon. Fully lobed (v = 90 degrees): 12 % more than the polygon of 40 sides. One circle: no slope.
+    /// No surplus: the polygon. Fully lobed (v = 90 degrees): 12 % more than the polygon of 40 sides. One
+    /// circle: no slope.
     #[test]
     fn limits() {
         let (sin, cos) = (PI / 40.0).sin_cos();

@@ -1,7 +1,7 @@
 //! The equilibrium ODE of the meridian, integrated from mid-length to the fitting.
 //!
-//! With the unstretched fibre length S from mid-length as the independent variable, chi = -psi the angle by which the meridian has turned
-//! towards the axis, and N, h, sigma, T_r, h_r from [`Net::local`]:
+//! With the unstretched fibre length S from mid-length as the independent variable, chi = -psi the angle by
+//! which the meridian has turned towards the axis, and N, h, sigma, T_r, h_r from [`Net::local`]:
 //!
 //! ```text
 //! rho' = sigma sin(chi)            rho = r_e - r, the distance from the radius at mid-length
@@ -12,10 +12,11 @@
 //! V'   = pi (r + depth)^2 sigma cos(chi)       with lobes: A sigma cos(chi)
 //! ```
 //!
-//! It is the second-order balance, regular at mid-length, no square root of a difference. Carrying the curvature k as a state, although r and T
-//! determine it, is what makes long braids easy: at mid-length they lie within exp(-50) of a saddle (the cylinder), where k from
-//! its definition is pure rounding; k and sin(chi) as states keep their *relative* accuracy however small they are. The first integral
-//! `N cos(chi) = F + A(r)` is not used by the integration and so measures its error.
+//! This is the second-order balance. It is regular at mid-length and takes no square root of a difference.
+//! The curvature k is carried as a state although r and T determine it. This is what makes long braids easy:
+//! at mid-length they lie within exp(-50) of a saddle (the cylinder), where k from its definition is pure
+//! rounding. As states, k and sin(chi) keep their *relative* accuracy however small they are. The first
+//! integral `N cos(chi) = F + A(r)` is not used by the integration and so measures its error.
 
 use bulge_numerics::Real;
 use bulge_numerics::dop853::{self, Dop853};
@@ -32,11 +33,11 @@ pub(crate) const TENSION: usize = 5;
 pub(crate) const VOLUME: usize = 6;
 const STATES: usize = 7;
 
-/// Steps after which an integration is given up: a braid of l0/r0 = 100 and 50 degrees takes about 500.
+/// Steps after which an integration is given up. A braid of l0/r0 = 100 and 50 degrees takes about 500.
 const MAX_STEPS: u32 = 1500;
 
-/// Part of the way that one crossing step may cover: rho as the independent variable sees the square root at mid-length, and the step's
-/// error is about (this)^9.
+/// Part of the way that one crossing step may cover. With rho as the independent variable a step is affected
+/// by the square root at mid-length. Its error is about (this)^9.
 const CROSSING: f64 = 0.04;
 
 pub(crate) type State<D> = [D; STATES];
@@ -46,7 +47,7 @@ pub(crate) type State<D> = [D; STATES];
 pub(crate) struct Trajectory<D> {
     /// Unstretched fibre length from mid-length to the point where the radius is that of the fitting.
     pub(crate) half_fibre: D,
-    /// State there.
+    /// State at that point.
     pub(crate) end: State<D>,
     /// Axial force F = N - A at mid-length.
     pub(crate) force: D,
@@ -74,7 +75,8 @@ impl<D: Real> Flow<D> {
         let section = net.section(r);
         let out = l.sigma * sin;
         let turn = l.sigma * k;
-        // cos(alpha0) - sigma cos(chi) without cancellation: (cos^2(alpha0) - sigma^2)/(cos(alpha0) + sigma) + sigma (1 - cos(chi)).
+        // cos(alpha0) - sigma cos(chi) without cancellation:
+        // (cos^2(alpha0) - sigma^2)/(cos(alpha0) + sigma) + sigma (1 - cos(chi)).
         let strain = net.compliance * tension;
         let angle = (net.turn * r).squared() - net.sin2_rest;
         let shortening =
@@ -90,7 +92,7 @@ impl<D: Real> Flow<D> {
         ]
     }
 
-    /// The same with rho as the independent variable; the place of rho in the state is taken by S.
+    /// The same with rho as the independent variable. S takes the place of rho in the state.
     fn slope_by_rho(&self, rho: D, y: &State<D>) -> State<D> {
         let mut state = *y;
         state[RHO] = rho;
@@ -100,10 +102,11 @@ impl<D: Real> Flow<D> {
         slope.map(|s| s * per_rho)
     }
 
-    /// From `y` to the given rho in one or a few steps of equal size (Hénon's way to hit a surface exactly: rho becomes the independent
-    /// variable). Moves the state and returns the change of S. For a short way on which rho changes steadily.
+    /// Goes from `y` to the given rho in one or a few steps of equal size (Hénon's way to hit a surface
+    /// exactly: rho becomes the independent variable). Moves the state and returns the change of S. The way
+    /// must be short, and rho must change steadily on it.
     fn cross_to(&self, y: &mut State<D>, rho: D, pieces: u32) -> D {
-        // In this part of the journey the place RHO of the array holds S; rho itself is appended as an eighth component of slope 1.
+        // Here the place RHO of the array holds S; rho itself is appended as an eighth component of slope 1.
         let mut f = |z: &[D; STATES + 1]| {
             let slope = self.slope_by_rho(z[STATES], &std::array::from_fn(|i| z[i]));
             std::array::from_fn(|i| if i < STATES { slope[i] } else { D::from(1.0) })
@@ -120,7 +123,7 @@ impl<D: Real> Flow<D> {
         advance
     }
 
-    /// N cos(chi) - A, the same along the meridian.
+    /// N cos(chi) - A, constant along the meridian.
     fn axial_force(&self, y: &State<D>) -> D {
         let r = self.mid_radius - y[RHO];
         self.net.local(r, y[TENSION]).force * y[COS] - self.net.area(r)
@@ -152,11 +155,11 @@ impl<D: Real> Flow<D> {
 /// Why a trajectory does not exist.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct NoTrajectory {
-    /// Evaluations spent on finding that out.
+    /// Evaluations spent before this was known.
     pub(crate) evaluations: u32,
 }
 
-/// The middle of a meridian: what a trajectory starts from.
+/// The middle of a meridian, from which a trajectory starts.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Middle<D> {
     /// r_mid - r_fitting, positive for a bulge, negative for a waist.
@@ -165,18 +168,21 @@ pub(crate) struct Middle<D> {
     pub(crate) curvature: D,
     /// Tension of all fibres; it belongs to the curvature by [`Net::tension_at_equator`].
     pub(crate) tension: D,
-    /// Fibre length from mid-length to there, on which the meridian can't be told from a cylinder; usually 0.
+    /// Fibre length from mid-length to this state, on which the meridian can't be told from a cylinder;
+    /// usually 0.
     pub(crate) straight: D,
 }
 
 impl<D: Real> Middle<D> {
-    /// A middle whose curvature is exp(-`below`) of the one stated. Along a saddle, `rho'' = lambda^2 rho` with
+    /// A middle whose curvature is exp(-`below`) of the one stated. Along a saddle, `rho'' = lambda^2 rho`
+    /// with
     ///
     /// ```text
     /// lambda^2 = sigma^2 (h_r - A'')/N
     /// ```
     ///
-    /// the curvature grows by the factor exp(lambda s): the way from it to the stated one is a cylinder. None if there is no saddle.
+    /// the curvature grows by the factor exp(lambda s). The way from this middle to the stated curvature is a
+    /// cylinder. `None` if there is no saddle.
     pub(crate) fn beyond(mut self, net: &Net<D>, below: D) -> Option<Self> {
         let r = net.end_radius + self.bulge;
         let net = net.acting_at(r.value());
@@ -186,7 +192,8 @@ impl<D: Real> Middle<D> {
         self.straight.value().is_finite().then_some(self)
     }
 
-    /// The state at the fitting with the shortening and the volume of the cylinder; `net` is that of the middle.
+    /// Adds the shortening and the volume of the cylinder to the state at the fitting. `net` is that of the
+    /// middle.
     pub(crate) fn with_straight(&self, net: &Net<D>, mut end: State<D>) -> State<D> {
         if self.straight.value() == 0.0 {
             return end;
@@ -239,7 +246,8 @@ pub(crate) fn trajectory<D: Real>(
         let Ok(h) = stepped else { return Err(NoTrajectory { evaluations: run.evaluations }) };
         fibre += h;
         let remaining = (target.value() - y[RHO].value()) * sign;
-        // The last step aims at the target with a Taylor estimate; a remainder of a few per cent is then crossed in rho.
+        // The last step aims at the target with a Taylor estimate. A remainder of a few per cent is then
+        // crossed in rho.
         let part = remaining / y[RHO].value().abs();
         if part < CROSSING {
             let pieces = (1..100).find(|pieces| part.abs() <= CROSSING * f64::from(*pieces)).unwrap_or(100);
@@ -266,8 +274,9 @@ pub(crate) fn trajectory<D: Real>(
     Ok(Trajectory { half_fibre, end, force, mid_tension, steps, evaluations, first_integral })
 }
 
-/// Where the law changes on the way to the fitting, and the fitting itself, as values of rho in the order in which they are met: one smooth law
-/// in between, and each hit exactly. With the place of the fitting among them.
+/// The places on the way to the fitting at which the law changes, and the fitting itself, as values of rho in
+/// the order in which they are met. The law is smooth between them, and each is hit exactly. Also returns the
+/// index of the fitting among them.
 fn targets<D: Real>(net: &Net<D>, mid_radius: D, bulge: D) -> ([D; 3], usize) {
     let (sign, size) = (bulge.value().signum(), bulge.value().abs());
     let on_the_way = |radius: D| {
@@ -295,8 +304,9 @@ pub(crate) struct Station {
     pub(crate) tension: f64,
 }
 
-/// The meridian at `pieces + 1` points, equally spaced in fibre length, from mid-length to the fitting at `half_fibre`; and the largest departure
-/// from the first integral over all of them, relative to the largest of its forces.
+/// The meridian at `pieces + 1` points, equally spaced in fibre length, from mid-length to the fitting at
+/// `half_fibre`. Also the largest departure from the first integral over all points, relative to the largest
+/// of its forces.
 pub(crate) fn stations(
     net: &Net<f64>,
     middle: Middle<f64>,
@@ -336,7 +346,8 @@ pub(crate) fn stations(
     Ok((found, departure))
 }
 
-/// Size of the shortening below which its relative error does not count: a part of what the bulge itself shortens.
+/// Size of the shortening below which its relative error does not count: a fraction of the shortening that
+/// the bulge itself causes.
 fn shortening_floor<D: Real>(net: &Net<D>, size: f64, parabola: f64) -> f64 {
     if net.turn.value() != 0.0 || net.compliance.value() != 0.0 {
         // Angle and strain shorten or lengthen the muscle by themselves.
@@ -346,7 +357,8 @@ fn shortening_floor<D: Real>(net: &Net<D>, size: f64, parabola: f64) -> f64 {
     (slope * slope).min(1.0) * parabola.min(net.half_fibre.value()) * 1e-2
 }
 
-/// The sizes against which errors count. Curvature and slope count against each other, since both vanish together near a saddle.
+/// The sizes against which errors count. Curvature and slope count against each other, since both vanish
+/// together near a saddle.
 fn scale<D: Real>(old: &State<D>, new: &State<D>, radius: f64, floor: f64) -> [f64; STATES] {
     let largest = |i: usize| old[i].value().abs().max(new[i].value().abs());
     let angle = largest(SIN) + largest(CURVATURE) * radius;

@@ -1,13 +1,15 @@
-//! The fibre net: what every muscle is made of, as functions of the radius r and the fibre tension t.
+//! The fibre net that every muscle consists of, as functions of the radius r and the fibre tension t.
 //!
-//! A net of n fibres in two opposite families, pinned where they cross. One unit of *unstretched fibre length* S spans the meridional length
-//! sigma and turns by q = sin(alpha0)/r0 about the axis, so a fibre with strain e obeys
+//! A net of n fibres in two opposite families, pinned where they cross. One unit of *unstretched fibre
+//! length* S spans the meridional length sigma and turns by q = sin(alpha0)/r0 about the axis, so a fibre
+//! with strain e obeys
 //!
 //! ```text
 //! (1 + e)^2 = sigma^2 + q^2 r^2          (1 + e) sin(theta) = q r          (1 + e) cos(theta) = sigma
 //! ```
 //!
-//! Its stored energy per unit of S, with T the tension of all fibres and 1/EA = c (c = 0: inextensible, e is a constraint and T its multiplier):
+//! Its stored energy per unit of S, with T the tension of all fibres and 1/EA = c (c = 0: inextensible, e is
+//! a constraint and T its multiplier):
 //!
 //! ```text
 //! w(r, sigma) = c T^2/2  +  B W(sigma/cos(alpha0), r/r0)  +  sigma u(r)                fibres + bladder + cloth
@@ -20,8 +22,8 @@
 //! k = (A' - h cos(psi))/N                      curvature of the meridian
 //! ```
 //!
-//! `theta(r)`, `A(r)` and `u(r)` of the theory are `q`, [`Net::area`] and [`Cloth`]; the pleated muscle is q = 0.
-//! Everything is dimensionless: lengths in the reference radius R, forces in p R^2.
+//! `theta(r)`, `A(r)` and `u(r)` of the theory are `q`, [`Net::area`] and [`Cloth`]; the pleated muscle is
+//! q = 0. Everything is dimensionless: lengths in the reference radius R, forces in p R^2.
 
 use bulge_numerics::{Dual, Real};
 use std::borrow::Cow;
@@ -30,13 +32,13 @@ use std::f64::consts::PI;
 use crate::formulas::Formulas;
 use crate::lobes::{Lobes, Section};
 
-/// Numbers of a net without formulas, at most: with lobes, bladder and cloth.
+/// Largest count of numbers in a net without formulas: with lobes, bladder and cloth.
 pub(crate) const OWN_NUMBERS: usize = 17;
-/// Numbers of a net, at most.
+/// Largest count of numbers in a net.
 pub(crate) const NUMBERS: usize = OWN_NUMBERS + Formulas::<f64>::NUMBERS;
 
-/// Rubber bladder that follows the net point by point: Mooney-Rivlin W = c10 (I1 - 3) + c01 (I2 - 3), incompressible, plane stress,
-/// stretches l1 = sigma/cos(alpha0) along the meridian and l2 = r/r0 around it.
+/// Rubber bladder that follows the net point by point: Mooney-Rivlin W = c10 (I1 - 3) + c01 (I2 - 3),
+/// incompressible, plane stress, stretches l1 = sigma/cos(alpha0) along the meridian and l2 = r/r0 around it.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Bladder<D> {
     /// 2 pi r0 t cos(alpha0) c10/(p R^2): energy scale per unstretched fibre length.
@@ -45,9 +47,11 @@ pub(crate) struct Bladder<D> {
     pub(crate) c01: D,
 }
 
-/// Cloth that stops unfolding at r_u: u(r) = K (2 pi (r - r_u))^2/(2 * 2 pi r_u) beyond it, per meridian length.
+/// Cloth that stops unfolding at r_u: u(r) = K (2 pi (r - r_u))^2/(2 * 2 pi r_u) beyond it, per meridian
+/// length.
 ///
-/// In a [`Net`] it acts at every radius, so that the law is smooth; [`Net::acting_at`] leaves it out where it is slack.
+/// In a [`Net`] it acts at every radius, so that the law is smooth; [`Net::acting_at`] leaves it out where it
+/// is slack.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Cloth<D> {
     /// Hoop stiffness K/(p R).
@@ -73,15 +77,16 @@ pub(crate) struct Net<D> {
     pub(crate) compliance: D,
     /// Area of the cross-section over pi (r + depth)^2: (n/2 pi) sin(2 pi/n) for a polygon, 1 for a circle.
     pub(crate) area_factor: D,
-    /// How far outside the fibres the pressure acts, at r + depth: out to the crests of pleats; negative: at the inner face of a wall.
+    /// Distance outside the fibres at which the pressure acts, at r + depth: positive out to the crests of
+    /// pleats, negative at the inner face of a wall.
     pub(crate) depth: D,
-    /// Cloth in lobes between the fibres, if it is; instead of the polygon.
+    /// Cloth in lobes between the fibres, if any. It replaces the polygon.
     pub(crate) lobes: Option<Lobes<D>>,
     /// Bladder, if any.
     pub(crate) bladder: Option<Bladder<D>>,
     /// Cloth with limited unfolding, if any.
     pub(crate) cloth: Option<Cloth<D>>,
-    /// Formulas of a user's own, if any: for the energy of the wall, for the area.
+    /// A user's own formulas, if any: for the energy of the wall, for the area.
     pub(crate) formulas: Option<Box<Formulas<D>>>,
 }
 
@@ -114,7 +119,8 @@ pub(crate) struct Local<D> {
 }
 
 impl<D: Real> Net<D> {
-    /// The net as it is at radius `r`, one smooth law: without the cloth where that is slack, with lobes that touch or that don't.
+    /// The net as it acts at radius `r`, with one smooth law: without the cloth where that is slack, with
+    /// lobes that touch or that don't.
     pub(crate) fn acting_at(&self, r: f64) -> Cow<'_, Self> {
         if self.cloth.is_none() && self.lobes.is_none() {
             return Cow::Borrowed(self);
@@ -137,23 +143,24 @@ impl<D: Real> Net<D> {
         self.bladder.is_some() || self.has_energy()
     }
 
-    /// Whether a formula of a user's own is the energy of the wall.
+    /// Whether a user's own formula gives the energy of the wall.
     pub(crate) fn has_energy(&self) -> bool {
         self.formulas.as_ref().is_some_and(|formulas| formulas.energy.is_some())
     }
 
-    /// Whether that formula has a kink: what follows from it is no smooth function of the radius.
+    /// Whether that formula has a kink. Quantities that follow from it are then no smooth functions of the
+    /// radius.
     pub(crate) fn has_kinked_energy(&self) -> bool {
         let energy = self.formulas.as_ref().and_then(|formulas| formulas.energy.as_ref());
         energy.is_some_and(|energy| energy.tape.has_kinks())
     }
 
-    /// Whether a formula of a user's own is the area.
+    /// Whether a user's own formula gives the area.
     pub(crate) fn has_area(&self) -> bool {
         self.formulas.as_ref().is_some_and(|formulas| formulas.area.is_some())
     }
 
-    /// The radii at which the law changes: one at which cloth becomes taut, one at which lobes cease to touch.
+    /// The radii at which the law changes: where cloth becomes taut, and where lobes cease to touch.
     pub(crate) fn kinks(&self) -> [Option<D>; 2] {
         let cloth = self.cloth.map(|cloth| cloth.radius);
         [cloth, self.lobes.map(|lobes| lobes.contact_radius() - self.depth)]
@@ -174,7 +181,7 @@ impl<D: Real> Net<D> {
         Section { area: area_r * r * 0.5, area_r, area_rr }
     }
 
-    /// Whether the reported volume is that on which the pressure acts: lobes, or a formula.
+    /// Whether the pressure acts on the reported volume (lobes, or a formula).
     fn is_whole(&self) -> bool {
         self.lobes.is_some() || self.has_area()
     }
@@ -185,7 +192,7 @@ impl<D: Real> Net<D> {
         if self.is_whole() { section.area } else { (r + self.depth).squared() * PI }
     }
 
-    /// Volume on which the pressure acts over the reported one.
+    /// The volume on which the pressure acts, over the reported volume.
     pub(crate) fn volume_factor(&self) -> D {
         if self.is_whole() { D::from(1.0) } else { self.area_factor }
     }
@@ -215,7 +222,8 @@ impl<D: Real> Net<D> {
         wall
     }
 
-    /// Meridional length per fibre length; NaN beyond the radius where the fibres would lie along the parallels.
+    /// Meridional length per fibre length; NaN beyond the radius where the fibres would lie along the
+    /// parallels.
     pub(crate) fn sigma(&self, r: D, tension: D) -> D {
         ((self.compliance * tension + 1.0).squared() - (self.turn * r).squared()).sqrt()
     }
@@ -232,8 +240,8 @@ impl<D: Real> Net<D> {
 
     /// All local quantities at radius `r` and tension `tension` of all fibres.
     ///
-    /// An integration spends most of its time here. The two usual nets are therefore written out: that of a braid takes half the
-    /// time of the general formulas, to which both are equal up to rounding.
+    /// An integration spends most of its time here. The two usual nets are therefore written out: that of a
+    /// braid takes half the time of the general formulas, to which both are equal up to rounding.
     pub(crate) fn local(&self, r: D, tension: D) -> Local<D> {
         if self.is_plain() {
             let zero = D::from(0.0);
@@ -270,7 +278,8 @@ impl<D: Real> Net<D> {
         self.local_in(&self.wall(sigma, r), sigma, r, tension)
     }
 
-    /// Tension and local quantities of fibres that don't stretch where H has a value: what the wall stores is asked for once.
+    /// Tension and local quantities of fibres that don't stretch, where H has the value `energy`. The energy
+    /// of the wall is computed only once.
     pub(crate) fn local_with_energy(&self, r: D, energy: D) -> (D, Local<D>) {
         let sigma = self.sigma(r, D::from(0.0));
         let wall = self.wall(sigma, r);
@@ -278,7 +287,7 @@ impl<D: Real> Net<D> {
         (tension, self.local_in(&wall, sigma, r, tension))
     }
 
-    /// The same with the energy of the wall known.
+    /// The same with a known energy of the wall.
     fn local_in(&self, w: &Wall<D>, sigma: D, r: D, tension: D) -> Local<D> {
         let c = self.compliance;
         let stretch = c * tension + 1.0;
@@ -300,7 +309,8 @@ impl<D: Real> Net<D> {
         Local { sigma, force, hoop, hoop_r, tension_r, force_t, hoop_t }
     }
 
-    /// The constant of the motion conjugate to S: H = sigma N - w, the same all along a meridian. Its derivative by the tension at fixed r is sigma dN/dT.
+    /// The constant of the motion conjugate to S: H = sigma N - w. It is the same all along a meridian. Its
+    /// derivative by the tension at fixed r is sigma dN/dT.
     pub(crate) fn hamiltonian(&self, r: D, tension: D) -> D {
         let sigma = self.sigma(r, tension);
         let strain = self.compliance * tension;
@@ -316,7 +326,8 @@ impl<D: Real> Net<D> {
 }
 
 impl<D: Real> Net<D> {
-    /// The same net for another scalar; each number has its place of [`NUMBERS`], whether parts are absent or not.
+    /// The same net for another scalar. Each number has its place of [`NUMBERS`], whether parts are absent or
+    /// not.
     pub(crate) fn map<E>(&self, mut f: impl FnMut(usize, D) -> E) -> Net<E> {
         Net {
             end_radius: f(0, self.end_radius),
@@ -337,7 +348,7 @@ impl<D: Real> Net<D> {
         }
     }
 
-    /// Beyond the last place of its numbers.
+    /// One past the last place of its numbers.
     pub(crate) fn places(&self) -> usize {
         if self.formulas.is_some() { NUMBERS } else { OWN_NUMBERS }
     }
@@ -382,7 +393,7 @@ impl Net<f64> {
         self.map(|_, d| D::from(d))
     }
 
-    /// The same net with a part of the stiffness of bladder and cloth.
+    /// The same net with a fraction of the stiffness of bladder and cloth.
     pub(crate) fn with_walls(&self, part: f64) -> Self {
         let bladder = self.bladder.map(|b| Bladder { c10: part * b.c10, c01: part * b.c01 });
         let cloth = self.cloth.map(|c| Cloth { stiffness: part * c.stiffness, ..c });
@@ -458,7 +469,8 @@ pub(crate) mod tests {
         }
     }
 
-    /// Stored energy as a function of (sigma, r) with the fibre strain from the geometry: the definition, without T.
+    /// Stored energy as a function of (sigma, r) with the fibre strain from the geometry: the definition,
+    /// without T.
     fn energy(net: &Net<Dual<2>>, sigma: Dual<2>, r: Dual<2>) -> Dual<2> {
         let strain = (sigma * sigma + (net.turn * r).squared()).sqrt() - 1.0;
         strain * strain / (net.compliance * 2.0) + net.wall(sigma, r).w
@@ -477,7 +489,8 @@ pub(crate) mod tests {
         }
     }
 
-    /// Along the meridian H is constant, dN/dr = h, and the derivatives that the ODE uses are those of N, h and T.
+    /// Along the meridian H is constant, dN/dr = h, and the derivatives that the ODE uses are those of N, h
+    /// and T.
     #[test]
     fn derivatives_along_the_meridian() {
         let net: Net<f64> = rich();

@@ -13,14 +13,17 @@ use crate::shape::{Convergence, Method};
 use crate::shooting::{self, Ending, Total, Way};
 use crate::unknowns::Unknowns;
 
-/// The group of [`FibreError::TooSoft`] beyond which straight fibres balloon: `F(phi_R|m)/(L y) = 1 + kappa/y^2` has a solution in y up to
-/// kappa L^2 = F^2/4, and F is at most 1.854 where the force vanishes (m = 1/2).
+/// The group of [`FibreError::TooSoft`] beyond which straight fibres balloon:
+/// `F(phi_R|m)/(L y) = 1 + kappa/y^2` has a solution in y up to kappa L^2 = F^2/4, and F is at most 1.854
+/// where the force vanishes (m = 1/2).
 const BALLOONING: f64 = 0.859;
 
-/// The same of a long net: its hoop term T q^2 r/((1 + e) sigma), with sigma about 1 + e, carries 2 pi p r up to e/(1 + e)^2 = 1/4 (at e = 1).
+/// The same for a long net. Its hoop term T q^2 r/((1 + e) sigma), with sigma about 1 + e, carries 2 pi p r
+/// up to e/(1 + e)^2 = 1/4 (at e = 1).
 const BURSTING: f64 = 0.25;
 
-/// Contraction below 0 up to which a muscle isn't longer than at rest: rounding of a length makes as much.
+/// Contraction below 0 up to which a muscle doesn't count as longer than at rest. Rounding of a length makes
+/// as much.
 const AT_REST: f64 = 1e-9;
 
 /// Which method computes an equilibrium.
@@ -35,7 +38,7 @@ pub enum Approach {
     Shooting,
 }
 
-/// What else is needed to draw the meridian.
+/// The data that drawing the meridian needs in addition.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Solution {
     ClosedForm(ClosedForm),
@@ -57,12 +60,12 @@ pub(crate) struct Outcome<const N: usize> {
     pub(crate) method: Method,
     pub(crate) convergence: Convergence,
     pub(crate) solution: Solution,
-    /// How the unknowns of the shooting follow, where many derivatives were asked for.
+    /// How the unknowns of the shooting follow, if many derivatives were asked for.
     pub(crate) follow: Option<Follow>,
 }
 
-/// How the two unknowns of a shooting follow the contraction and the numbers of the net, those of formulas left out: by these as far as the variables
-/// moved them.
+/// How the two unknowns of a shooting follow the contraction and the numbers of the net, without those of
+/// formulas. The derivatives by the numbers are known as far as the variables moved the numbers.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Follow {
     pub(crate) by_contraction: [f64; 2],
@@ -70,13 +73,13 @@ pub(crate) struct Follow {
 }
 
 impl Problem {
-    /// Whether an equilibrium takes an integration of the ODE: there is no closed form.
+    /// Whether an equilibrium takes an integration of the ODE, because there is no closed form.
     #[must_use]
     pub fn shoots(&self) -> bool {
         self.method(Approach::Auto) == Ok(Method::Shooting)
     }
 
-    /// The method that `approach` means for this muscle.
+    /// The method that `approach` selects for this muscle.
     pub(crate) fn method(&self, approach: Approach) -> Result<Method, FibreError> {
         if self.is_cylinder() {
             return match approach {
@@ -109,8 +112,8 @@ impl Problem {
         }
     }
 
-    /// The equilibrium at a contraction. `net` is the problem's, with derivatives by variables in the places 2 .. of the dual numbers;
-    /// `from` is a start for the shooting, such as a neighbour's solution.
+    /// The equilibrium at a contraction. `net` is that of the problem, with derivatives by variables in the
+    /// places 2 .. of the dual numbers. `from` is a start for the shooting, such as a neighbour's solution.
     pub(crate) fn outcome<const N: usize>(
         &self,
         method: Method,
@@ -153,7 +156,7 @@ impl Problem {
         })
     }
 
-    /// What no method can answer, and what an answer that can't be one means.
+    /// Refuses questions that no method can answer, and explains answers that can't be equilibria.
     fn judged<const N: usize>(
         &self,
         contraction: f64,
@@ -176,7 +179,7 @@ impl Problem {
             {
                 Err(FibreError::TooSoft { group, limit })
             }
-            // Drawn out to many times its length rubber alone holds the pressure.
+            // Drawn out to many times its length, the muscle holds the pressure by its rubber alone.
             Ok(outcome) if outcome.tension < 0.0 => Err(FibreError::Slack { contraction, limit: None }),
             Ok(outcome) if contraction < -AT_REST && self.net.compliance * outcome.tension > MOST_STRAIN => {
                 Err(FibreError::Overstretched { contraction, strain: self.net.compliance * outcome.tension })
@@ -185,8 +188,8 @@ impl Problem {
         }
     }
 
-    /// The group that decides whether fibres are too soft, with its limit: p sin(2 pi/n) l0^2/(4 EA) of one straight fibre, 2 pi p r0^2/(n EA sin^2(alpha0))
-    /// of a net.
+    /// The group that decides whether fibres are too soft, with its limit: p sin(2 pi/n) l0^2/(4 EA) of one
+    /// straight fibre, 2 pi p r0^2/(n EA sin^2(alpha0)) of a net.
     fn elastic_group(&self) -> (f64, f64) {
         let net = &self.net;
         if net.turn != 0.0 {
@@ -241,7 +244,7 @@ fn by_cylinder<const N: usize>(net: &Net<Dual<N>>, contraction: f64) -> Result<O
     })
 }
 
-/// With pleats of depth h, A = a pi (r + h)^2: the muscle of radius R + h, whose fibres lie h inside.
+/// Pleats of depth h give A = a pi (r + h)^2: the muscle of radius R + h, whose fibres lie h inside.
 fn by_closed_form<const N: usize>(net: &Net<Dual<N>>, contraction: f64) -> Result<Outcome<N>, FibreError> {
     let crest = net.depth + 1.0;
     // kappa = p sin(2 pi/n) R^2/(4 EA) of one fibre = (area factor) (2 pi)/4 * p R^2/(n EA).
@@ -325,7 +328,7 @@ fn by_shooting<const N: usize>(
     Ok((outcome, found.follow))
 }
 
-/// By shooting with the derivatives by M - 2 groups, from which those by N - 2 variables follow.
+/// Shoots with the derivatives by M - 2 groups. The derivatives by N - 2 variables follow from them.
 fn by_groups<const N: usize, const M: usize>(
     plain: &Net<f64>,
     net: &Net<Dual<N>>,

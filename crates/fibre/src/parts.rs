@@ -1,5 +1,5 @@
-//! The parts of a muscle: what its fibre net is made of, in SI. A base muscle is a constructor of these parts, effects of the shape change them,
-//! and a [`crate::Problem`] makes them dimensionless.
+//! The parts of a muscle: all that its fibre net consists of, in SI. A base muscle is a constructor of these
+//! parts, effects of the shape change them, and a [`crate::Problem`] makes them dimensionless.
 
 use bulge_muscles::{
     Construction, Ends, FibreCount, Kind, Muscle, MuscleError, Parameter, Pressure, Quantity, check,
@@ -15,7 +15,7 @@ use crate::problem::{
     BRAID_ANGLE, BRAIDED_SLENDERNESS, LOBED_FIBRES, LOBED_LENGTH, PLEATED_SLENDERNESS, WIDEST_FITTING,
 };
 
-/// Any pressure will do to see whether a formula has a value \[Pa\].
+/// An arbitrary pressure, to see whether a formula has a value \[Pa\].
 const ANY_PRESSURE: f64 = 1e5;
 
 /// Derivatives that a [`Jet`] carries.
@@ -24,12 +24,13 @@ pub const LANES: usize = 8;
 /// A number with its derivatives by up to [`LANES`] variables.
 pub type Jet = Dual<LANES>;
 
-/// Numbers of [`Parts`] without formulas, at most.
+/// Largest count of numbers in [`Parts`] without formulas.
 pub(crate) const OWN_PARTS: usize = 14;
-/// Numbers of [`Parts`], at most.
+/// Largest count of numbers in [`Parts`].
 pub(crate) const PARTS: usize = OWN_PARTS + 3 * MOST_PARAMETERS;
 
-/// What a fibre net is made of, in SI; with [`Jet`]s, and how each number depends on the variables of whoever made it.
+/// The parts of a fibre net, in SI. With [`Jet`]s each number also has derivatives by the variables of the
+/// caller.
 ///
 /// ```
 /// use bulge_fibre::{Approach, Jet, Parts, Problem};
@@ -47,25 +48,29 @@ pub(crate) const PARTS: usize = OWN_PARTS + 3 * MOST_PARAMETERS;
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Parts<D = f64> {
-    /// The family, which sets the ranges that are computed, and whether the reference radius is that of the fittings.
+    /// The family. It sets the ranges that are computed, and whether the reference radius is that of the
+    /// fittings.
     pub kind: Kind,
-    /// What holds the ends.
+    /// How the ends are held.
     pub ends: Ends,
-    /// Whether the cloth between the fibres is flat, so that a cross-section is a polygon; else it is a circle.
+    /// Whether the cloth between the fibres is flat, so that a cross-section is a polygon; else it is a
+    /// circle.
     pub is_polygon: bool,
     /// Unpressurised length l0 \[m\].
     pub length: D,
-    /// Reference radius R \[m\]: of a pleated muscle that of the fibres at the fittings, of a braid that at rest.
+    /// Reference radius R \[m\]: the radius of the fibres at the fittings in a pleated muscle, the radius at
+    /// rest in a braid.
     pub radius: D,
-    /// Radius of a braid at the fittings, where it is other than at rest \[m\].
+    /// Radius of a braid at the fittings, if it differs from that at rest \[m\].
     pub fitting: Option<D>,
     /// Angle between fibre and axis at rest \[rad\].
     pub angle: D,
     /// Number of fibres, if they are counted.
     pub fibres: Option<D>,
-    /// Strain of all fibres together over their tension, 1/(n EA) \[1/N\]; 0: they don't stretch.
+    /// Strain of all fibres together over their tension, 1/(n EA) \[1/N\]. 0 if they don't stretch.
     pub compliance: D,
-    /// How far outside the fibres the pressure acts \[m\]: at the crests of pleats; negative: inside, at the inner face of a wall.
+    /// Distance outside the fibres at which the pressure acts \[m\]: positive at the crests of pleats,
+    /// negative at the inner face of a wall.
     pub depth: D,
     /// Thickness of the wall of a braid \[m\].
     pub wall: Option<D>,
@@ -79,7 +84,8 @@ pub struct Parts<D = f64> {
     pub energy: Option<Formula<D>>,
     /// A formula for the area on which the pressure acts \[m^2\], instead of polygon, circle and depth.
     pub area: Option<Formula<D>>,
-    /// A formula for the turn of the fibres about the axis per fibre length \[rad/m\], instead of sin(alpha0)/r0.
+    /// A formula for the turn of the fibres about the axis per fibre length \[rad/m\], instead of
+    /// sin(alpha0)/r0.
     pub twist: Option<Formula<D>>,
 }
 
@@ -94,7 +100,8 @@ pub struct Rubber<D = f64> {
     pub wall: D,
 }
 
-/// Cloth that is taut from a radius on: energy K (2 pi (r - r_u))^2/(4 pi r_u) per meridian length beyond it.
+/// Cloth that is taut beyond a radius. Its energy there is K (2 pi (r - r_u))^2/(4 pi r_u) per meridian
+/// length.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TautCloth<D = f64> {
     /// Hoop stiffness K \[N/m\].
@@ -104,7 +111,7 @@ pub struct TautCloth<D = f64> {
 }
 
 impl<D: Real> Parts<D> {
-    /// The parts of a muscle, with the value (and derivatives) of each of its parameters from `number`.
+    /// The parts of a muscle. `number` gives the value (and derivatives) of each of its parameters.
     fn with_numbers(muscle: &Muscle, number: impl Fn(Parameter, f64) -> D) -> Self {
         let get = |parameter| muscle.get(parameter).map(|value| number(parameter, value));
         let own = |parameter| get(parameter).filter(|_| muscle.is_stated(parameter));
@@ -125,7 +132,7 @@ impl<D: Real> Parts<D> {
         let rubber = muscle.bladder().map(|rubber| Rubber {
             c10: or_0(get(Parameter::C10)),
             c01: or_0(get(Parameter::C01)),
-            // A bladder of another thickness than that of the muscle's wall doesn't follow it.
+            // A bladder whose thickness differs from that of the muscle's wall doesn't follow the wall.
             wall: wall
                 .filter(|_| muscle.wall() == Some(rubber.wall()))
                 .unwrap_or(D::from(rubber.wall().si())),
@@ -165,8 +172,9 @@ impl From<&Self> for Parts {
 }
 
 impl Parts<Jet> {
-    /// The parts of a muscle with derivatives by some of its parameters, each in its lane. Parameters beyond [`LANES`], or that the
-    /// muscle doesn't have, carry none; the number of fibres counts as continuous.
+    /// The parts of a muscle with derivatives by some of its parameters, each in its lane. Parameters beyond
+    /// [`LANES`] carry none, nor do those that the muscle doesn't have. The number of fibres counts as
+    /// continuous.
     #[must_use]
     pub fn seeded(muscle: &Muscle, parameters: &[Parameter]) -> Self {
         let lane = |parameter| parameters.iter().position(|other| *other == parameter);
@@ -184,13 +192,14 @@ impl Parts {
         Self::with_numbers(muscle, |_, value| value)
     }
 
-    /// The same without derivatives by anything.
+    /// The same parts as [`Jet`]s without derivatives.
     #[must_use]
     pub fn still(&self) -> Parts<Jet> {
         self.map(|_, number| Jet::from(number))
     }
 
-    /// Refuses what no problem is made of: walls that leave no room for gas inside the braid and its fittings.
+    /// Refuses parts that make no problem: walls that leave no room for gas inside the braid and its
+    /// fittings.
     ///
     /// # Errors
     /// [`MuscleError::WallTooThick`].
@@ -205,7 +214,7 @@ impl Parts {
         }
     }
 
-    /// Refuses formulas without a value at rest, and a formula for an area that cloth has already.
+    /// Refuses formulas without a value at rest, and a formula for the area if cloth already has one.
     fn check_formulas(&self) -> Result<(), FibreError> {
         let at_rest = [1.0, 1.0, self.radius, self.radius, ANY_PRESSURE, self.angle, self.length];
         let of = |formula: &Formula| formula.run::<1>(at_rest)[0];
@@ -223,7 +232,7 @@ impl Parts {
         }
     }
 
-    /// Refuses what is out of the ranges that are computed.
+    /// Refuses values outside the ranges that are computed.
     pub(crate) fn check_ranges(&self) -> Result<(), FibreError> {
         let end_m = self.fitting.unwrap_or(self.radius);
         if let Some(cloth) = self.cloth.filter(|cloth| cloth.radius < end_m) {
@@ -279,7 +288,7 @@ impl Parts {
 }
 
 impl<D: Real> Parts<D> {
-    /// The same with every number changed, in a fixed order; the names are those of the fields.
+    /// The same parts with every number changed, in a fixed order. The names are those of the fields.
     pub fn map<E>(&self, mut f: impl FnMut(&'static str, D) -> E) -> Parts<E> {
         let fitting = |f: &mut dyn FnMut(&'static str, D) -> E| self.fitting.map(|d| f("fitting", d));
         Parts {
@@ -310,7 +319,7 @@ impl<D: Real> Parts<D> {
         }
     }
 
-    /// Its numbers with their names, in the order of [`Parts::map`].
+    /// The numbers with their names, in the order of [`Parts::map`].
     #[must_use]
     pub fn numbers(&self) -> Vec<(&'static str, D)> {
         let mut numbers = Vec::with_capacity(PARTS);
@@ -325,11 +334,12 @@ fn moves(number: &Jet) -> bool {
 }
 
 impl Parts<Jet> {
-    /// Sets the radius that the fibres have at the fittings: of a pleated muscle its radius, of a braid another one than at rest.
+    /// Sets the radius of the fibres at the fittings. In a pleated muscle this is its radius; in a braid it
+    /// may differ from the radius at rest.
     pub fn set_fitting(&mut self, radius: Jet) {
         match self.kind {
             Kind::Pleated => self.radius = radius,
-            // Fittings that follow the braid go on following where they are as wide.
+            // Fittings that follow the braid go on following it if their radius is the same.
             Kind::Braided
                 if self.fitting.is_none()
                     && radius.value().to_bits() == self.radius.value().to_bits()
@@ -338,10 +348,12 @@ impl Parts<Jet> {
         }
     }
 
-    /// Sets a constant of the rubber, which is that of the wall if there is none yet. At 0 the muscle keeps what it states.
+    /// Sets a constant of the rubber. Rubber that isn't there yet takes the thickness of the wall. At 0 the
+    /// muscle keeps its stated values.
     ///
     /// # Errors
-    /// If the constant is negative or not finite, or a wall is needed and not known; `key` is where it stands in a muscle file.
+    /// If the constant is negative or not finite, or if a wall is needed and not known. `key` is the place of
+    /// the constant in a muscle file.
     pub fn set_rubber(
         &mut self,
         key: &'static str,
@@ -353,7 +365,7 @@ impl Parts<Jet> {
             return Ok(());
         }
         let Some(wall) = self.rubber.map(|rubber| rubber.wall).or(self.wall) else {
-            // What isn't there yet needs no wall.
+            // Rubber that isn't there yet needs no wall.
             return if constant.value() == 0.0 { Ok(()) } else { Err(MuscleError::NoWall) };
         };
         let none = Jet::from(0.0);
@@ -369,13 +381,13 @@ impl<D: Real> Parts<D> {
         self.map(|_, number| number.value())
     }
 
-    /// Whether they are those of a pleated muscle.
+    /// Whether the parts are those of a pleated muscle.
     #[must_use]
     pub fn is_pleated(&self) -> bool {
         self.kind.is_pleated()
     }
 
-    /// Whether a formula of a user's own says something of it.
+    /// Whether the parts contain a formula of the user.
     pub(crate) fn has_formulas(&self) -> bool {
         self.energy.is_some() || self.area.is_some() || self.twist.is_some()
     }
@@ -385,7 +397,7 @@ impl<D: Real> Parts<D> {
         self.twist.is_some() || self.area.is_some()
     }
 
-    /// Number of fibres over which tension and stiffness are counted; 1 where the muscle doesn't say or is continuous.
+    /// Number of fibres to which tension and stiffness refer. 1 if the muscle doesn't say or is continuous.
     pub(crate) fn fibre_number(&self) -> D {
         self.fibres.unwrap_or(D::from(1.0))
     }
@@ -393,8 +405,8 @@ impl<D: Real> Parts<D> {
     /// The dimensionless net under a pressure \[Pa\]: lengths over R, forces over p R^2.
     pub(crate) fn net(&self, pressure: D) -> Net<D> {
         let radius = self.radius;
-        // Fibres at an angle make the unpressurised muscle a braid of radius R. The law of pinned crossings needs a second
-        // family, or cloth that takes the torque: a lone family would follow geodesics.
+        // Fibres at an angle make the unpressurised muscle a braid of radius R. The law of pinned crossings
+        // needs a second family, or cloth that takes the torque: a lone family would follow geodesics.
         let (sin, cos) = self.angle.sin_cos();
         let mut net = Net {
             half_fibre: self.length / (radius * 2.0) / cos,

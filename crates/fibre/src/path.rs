@@ -1,9 +1,12 @@
-//! Paths of equilibria: the middles whose fibres have their length, one after the other by arc length in the plane of the two unknowns.
+//! Paths of equilibria. A path joins all middles whose fibres have their length, by arc length in the plane
+//! of the two unknowns.
 //!
-//! `S(first, second) = S_half` is a curve in that plane, along which contraction, force and volume change. It needs no contraction to go by, which
-//! is what fails where stiff cloth comes taut: there force and tension change while the contraction hardly does, or turns back.
-//! The step is that of E. Riks, *An incremental approach to the solution of snapping and buckling problems*, Int. J. Solids Struct. 15, 529 (1979): a
-//! predictor along the tangent and Newton's method in the line across it.
+//! `S(first, second) = S_half` is a curve in that plane. Contraction, force and volume change along it. The
+//! contraction is not its parameter. As a parameter it fails where stiff cloth comes taut: there force and
+//! tension change while the contraction hardly does, or turns back.
+//! The step is that of E. Riks, *An incremental approach to the solution of snapping and buckling problems*,
+//! Int. J. Solids Struct. 15, 529 (1979): a predictor along the tangent and Newton's method on the line
+//! across it.
 
 use bulge_numerics::{Dual, Real};
 
@@ -14,35 +17,35 @@ use crate::shooting::{Effort, solve_two};
 use crate::start::drawn_out;
 use crate::unknowns::{FLAT, Unknowns, is_limited};
 
-/// Evaluations that all paths of a muscle may take.
+/// Limit on the evaluations of all paths of a muscle.
 const MOST_EVALUATIONS: u32 = 100_000;
-/// Bulges and waists from which a path is sought, as parts of their room.
+/// Bulges and waists from which a path is sought, as fractions of the available range.
 const SEEDS: [f64; 7] = [3e-3, 0.1, 0.3, 0.6, 0.9, 0.99, 0.999];
-/// Newton steps for the second unknown of a seed, and for a step along a path.
+/// Most Newton steps for the second unknown of a seed, and for a step along a path.
 const SEED_STEPS: u32 = 40;
 const STEPS: u32 = 8;
-/// Difference of ln(S/S_half) from 0 at a place; one more step makes it rounding.
+/// Largest |ln(S/S_half)| at a place. One more step reduces it to rounding.
 const MET: f64 = 1e-9;
-/// The same of an equilibrium that is known from elsewhere.
+/// The same for an equilibrium that is known from elsewhere.
 const KNOWN: f64 = 1e-6;
-/// Places between two of them, and their distance where that ends.
+/// Most steps of a root search between two places, and the distance of the two at which it ends.
 const BETWEEN: u32 = 60;
 const CLOSE: f64 = 1e-9;
-/// First, least and largest step along a path; that along a cylinder, as a part of ln|k|.
+/// First, least and largest step along a path, and the largest step along a cylinder as a fraction of ln|k|.
 const ARC: [f64; 3] = [0.3, 1e-6, 2.0];
 const CYLINDER: f64 = 0.15;
-/// The same on the way to a seed.
+/// Largest step on the way to a seed, also as a fraction of ln|k|.
 const FLATTER: f64 = 0.6;
 /// Places of a path, at most.
 const MOST_PLACES: usize = 300;
-/// ln|k| from which on a middle is too flat, and ln|B| from which on it is.
+/// ln|k| below which a middle is too flat, and ln|B| below which it is straight.
 const FLATTEST: f64 = -2e4;
 const STRAIGHT: f64 = -9.0;
-/// Meridional force in p R^2, and strain of the fibres, beyond which fibres are drawn out far enough.
+/// Axial force in p R^2 and strain of the fibres beyond which the fibres are drawn out far enough.
 const DRAWN: [f64; 2] = [1e9, 0.5];
-/// Derivative of ln S by ln|B| from which on a waist is as narrow as its fibres make it.
+/// Derivative of ln S by ln|B| above which a waist is as narrow as its fibres make it.
 const STEEP: f64 = 1e5;
-/// Places beyond the one at which the force vanished.
+/// Places that are followed after the force has vanished.
 const BEYOND: usize = 3;
 
 /// An equilibrium on a path.
@@ -55,13 +58,13 @@ pub(crate) struct Place {
     /// Whole volume in R^3.
     pub(crate) volume: f64,
     pub(crate) is_slack: bool,
-    /// Of ln(S/S_half) by the unknowns.
+    /// Derivatives of ln(S/S_half) by the unknowns.
     gradient: [f64; 2],
-    /// Whether fibres are drawn out far.
+    /// Whether the fibres are drawn out far.
     is_drawn: bool,
 }
 
-/// The plane of the unknowns of a muscle, with what was spent on it.
+/// The plane of the unknowns of a muscle, and the evaluations spent in it.
 struct Plane<'a> {
     net: &'a Net<f64>,
     lifted: Net<Dual<2>>,
@@ -75,7 +78,8 @@ pub(crate) struct Paths<'a> {
 }
 
 impl<'a> Paths<'a> {
-    /// All that seeds lead to, and the one with an equilibrium that is `known`; none where the meridian is no quadrature.
+    /// All paths that the seeds lead to, and the path through a `known` equilibrium. There are none if the
+    /// meridian is no quadrature.
     pub(crate) fn of(net: &'a Net<f64>, known: Option<Unknowns>) -> Self {
         let mut plane = Plane { net, lifted: net.lift(), effort: Effort::of_at_most(MOST_EVALUATIONS) };
         let mut found: Vec<Vec<Place>> = Vec::new();
@@ -91,20 +95,21 @@ impl<'a> Paths<'a> {
         Self { plane, found }
     }
 
-    /// Neighbours of which one at least has taut fibres.
+    /// Neighbours of which at least one has taut fibres.
     fn pairs(&self) -> impl Iterator<Item = [Place; 2]> {
         let pairs = self.found.iter().flat_map(|path| path.windows(2)).map(|pair| [pair[0], pair[1]]);
         pairs.filter(|[a, b]| !(a.is_slack && b.is_slack))
     }
 
-    /// The places with taut fibres at which an excess vanishes: where it changes its sign between two neighbours.
+    /// The places with taut fibres at which an excess vanishes. It changes its sign there between two
+    /// neighbours.
     pub(crate) fn crossings(&mut self, excess: impl Fn(&Place) -> f64) -> Vec<Place> {
         let changes: Vec<_> = self.pairs().filter(|[a, b]| (excess(a) > 0.0) != (excess(b) > 0.0)).collect();
         let places = changes.into_iter().map(|pair| self.plane.between(pair, &excess));
         places.map(|[place, _]| place).filter(|place| !place.is_slack).collect()
     }
 
-    /// The contraction at which the fibres of a muscle that pulls become slack, where a path comes to that.
+    /// The contraction at which the fibres of a pulling muscle become slack, if a path gets there.
     pub(crate) fn slackening(&mut self) -> Option<f64> {
         let slack = |place: &Place| if place.is_slack { 1.0 } else { -1.0 };
         let ends: Vec<_> = self.pairs().filter(|[a, b]| a.is_slack != b.is_slack).collect();
@@ -114,7 +119,7 @@ impl<'a> Paths<'a> {
     }
 }
 
-/// Whether a path passes a first unknown.
+/// Whether a path passes a value of the first unknown.
 fn covers(path: &[Place], side: f64, first: f64) -> bool {
     path.windows(2).any(|pair| {
         let [a, b] = [0, 1].map(|i| pair[i].unknowns);
@@ -122,7 +127,8 @@ fn covers(path: &[Place], side: f64, first: f64) -> bool {
     })
 }
 
-/// Sides and bulges to begin at: from the fitting's radius to the narrowest and the widest middle, and on either side of where cloth comes taut.
+/// Sides and bulges of the seeds. They reach from the fitting's radius to the narrowest and the widest
+/// middle, on either side of the radius at which cloth comes taut.
 fn seeds(net: &Net<f64>) -> Vec<(f64, f64)> {
     let is_straight = net.turn == 0.0;
     let widest =
@@ -141,7 +147,8 @@ fn seeds(net: &Net<f64>) -> Vec<(f64, f64)> {
 }
 
 impl Plane<'_> {
-    /// Two places close to each other, between which an excess changes its sign as between two neighbours.
+    /// Two places close to each other. The excess changes its sign between them as it does between the two
+    /// neighbours.
     fn between(&mut self, [mut a, mut b]: [Place; 2], excess: &impl Fn(&Place) -> f64) -> [Place; 2] {
         self.effort = Effort::of_at_most(MOST_EVALUATIONS);
         for step in 0..BETWEEN {
@@ -195,7 +202,8 @@ impl Plane<'_> {
         }
     }
 
-    /// The place with a bulge: its second unknown by Newton's method, flatter where there is no meridian.
+    /// The place with a given bulge. Newton's method finds its second unknown; where there is no meridian, a
+    /// flatter one is tried.
     fn seed(&mut self, side: f64, bulge: f64) -> Option<Place> {
         let mut second = (2.0 * bulge / self.net.half_fibre.powi(2)).ln();
         let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
@@ -211,7 +219,7 @@ impl Plane<'_> {
                     } else {
                         high = second;
                     }
-                    // At a given bulge: its first unknown may depend on the second one.
+                    // The slope at a given bulge: the first unknown may depend on the second one.
                     let moved =
                         Unknowns::new(self.net, side, [bulge.ln(), second + 1.0]).logs[0] - at.logs[0];
                     let slope = length.gradient()[1] + moved * length.gradient()[0];
@@ -223,6 +231,7 @@ impl Plane<'_> {
                     second - 2.0
                 }
             };
+            // Newton's value counts inside the bracket. Otherwise bisect.
             second = match (newton > low && newton < high, low.is_finite() && high.is_finite()) {
                 (true, _) => newton,
                 (false, true) => 0.5 * (low + high),
@@ -235,7 +244,7 @@ impl Plane<'_> {
         None
     }
 
-    /// The place of an equilibrium.
+    /// The place of a known equilibrium.
     fn known(&mut self, at: Unknowns) -> Option<Place> {
         let (run, length) = self.run(at)?;
         (length.value().abs() < KNOWN).then(|| self.place(at, &run, &length))
@@ -250,7 +259,8 @@ impl Plane<'_> {
         path
     }
 
-    /// From a place in one direction, until its fibres are slack, drawn out far or as good as straight, it pushes more and more, or there is no next one.
+    /// Follows a path from a place in one direction. It ends where the fibres are slack, drawn out far or as
+    /// good as straight, where the muscle pushes more and more, or where there is no next place.
     fn along(&mut self, seed: Place, direction: f64) -> Vec<Place> {
         let mut path: Vec<Place> = Vec::new();
         let mut at = seed;
@@ -275,6 +285,7 @@ impl Plane<'_> {
             };
             pushing = if next.force < 0.0 && next.force < at.force { pushing + 1 } else { 0 };
             let new = across(next.gradient);
+            // The tangent is known up to its sign: go on in the same direction.
             let sign = (new[0] * tangent[0] + new[1] * tangent[1]).signum();
             tangent = new.map(|part| sign * part);
             arc *= 1.6;
@@ -293,7 +304,7 @@ impl Plane<'_> {
         if is_limited(self.net, side) { logs[0] > shallow } else { logs[0] < shallow }
     }
 
-    /// The next place, an arc further along a tangent; `exact`: up to rounding.
+    /// The next place, an arc further along a tangent. `exact`: up to rounding.
     fn step(&mut self, from: &Place, tangent: [f64; 2], arc: f64, exact: bool) -> Option<Place> {
         let Unknowns { side, logs } = from.unknowns;
         let ahead = [logs[0] + arc * tangent[0], logs[1] + arc * tangent[1]];
@@ -307,6 +318,7 @@ impl Plane<'_> {
             if was_met || (is_met && !exact) {
                 return Some(self.place(unknowns, &run, &length));
             }
+            // Newton's method for the fibre length on the line across the tangent.
             let missed = tangent[0] * (at[0] - ahead[0]) + tangent[1] * (at[1] - ahead[1]);
             let step = solve_two([*length.gradient(), tangent], [length.value(), missed]);
             let size = step[0].hypot(step[1]);
@@ -319,7 +331,7 @@ impl Plane<'_> {
     }
 }
 
-/// The unit vector across another one.
+/// The unit vector perpendicular to another one.
 fn across([a, b]: [f64; 2]) -> [f64; 2] {
     let size = a.hypot(b);
     [-b / size, a / size]

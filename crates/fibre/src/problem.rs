@@ -1,6 +1,7 @@
-//! A muscle under pressure as a dimensionless fibre net: where quantities with units become numbers.
+//! A muscle under pressure as a dimensionless fibre net. Quantities with units become numbers here.
 //!
-//! Lengths are divided by the reference radius R (pleated: fibre radius at the fittings; braided: braid radius at rest), forces by p R^2.
+//! Lengths are divided by the reference radius R (pleated: fibre radius at the fittings; braided: braid
+//! radius at rest), forces by p R^2.
 
 use bulge_muscles::{Ends, Pressure, Quantity};
 use std::sync::Arc;
@@ -17,20 +18,23 @@ pub const BRAIDED_SLENDERNESS: [f64; 2] = [1.0, 100.0];
 /// Range of the braid angle at rest of braids with clamped ends, degrees.
 pub const BRAID_ANGLE: [f64; 2] = [5.0, 50.0];
 
-/// Largest radius of the fittings over r0/sin(alpha0), at which the fibres of a braid lie along the circumference.
+/// Largest radius of the fittings over r0/sin(alpha0), the radius at which the fibres of a braid lie along
+/// the circumference.
 pub const WIDEST_FITTING: f64 = 0.995;
 
-/// Strain of the fibres of a muscle longer than at rest beyond which it isn't computed: nylon breaks at 0.15 to 0.3, polyester at 0.15, aramid at 0.03
-/// (W. E. Morton and J. W. S. Hearle, *Physical Properties of Textile Fibres*, Woodhead 2008).
+/// Largest fibre strain for which a muscle longer than at rest is computed. Nylon breaks at 0.15 to 0.3,
+/// polyester at 0.15, aramid at 0.03 (W. E. Morton and J. W. S. Hearle, *Physical Properties of Textile
+/// Fibres*, Woodhead 2008).
 pub const MOST_STRAIN: f64 = 0.3;
 
-/// Range of the number of fibres with lobes between them: with more, rounding is larger than the errors that the integration keeps to.
+/// Range of the number of fibres with lobes between them. With more fibres, rounding is larger than the
+/// errors that the integration keeps to.
 pub const LOBED_FIBRES: [f64; 2] = [3.0, 300.0];
-/// Largest n l0/r* of n fibres with lobes between them that can open to the radius r*: how far the middle of a longer muscle is from a
-/// cylinder, exp(-0.4 n l0/r*), can't be told from 0.
+/// Largest n l0/r* of n fibres with lobes between them that can open to the radius r*. The middle of a longer
+/// muscle differs from a cylinder by exp(-0.4 n l0/r*), which can't be told from 0.
 pub const LOBED_LENGTH: f64 = 600.0;
 
-/// A muscle at a gauge pressure, ready to be asked.
+/// A muscle at a gauge pressure, ready to be solved.
 #[derive(Debug, Clone)]
 pub struct Problem {
     pub(crate) parts: Arc<Parts>,
@@ -40,12 +44,13 @@ pub struct Problem {
 }
 
 impl Problem {
-    /// Checks the ranges and makes the problem dimensionless: of a muscle (`&Muscle`), or of parts that effects have changed.
+    /// Checks the ranges of a muscle (`&Muscle`), or of parts that effects have changed, and makes the
+    /// problem dimensionless.
     ///
     /// # Errors
     /// [`FibreError::PressureNotPositive`], [`FibreError::NotFinite`], [`FibreError::OutOfRange`] outside
-    /// [`PLEATED_SLENDERNESS`], [`BRAIDED_SLENDERNESS`], [`BRAID_ANGLE`], [`LOBED_FIBRES`] and [`LOBED_LENGTH`],
-    /// [`FibreError::ClothTooNarrow`] or [`FibreError::FittingTooWide`].
+    /// [`PLEATED_SLENDERNESS`], [`BRAIDED_SLENDERNESS`], [`BRAID_ANGLE`], [`LOBED_FIBRES`] and
+    /// [`LOBED_LENGTH`], [`FibreError::ClothTooNarrow`] or [`FibreError::FittingTooWide`].
     pub fn new(parts: impl Into<Parts>, pressure: Pressure) -> Result<Self, FibreError> {
         let parts = parts.into();
         parts.check_ranges()?;

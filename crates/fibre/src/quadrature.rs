@@ -1,26 +1,31 @@
-//! The meridian by quadrature: two first integrals instead of the equilibrium ODE. Fibres that stretch: see `elastic`.
+//! The meridian by quadrature: two first integrals replace the equilibrium ODE. For fibres that stretch see
+//! `elastic`.
 //!
-//! Fibres that don't stretch have sigma^2 = 1 - q^2 r^2, so that the stored energy w is a function W of the radius alone. Besides
-//! N cos(chi) = F + A(r) a second number is then the same all along the meridian, H = sigma N - W (the energy conjugate to S), and with
-//! y = r^2 and z = |y - y_mid|
+//! Fibres that don't stretch have sigma^2 = 1 - q^2 r^2, so that the stored energy w is a function W of the
+//! radius alone. Besides N cos(chi) = F + A(r) a second quantity is then constant along the meridian,
+//! H = sigma N - W (the energy conjugate to S). With y = r^2 and z = |y - y_mid|
 //!
 //! ```text
 //! G = H + W - sigma (F + A)        1 - cos(chi) = G/(H + W)        H + W = sigma N = G + sigma (F + A)
 //! S = integral dr/(sigma sin(chi))        d = integral (cos(alpha0) - sigma cos(chi)) dS        V = integral pi (r + depth)^2 sigma cos(chi) dS
 //! ```
 //!
-//! G vanishes at mid-length. In a long braid its slope there is exp(-50), so it is never taken as a difference:
+//! G vanishes at mid-length. In a long braid its slope there is exp(-50), so it is never computed as a
+//! difference:
 //!
 //! ```text
 //! G = z (g_1 + g_2 z)        g_1 = sigma k N/(2 r) at mid-length        g_2 = second divided difference of W - sigma (F + A) by y at (mid, mid, y)
 //! ```
 //!
-//! Divided differences of y^2, 1/y, 1/sigma^2, sigma and r are known without cancellation (for one, sigma[y, y_m] = -q^2/(sigma + sigma_m)), and
-//! a product fg has f_m g[m, m, y] + f[m, m] g[m, y] + f[m, m, y] g(y).
+//! The divided differences of y^2, 1/y, 1/sigma^2, sigma and r are known without cancellation (for example,
+//! sigma[y, y_m] = -q^2/(sigma + sigma_m)). A product fg has f_m g[m, m, y] + f[m, m] g[m, y] + f[m, m, y]
+//! g(y).
 //!
-//! z = rho (r_mid + r) with rho = |r_mid - r| = (g_1/(2 r_mid g_2)) sinh^2(u) takes both the square root at mid-length and the long way along a
-//! saddle out of the integrands, which become smooth in u. (In z itself they would have 1/r, singular at the axis, not far beyond a fitting.) A Gauss-Kronrod pair of 10 and 21 points (R. Piessens et al., *QUADPACK*, Springer 1983) places the points from the values; the
-//! integrals of numbers with derivatives are then sums over them.
+//! The substitution z = rho (r_mid + r) with rho = |r_mid - r| = (g_1/(2 r_mid g_2)) sinh^2(u) removes both
+//! the square root at mid-length and the long way along a saddle from the integrands, which become smooth in
+//! u. (In z itself they would contain 1/r, singular at the axis, not far beyond a fitting.) A Gauss-Kronrod
+//! pair of 10 and 21 points (R. Piessens et al., *QUADPACK*, Springer 1983) places the points by the values.
+//! The integrals of numbers with derivatives are then sums over these points.
 
 use arrayvec::ArrayVec;
 use bulge_numerics::Real;
@@ -50,37 +55,43 @@ const PAIR: [(f64, f64, f64); 11] = [
     (0.973_906_528_517_171_7, 0.032_558_162_307_964_725, 0.066_671_344_308_688_14),
     (0.995_657_163_025_808_1, 0.011_694_638_867_371_874, 0.0),
 ];
-/// Difference of the two rules, relative, up to which the larger one is taken: its own error is about the power 1.5 of that.
+/// Largest relative difference of the two rules at which the larger rule is accepted. The error of the latter
+/// is about the power 1.5 of that.
 const DIFFERENCE: f64 = 1e-9;
-/// Part of the fibre length against which a shortening counts at least where the fibres run at an angle.
+/// Where the fibres run at an angle, the error of the shortening is relative to at least this fraction of the
+/// fibre length.
 const ANGLE: f64 = 1e-2;
-/// Length in u of the piece next to the fitting, where the integrands change most; each further one is twice as long.
+/// Length in u of the piece next to the fitting, where the integrands change most; each further one is twice
+/// as long.
 const PIECE: f64 = 1.5;
 /// Pieces after which an integral is given up.
 const MOST_PIECES: usize = 60;
-/// Least ratio of z to g_1/g_2 at the fitting: from here on the map changes nothing.
+/// Least ratio of z to g_1/g_2 at the fitting. Below it the map changes nothing.
 const LEAST_RATIO: f64 = 0.1;
 /// Largest 1 - cos(chi), as in the integration of the ODE.
 const MOST_TURNED: f64 = 1.999;
 
-/// Whether the meridians of a net are quadratures: without lobes, without a formula for the area, and without a kink in one for the energy.
+/// Whether the meridians of a net are quadratures. The net must have no lobes, no formula for the area and no
+/// kink in a formula for the energy.
 pub(crate) fn suits<D: Real>(net: &Net<D>) -> bool {
     net.lobes.is_none() && !net.has_area() && !net.has_kinked_energy()
 }
 
-/// Whether the tension follows from the energy of rubber in closed form; else it is interpolated as that of fibres that stretch.
+/// Whether the tension follows in closed form from the energy of the rubber. Otherwise it is interpolated as
+/// for fibres that stretch.
 fn is_explicit(net: &Net<f64>) -> bool {
     net.compliance == 0.0 && !net.has_energy()
 }
 
-/// Makes, once in a process, what the meridians of a net are interpolated with: a solve then allocates nothing.
+/// Makes the grids on which the meridians of a net are interpolated, once in a process. A solve then
+/// allocates nothing.
 pub(crate) fn prepare(net: &Net<f64>) {
     if !is_explicit(net) {
         LazyLock::force(&GRIDS);
     }
 }
 
-/// What the integrands need of both ends. The index m means mid-length.
+/// The quantities of both ends that the integrands need. The index m means mid-length.
 struct Ends<D> {
     /// +1: bulge, -1: waist.
     side: f64,
@@ -114,18 +125,18 @@ impl<D: Real> Ends<D> {
 trait Meridian<D: Real> {
     fn ends(&self) -> &Ends<D>;
 
-    /// g_2 over g_1 at mid-length, times z at the fitting there.
+    /// g_2 over g_1 at mid-length, times z at the fitting.
     fn ratio(&self) -> f64;
 
-    /// rho over its value at the fitting where the cloth comes taut, if that is on the way.
+    /// Where the cloth comes taut, as rho over its value at the fitting, if that is on the way.
     fn kink(&self) -> Option<f64>;
 
     fn at(&self, point: &Point) -> Local<D>;
 
-    /// Tension at the fitting, where the net is `net`.
+    /// Tension at the fitting, where `net` acts.
     fn end_tension(&self, net: &Net<D>, end: &Local<D>) -> D;
 
-    /// dS, dd and dV over `d(rho)/(2 sqrt(rho size))`; none where the fibres can't be.
+    /// dS, dd and dV over `d(rho)/(2 sqrt(rho size))`. `None` where the fibres can't be.
     #[inline]
     fn rates(&self, point: &Point) -> Option<[D; 3]> {
         let at = self.at(point);
@@ -168,7 +179,7 @@ struct Local<D> {
     y: D,
     r: D,
     sigma: D,
-    /// Of the fibres.
+    /// Strain of the fibres.
     strain: D,
     /// sigma (N - F - A)/z.
     g: D,
@@ -178,7 +189,8 @@ struct Local<D> {
     turned: D,
 }
 
-/// A point of the quadrature: rho over its value at the fitting, weight, and whether the cloth is slack there although it is taut at mid-length.
+/// A point of the quadrature: rho over its value at the fitting, the weight, and whether the cloth is slack
+/// there although it is taut at mid-length.
 #[derive(Debug, Clone, Copy)]
 struct Point {
     part: f64,
@@ -230,7 +242,7 @@ impl<D: Real> Inextensible<D> {
         }
     }
 
-    /// G/z and the rest, with g_2.
+    /// The meridian at one radius with G/z, and g_2.
     #[inline]
     fn with_curve(&self, part: f64, slack: bool) -> (Local<D>, D) {
         let Ends { r_m, q2, .. } = self.ends;
@@ -295,17 +307,18 @@ struct Plan {
 }
 
 impl Plan {
-    /// Not as a value: moving it would cost as much as making it.
+    /// Fills the plan in place: moving it as a value would cost as much as making it.
     fn fill(&mut self, meridian: &impl Meridian<f64>) -> Result<(), NoTrajectory> {
         let ratio = meridian.ratio().max(LEAST_RATIO);
         let end = ratio.sqrt().asinh();
         if !(end.is_finite() && end > 0.0) {
             return Err(NoTrajectory { evaluations: 1 });
         }
-        // Between two pieces the cloth comes taut.
+        // The cloth comes taut at a border between two pieces.
         let kink = meridian.kink().map(|part| (ratio * part).sqrt().asinh().min(end));
         // On the stack: a solve allocates nothing.
         let mut pieces: ArrayVec<(f64, f64, bool), MOST_PIECES> = ArrayVec::new();
+        // The pieces begin at the fitting, where the integrands change most, and grow towards mid-length.
         for (low, high, slack) in [(0.0, kink.unwrap_or(end), false), (kink.unwrap_or(end), end, true)] {
             let (mut top, mut length) = (high, PIECE);
             while top > low {
@@ -315,6 +328,7 @@ impl Plan {
             }
         }
         let mut count = pieces.len();
+        // A piece on which the two rules disagree is halved.
         while let Some((low, high, slack)) = pieces.pop() {
             let points = points(low, high, slack, ratio);
             self.evaluations += 21;
@@ -350,7 +364,7 @@ fn points(low: f64, high: f64, slack: bool, ratio: f64) -> [Point; 21] {
     })
 }
 
-/// Whether both rules agree on fibre length and shortening; none where the fibres can't be.
+/// Whether both rules agree on fibre length and shortening. `None` where the fibres can't be.
 fn agree(meridian: &impl Meridian<f64>, points: &[Point; 21]) -> Option<bool> {
     let (mut difference, mut size) = ([0.0; 2], [0.0; 2]);
     for (i, point) in points.iter().enumerate() {
@@ -362,7 +376,8 @@ fn agree(meridian: &impl Meridian<f64>, points: &[Point; 21]) -> Option<bool> {
             size[k] += term.abs();
         }
     }
-    // An angle shortens or lengthens by itself: near the straight meridian the sum is a difference with rounding.
+    // An angle shortens or lengthens the muscle by itself. Near the straight meridian the sum is a difference
+    // with rounding.
     let ends = meridian.ends();
     if ends.q2 > 0.0 {
         size[1] += ANGLE * size[0];
@@ -391,7 +406,7 @@ pub(crate) fn trajectory<D: Real>(net: &Net<D>, middle: Middle<D>) -> Result<Tra
     along(net, &middle, &Elastic::of(net, &middle, &tensions).ok_or(none)?, &plan)
 }
 
-/// The integrals along a meridian, at the points that its values ask for.
+/// The integrals along a meridian, at the points of a plan made from its values.
 fn along<D: Real>(
     net: &Net<D>,
     middle: &Middle<D>,
@@ -431,7 +446,7 @@ fn along<D: Real>(
 
 struct End<D> {
     state: State<D>,
-    /// Meridional force there.
+    /// Meridional force at the fitting.
     force: D,
 }
 
@@ -497,7 +512,8 @@ mod tests {
         assert!((integral(34, |p| p.1) - 2.0 / 35.0).abs() > 1e-14);
     }
 
-    /// Bulges and waists, shallow and deep, near a saddle and far from it: as the ODE has them, with all derivatives.
+    /// Bulges and waists, shallow and deep, near a saddle and far from it, agree with the ODE, with all
+    /// derivatives.
     #[test]
     fn agrees_with_the_equilibrium_ode() {
         let mut tried = Vec::new();
@@ -558,7 +574,8 @@ mod tests {
         assert!(all >= 160 && tried.iter().all(|(_, count)| *count >= 6), "{all}: {tried:?}");
     }
 
-    /// A deep waist between fittings on which the fibres nearly lie along the circumference: G'' grows a thousandfold within a fortieth of the way.
+    /// A deep waist between fittings on which the fibres nearly lie along the circumference: G'' grows a
+    /// thousandfold within a fortieth of the way.
     #[test]
     fn a_deep_waist_keeps_its_first_integral() {
         let turn: f64 = 0.555_101_278_868_038;

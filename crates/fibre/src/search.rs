@@ -1,4 +1,5 @@
-//! The search along the contraction: from equilibrium to equilibrium until an excess of force or volume vanishes, or no further.
+//! Search along the contraction. It goes from equilibrium to equilibrium until an excess of force or volume
+//! vanishes, or until there is no further one.
 
 use bulge_numerics::root::{RootError, newton_bracketed};
 
@@ -13,36 +14,40 @@ use crate::solve::Found;
 use crate::start;
 use crate::unknowns::Unknowns;
 
-/// Roots in the contraction are found to a Newton step of this size, whose end is exact to its square.
+/// Newton step at which a root in the contraction is accepted. The result is exact to the square of this
+/// step.
 const ROOT_TOLERANCE: f64 = 1e-9;
-/// Beyond this contraction no muscle is looked for. A slender one pulls up to 0.5431, a long braid up to 1 - 1/sqrt(3), one on wide fittings farther.
+/// Largest contraction at which a muscle is looked for. A slender one pulls up to 0.5431, a long braid up to
+/// 1 - 1/sqrt(3), and one on wide fittings farther.
 pub(crate) const FAR: f64 = 0.99;
-/// Part of the meridional force below which fibres count as slack where there is no equilibrium any more.
+/// Fraction of the meridional force. Where the equilibria end, fibres that carry less count as slack.
 const NEARLY_SLACK: f64 = 1e-3;
-/// Step of the contraction from one equilibrium to the next below which there is no next one.
+/// Smallest step of the contraction from one equilibrium to the next. If it fails, there is no next one.
 const SMALLEST: f64 = 1e-9;
-/// Step below which a neighbour's solution is the only start: that from nothing has been tried nearby.
+/// Step below which a neighbour's solution is the only start. Cold starts have been tried nearby.
 const BESIDE: f64 = 1e-3;
-/// Equilibria after which a way is given up: one to a border takes about 100.
+/// Equilibria after which a walk is given up. A walk to a border takes about 100.
 const MOST_STEPS: u32 = 150;
-/// Parts of the way from the contraction of drawn-out fibres to a start at which an equilibrium is looked for, from the easiest on.
+/// Where an equilibrium is looked for between the contraction of drawn-out fibres and a start: fractions of
+/// that way, the easiest first.
 const DRAWN_OUT: [f64; 7] = [0.3, 0.1, 0.03, 0.01, 3e-3, 1e-3, 1e-4];
-/// Difference of the contraction from that of drawn-out fibres below which it counts in parts of itself, and the least that numbers tell.
+/// Distance from the contraction of drawn-out fibres below which tolerances are relative to it, and the
+/// smallest distance that rounding allows.
 const DRAWN_OUT_ROOM: f64 = 1e-3;
 const LEAST_ROOM: f64 = 1e-5;
-/// Newton steps from a place on a path, and how far they may lead.
+/// Newton steps from a place on a path, and the largest one allowed.
 const NEAR_STEPS: u32 = 12;
 const NEARBY: f64 = 1e-4;
-/// How far elastic fibres are drawn beyond their length for the same.
+/// How far elastic fibres are drawn beyond their length in search of such an equilibrium, after `DRAWN_OUT`.
 const STRETCHED: [f64; 5] = [1e-3, 3e-3, 1e-2, 3e-2, 0.1];
 
-/// The ends of what a search has come across.
+/// The extremes that a search has come across.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Seen {
-    /// The largest force \[N\], and where.
+    /// The largest force \[N\], and its contraction.
     pub(crate) force: f64,
     pub(crate) contraction: f64,
-    /// The least volume \[m^3\], the largest, and where that is.
+    /// The least and the largest volume \[m^3\], and the contraction of the largest.
     pub(crate) volume: f64,
     pub(crate) most_volume: f64,
     pub(crate) fullest: f64,
@@ -73,7 +78,7 @@ impl Seen {
     }
 }
 
-/// The equilibria of a muscle one after the other, each from the last.
+/// The equilibria of a muscle one after the other, each found from the last.
 struct Walk<'a, E> {
     problem: &'a Problem,
     method: Method,
@@ -83,7 +88,7 @@ struct Walk<'a, E> {
 }
 
 impl<E: Fn(&Found) -> f64> Walk<'_, E> {
-    /// The equilibrium at a contraction; `alone`: only from the last one.
+    /// The equilibrium at a contraction. With `alone`, the last one is the only start.
     fn at(&mut self, contraction: f64, alone: bool) -> Result<Found, FibreError> {
         let ending = if alone && self.near.is_some() { ALONE } else { USUAL };
         let found = self.problem.at_with(self.method, contraction, (self.near, ending))?;
@@ -92,7 +97,7 @@ impl<E: Fn(&Found) -> f64> Walk<'_, E> {
         Ok(found)
     }
 
-    /// The excess and its derivative by the contraction, taken from the response.
+    /// The excess and its derivative by the contraction, from the slopes in the response.
     fn value(&mut self, contraction: f64, alone: bool) -> Result<(f64, f64), FibreError> {
         let found = self.at(contraction, alone)?;
         let l0 = self.problem.parts.length;
@@ -101,7 +106,7 @@ impl<E: Fn(&Found) -> f64> Walk<'_, E> {
         Ok((y, slope_of(&found, y, &self.excess, step * l0) * l0))
     }
 
-    /// A contraction at which the excess is positive, and where to go on from.
+    /// A contraction at which the excess is positive, and one from which to go on.
     fn below(&mut self, [start, end]: [f64; 2]) -> Result<(f64, f64), FibreError> {
         if self.problem.is_singular() {
             return Ok((0.0, start));
@@ -114,6 +119,7 @@ impl<E: Fn(&Found) -> f64> Walk<'_, E> {
         let mut x = start;
         let mut stride = (0.5 * start.abs()).max(1e-3);
         let mut failures = 0;
+        // Go to smaller contractions, in growing strides, until the excess is positive.
         for _ in 0..80 {
             match (self.at(x, false), good) {
                 (Ok(found), _) if (self.excess)(&found) > 0.0 => return Ok((x, x)),
@@ -121,12 +127,12 @@ impl<E: Fn(&Found) -> f64> Walk<'_, E> {
                     good = Some(x);
                     stride *= if failures == 0 { 1.6 } else { 1.0 };
                 }
-                // Nothing there: from the last one that exists, with smaller strides.
+                // No equilibrium here: go back to the last one and take smaller strides.
                 (Err(_), Some(_)) if failures < 12 => {
                     failures += 1;
                     stride *= 0.3;
                 }
-                // The start itself is longer than the fibres bear, which isn't asked at rest.
+                // The start itself overstretches the fibres. At rest this isn't checked.
                 (Err(FibreError::Overstretched { .. }), None) if x < end.min(0.0) => {
                     x = end.min(0.0);
                     continue;
@@ -144,7 +150,8 @@ impl<E: Fn(&Found) -> f64> Walk<'_, E> {
         Err(not_converged(x, 80))
     }
 
-    /// Drawn out far enough the fibres are nearly straight, carry far more than the pressure, and any muscle has an equilibrium.
+    /// Far enough drawn out, any muscle has an equilibrium: its fibres are nearly straight and carry far more
+    /// than the pressure.
     fn drawn_out(&mut self, start: f64) -> Option<(f64, f64)> {
         let net = &self.problem.net;
         let longest = start::longest(&Net { compliance: 0.0, ..net.clone() });
@@ -157,6 +164,7 @@ impl<E: Fn(&Found) -> f64> Walk<'_, E> {
                 return Some((place, place));
             }
         }
+        // The last resort: a tension is prescribed, and the contraction follows.
         let (place, unknowns) = drawn_taut(net)?;
         self.near = Some(unknowns);
         let found = self.at(place, true).ok()?;
@@ -168,10 +176,10 @@ impl<E: Fn(&Found) -> f64> Walk<'_, E> {
         self.near.is_some_and(|near| near.is_slack_within(&self.problem.net, NEARLY_SLACK))
     }
 
-    /// Upwards by Newton steps until the sign changes, as it has at `end` if that is before [`FAR`]; where there is no equilibrium, with steps half as long until
-    /// there is none beside the last one.
+    /// Goes up by Newton steps until the sign changes. If `end` lies before [`FAR`], the sign has changed
+    /// there. Where there is no equilibrium, the steps are halved until there is none beside the last one.
     fn up(&mut self, mut low: f64, [mut x, end]: [f64; 2], tolerance: [f64; 2]) -> Result<Step, FibreError> {
-        // The longest step that is trusted, and the contraction at which fibres were seen slack.
+        // The longest step that is trusted, and the contraction at which slack fibres were seen.
         let (mut reach, mut slack) = (f64::INFINITY, FAR);
         let mut failed = false;
         for _ in 0..MOST_STEPS {
@@ -189,6 +197,7 @@ impl<E: Fn(&Found) -> f64> Walk<'_, E> {
                     if reach.is_finite() {
                         reach = reach.max(gone);
                     }
+                    // A Newton step backwards says nothing: only the trusted reach limits the next step.
                     let wish = if step > 0.0 { step } else { f64::INFINITY };
                     x = low + wish.min(reach);
                     if x >= slack || x >= FAR {
@@ -222,7 +231,7 @@ impl<E: Fn(&Found) -> f64> Walk<'_, E> {
     }
 }
 
-/// Where a way up ends.
+/// The end of a way up.
 enum Step {
     Root(f64),
     Between(f64, f64),
@@ -233,7 +242,7 @@ fn not_converged(contraction: f64, iterations: u32) -> FibreError {
 }
 
 impl Problem {
-    /// A contraction inside the range of this muscle to start a search from.
+    /// A contraction inside the range of this muscle, from which a search starts.
     pub(crate) fn contraction_start(&self) -> f64 {
         let net = &self.net;
         let ends = (net.half_fibre / (1.0 + net.half_fibre)).powi(2);
@@ -248,14 +257,16 @@ impl Problem {
         straight.unwrap_or(0.0) + (0.12 * ends).min(room.map_or(f64::INFINITY, |room| 0.1 * room))
     }
 
-    /// How far a contraction is from that of drawn-out fibres, where the force goes to infinity; 1 where that is far.
+    /// Distance of a contraction from that of drawn-out fibres, where the force goes to infinity. 1 if that
+    /// is far.
     fn room_at(&self, contraction: f64) -> f64 {
         let room = self.longest().map_or(1.0, |longest| contraction - longest);
         if room < DRAWN_OUT_ROOM { room.max(LEAST_ROOM) } else { 1.0 }
     }
 
-    /// The contraction at which `excess`, which falls with the contraction, is zero. Its derivative is taken from the response. The way leads from a start to an end
-    /// where the excess is negative, or [`FAR`].
+    /// The contraction at which `excess` is zero. The excess falls with the contraction; its derivative is
+    /// taken from the response. The way leads from a start to an end where the excess is negative, or to
+    /// [`FAR`].
     pub(crate) fn root(
         &self,
         method: Method,
@@ -268,7 +279,8 @@ impl Problem {
         if low > end {
             return Err(not_converged(low, 0));
         }
-        // The force of straight inextensible fibres is infinite at 0, and large forces belong to tiny contractions.
+        // The force of straight inextensible fibres is infinite at 0, and large forces belong to tiny
+        // contractions.
         let tolerance = if self.is_singular() {
             [0.0, ROOT_TOLERANCE]
         } else {
@@ -288,7 +300,7 @@ impl Problem {
     }
 }
 
-/// What a place on a path is to have.
+/// The condition that a place on a path must satisfy.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Goal {
     Contraction(f64),
@@ -299,7 +311,8 @@ pub(crate) enum Goal {
 }
 
 impl Problem {
-    /// An equilibrium from the paths of this muscle, with what a search has seen, which takes long; the first that pulls, or that exists where it need not.
+    /// An equilibrium from the paths of this muscle and from what a search has seen. This takes long. It is
+    /// the first one that pulls, or the first that exists if it need not pull.
     pub(crate) fn on_a_path(
         &self,
         method: Method,
@@ -310,7 +323,8 @@ impl Problem {
         self.on_one_of(&mut Paths::of(&self.net, seen.last), method, goal, must_pull)
     }
 
-    /// The end of the range on a path: the equilibrium at which the force vanishes, or the contraction at which the fibres of a muscle that pulls become slack.
+    /// The end of the range on a path: the equilibrium at which the force vanishes, or the contraction at
+    /// which the fibres of a pulling muscle become slack.
     pub(crate) fn limit_on_a_path(&self, method: Method, seen: &Seen) -> Option<Result<Found, f64>> {
         let mut paths = Paths::of(&self.net, seen.last);
         let found = self.on_one_of(&mut paths, method, Goal::Force(0.0), true).map(Ok);
@@ -332,7 +346,7 @@ impl Problem {
         })
     }
 
-    /// The equilibrium beside a place, by the usual way.
+    /// The equilibrium beside a place, solved in the usual way.
     fn near_place(&self, method: Method, goal: Goal, place: &Place) -> Result<Found, FibreError> {
         let excess = |found: &Found| match goal {
             Goal::Contraction(asked) => asked - found.response.contraction,
@@ -360,7 +374,8 @@ impl Problem {
     }
 }
 
-/// Derivative of an excess of force or volume by the contraction, per length l0: along the exact slopes for a small shortening.
+/// Derivative of an excess of force or volume by the contraction, per length l0. The response is moved along
+/// its exact slopes by a small shortening.
 fn slope_of(found: &Found, y: f64, excess: &impl Fn(&Found) -> f64, shortening: f64) -> f64 {
     let mut moved = *found;
     let r = &mut moved.response;

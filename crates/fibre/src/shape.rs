@@ -1,4 +1,5 @@
-//! The result of a solve, in SI units: plain, serialisable values that writers (JSON, CSV, VTK, plots) are functions of.
+//! The result of a solve, in SI units: plain, serialisable values from which writers (JSON, CSV, VTK, plots)
+//! take their data.
 
 use serde::Serialize;
 
@@ -29,14 +30,16 @@ impl std::fmt::Display for Method {
 pub struct Convergence {
     /// Newton iterations on the two unknowns of the meridian.
     pub iterations: u32,
-    /// Evaluations: of the equilibrium ODE's right-hand side, of the integrands where the search takes the meridian by quadrature (shooting), or
-    /// of the pair of elliptic integrals (closed form).
+    /// Evaluations: of the equilibrium ODE's right-hand side, of the integrands where the search takes the
+    /// meridian by quadrature (shooting), or of the pair of elliptic integrals (closed form).
     pub evaluations: u32,
-    /// Integration steps accepted in the last integration (pieces, if it is a quadrature); 0 for the closed form.
+    /// Integration steps accepted in the last integration (pieces, if it is a quadrature); 0 for the closed
+    /// form.
     pub steps: u32,
     /// Largest relative residual of the end conditions (radius, fibre length, end distance).
     pub residual: f64,
-    /// Largest departure from the first integral `N cos(psi) = F + p A(r)` along the meridian, relative to the largest of these forces.
+    /// Largest departure from the first integral `N cos(psi) = F + p A(r)` along the meridian, relative to
+    /// the largest of these forces.
     pub first_integral: f64,
 }
 
@@ -51,17 +54,18 @@ pub struct Response {
     pub length_m: f64,
     /// Contraction (l0 - l)/l0 \[-\].
     pub contraction: f64,
-    /// Enclosed volume with circular cross-sections of the fibre radius, plus the pleat depth or less the wall if there is one; with lobes that of
-    /// the lobes \[m^3\].
+    /// Enclosed volume with circular cross-sections of the fibre radius, plus the pleat depth or less the
+    /// wall if there is one. With lobes it is the volume of the lobes \[m^3\].
     pub volume_m3: f64,
-    /// Enclosed volume with the cross-section that carries the pressure (polygon between n fibres, or lobes) \[m^3\]: p dV of it is the
-    /// work of the gas, and F = -p dV/dl holds where nothing else stores energy.
+    /// Enclosed volume with the cross-section that carries the pressure (polygon between n fibres, or lobes)
+    /// \[m^3\]: p dV of it is the work of the gas, and F = -p dV/dl holds where nothing else stores energy.
     pub volume_polygon_m3: f64,
     /// Largest radius of the fibres \[m\].
     pub max_radius_m: f64,
     /// Radius at mid-length \[m\] (differs from the largest one only for a waisted muscle).
     pub mid_radius_m: f64,
-    /// Largest tension along a fibre \[N\]; of all fibres together where the muscle file doesn't state their number.
+    /// Largest tension along a fibre \[N\]; of all fibres together where the muscle file doesn't state their
+    /// number.
     pub fibre_tension_n: f64,
     /// Largest axial strain along a fibre \[-\]; 0 for inextensible fibres.
     pub fibre_strain: f64,
@@ -73,7 +77,8 @@ pub struct Response {
     pub stiffness_isothermal_n_per_m: f64,
     /// dF/dl at constant gas amount, adiabatic (exponent 1.4) \[N/m\].
     pub stiffness_adiabatic_n_per_m: f64,
-    /// Angle of the meridian against the axis at the fittings \[rad\], positive where the muscle widens from the fitting.
+    /// Angle of the meridian against the axis at the fittings \[rad\], positive where the muscle widens from
+    /// the fitting.
     pub end_slope_rad: f64,
     /// How it was computed.
     pub method: Method,
@@ -82,7 +87,8 @@ pub struct Response {
 }
 
 impl Response {
-    /// Whether it pulls: the force is not negative, but for rounding, which is small against `scale_n`. Near the limit the force is small against p R^2.
+    /// Whether the muscle pulls: the force is not negative, except for rounding, which is small against
+    /// `scale_n`. (Near the limit the force is small against p R^2.)
     #[must_use]
     pub fn pulls(&self, scale_n: f64) -> bool {
         self.force_n >= -1e-9 * scale_n
@@ -96,7 +102,8 @@ pub struct MeridianPoint {
     pub x_m: f64,
     /// Radius of the fibres \[m\].
     pub r_m: f64,
-    /// Angle of the meridian against the axis, dr/dx = tan(slope) \[rad\]; positive in the left half of a bulge.
+    /// Angle of the meridian against the axis, dr/dx = tan(slope) \[rad\]; positive in the left half of a
+    /// bulge.
     pub slope_rad: f64,
     /// Angle between fibre and meridian \[rad\].
     pub braid_angle_rad: f64,
@@ -108,7 +115,8 @@ pub struct MeridianPoint {
     pub membrane_force_n_per_m: f64,
     /// Unstretched length of fibre from the left fitting \[m\].
     pub fibre_length_m: f64,
-    /// Angle about the axis by which the fibre has turned since the left fitting \[rad\]; 0 for straight fibres.
+    /// Angle about the axis by which the fibre has turned since the left fitting \[rad\]; 0 for straight
+    /// fibres.
     pub turn_rad: f64,
 }
 

@@ -1,19 +1,24 @@
-//! Shooting: the two unknowns at mid-length (radius and curvature) from the two conditions at the fitting (fibre length and end distance).
+//! Shooting: the two end conditions at the fitting (fibre length and end distance) determine the two unknowns
+//! at mid-length (radius and curvature).
 //!
-//! A trajectory starts at mid-length with the bulge B = r_mid - r_fitting and the curvature k, and runs until its radius is that of the
-//! fitting; there its fibre length and its shortening are compared with those asked for:
+//! A trajectory starts at mid-length with the bulge B = r_mid - r_fitting and the curvature k. It ends where
+//! its radius is that of the fitting. Its fibre length and its shortening there are compared with the
+//! prescribed ones:
 //!
 //! ```text
 //! g1 = ln(S/S_half) = 0            g2 = (d - d_asked)/scale = 0           unknowns ln|B|, ln|k|
 //! ```
 //!
-//! In these variables the problem is nearly linear at both ends: for a shallow bulge S = sqrt(2 B/k), and in a long braid S grows with -ln k.
-//! Where lobes or cloth limit the radius, B is nearly the same for all of them and N = push/k a ratio of two numbers near 0 (push: A' less the hoop
-//! term of the cloth): the first unknown is then ln(push/(k B)), from which push(r_mid) = k B (N/B) fixes B; ln(push/B) where an angle carries a part;
-//! asinh(push/(2 B)) with a bladder, which pushes outwards itself where it is narrower than at rest.
+//! The problem is nearly linear in these variables at both extremes: a shallow bulge has S = sqrt(2 B/k), and
+//! in a long braid S grows with -ln k. Where lobes or cloth limit the radius, B is nearly the same for all
+//! equilibria, and N = push/k is a ratio of two numbers near 0 (push: A' less the hoop term of the cloth).
+//! The first unknown is then ln(push/(k B)), and push(r_mid) = k B (N/B) fixes B. Where an angle of the
+//! fibres carries a part, the first unknown is ln(push/B). With a bladder it is asinh(push/(2 B)), because a
+//! bladder that is narrower than at rest pushes outwards itself.
 //!
-//! Newton's method takes exact derivatives from the integration of dual numbers, loosely at first; or from the quadrature of the same meridian
-//! (see `quadrature`), which costs a tenth, where there is one.
+//! Newton's method takes exact derivatives from the integration of dual numbers, which is loose at first.
+//! Where the meridian is a quadrature (see `quadrature`), the derivatives come from that instead, at a tenth
+//! of the cost.
 
 use bulge_numerics::{Dual, Real};
 
@@ -29,44 +34,47 @@ use crate::unknowns::{FLAT, Unknowns};
 pub(crate) const TOLERANCE: f64 = 4e-12;
 /// Newton iterations after which the solve is given up.
 const MAX_ITERATIONS: u32 = 40;
-/// Evaluations of the right-hand side (or of the integrands) after which the search for an equilibrium that may not exist ends (some 3 ms). The longest braid takes
-/// under 5000.
+/// Limit on the evaluations of the right-hand side (or of the integrands). A search for an equilibrium that
+/// may not exist ends there (after some 3 ms). The longest braid takes under 5000.
 const MOST_EVALUATIONS: u32 = 30_000;
 /// Largest steps of ln|B| and ln|k|.
 const MAX_STEP: [f64; 2] = [0.8, 4.0];
-/// Largest step of ln|k| in the middle of a long cylinder, as a part of it.
+/// Largest step of ln|k| in the middle of a long cylinder, as a fraction of ln|k|.
 const CYLINDER: f64 = 0.3;
-/// Residual below which Newton's method is trusted not to need backtracking (early residuals are integrated loosely).
+/// Newton's method does not backtrack below this residual. (Early residuals are integrated loosely.)
 const NEAR: f64 = 1e-2;
-/// Part of the last residual below which the next one is expected.
+/// The iterations have stalled when a residual exceeds this fraction of the last one.
 const STALLED: f64 = 0.3;
-/// Largest step of the last integration: what the derivatives are exact to.
+/// Largest Newton step at the last integration. The derivatives are exact to this size.
 const DERIVATIVES: f64 = 1e-9;
-/// Smallest difference of the contraction from that of a straight meridian.
+/// Smallest allowed difference of the contraction from that of a straight meridian.
 const STRAIGHT: f64 = 1e-9;
-/// Largest departure from the first integral of a solution: far above what the integration leaves, far below what matters.
+/// Largest accepted departure of a solution from the first integral. It is far above the integration error
+/// and far below any departure that matters.
 const FIRST_INTEGRAL: f64 = 1e-9;
-/// Largest step after which a solution is one; [`finish`] corrects the values by it to second order.
+/// Largest last step of an accepted solution. [`finish`] corrects the values by this step to second order.
 const ACCEPTED: f64 = 1e-6;
-/// When Newton's method leaves the rest to [`finish`], which has to integrate once anyway and takes the next step itself (a third of the time of
-/// a braid saved); it takes one more where that is not below [`DERIVATIVES`].
+/// When Newton's method stops and leaves the rest to [`finish`]. That function has to integrate once anyway
+/// and takes the next step itself, which saves a third of the time of a braid. It takes one more if that step
+/// is not below [`DERIVATIVES`].
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Ending {
-    /// After a step of this size the next one, by its square, is usually small enough.
+    /// After a step of this size the next one is usually small enough: it is about the square.
     step: f64,
-    /// If the trajectory was integrated to this tolerance at least: else the next step is the error of the integration.
+    /// The trajectory must have been integrated to this tolerance at least. Otherwise the next step is the
+    /// integration error.
     tolerance: f64,
-    /// Tolerance to begin with from a start that was given.
+    /// First tolerance if a start is given.
     pub(crate) first: f64,
-    /// Tolerance of what is expected to be the last iteration, at most.
+    /// Loosest tolerance of the iteration that is expected to be the last.
     last_but_one: f64,
-    /// Evaluations after which a search ends.
+    /// Limit on the evaluations of a search.
     most: u32,
-    /// Whether a start that is given is the only one.
+    /// Whether a given start is the only one that is tried.
     alone: bool,
 }
 
-/// Where a second last integration costs as much as the iteration that it saves.
+/// For solves in which repeating the last integration costs as much as the iteration that it saves.
 pub(crate) const USUAL: Ending = Ending {
     step: 1e-4,
     tolerance: 1e-7,
@@ -75,9 +83,10 @@ pub(crate) const USUAL: Ending = Ending {
     most: MOST_EVALUATIONS,
     alone: false,
 };
-/// From a neighbour's solution or not at all.
+/// Solves from a neighbour's solution or not at all.
 pub(crate) const ALONE: Ending = Ending { alone: true, ..USUAL };
-/// Where the last integration carries many derivatives and must not be repeated; and a start that was given lies near.
+/// For solves whose last integration carries many derivatives and must not be repeated. A given start lies
+/// near.
 pub(crate) const EXACT: Ending = Ending {
     step: 3e-5,
     tolerance: 2.5e-10,
@@ -86,13 +95,16 @@ pub(crate) const EXACT: Ending = Ending {
     most: MOST_EVALUATIONS,
     alone: false,
 };
-/// The same in a fit, which asks thousands of times and may ask far from sense: nothing that is found takes more.
+/// The same in a fit, which asks thousands of times and may ask far from sensible values. No equilibrium that
+/// is found takes more evaluations.
 pub(crate) const FITTED: Ending = Ending { most: 15_000, ..EXACT };
-/// The same beside an equilibrium that was found: what isn't found from there or anew is hardly there.
+/// The same beside a known equilibrium. One that is found neither from there nor by a new search hardly
+/// exists.
 pub(crate) const BESIDE: Ending = Ending { most: 7_500, ..FITTED };
-/// Newton iterations from a start that was given, after which the search begins anew: a good one takes two or three.
+/// Newton iterations from a given start after which the search begins anew. A good start takes two or three.
 const MOST_FROM_NEAR: u32 = 8;
-/// Where the meridian is a quadrature, which has no tolerance and costs little: the step after which the next one is as small as rounding lets it be.
+/// Newton step at which the iterations end if the meridian is a quadrature, which has no tolerance and costs
+/// little. After this step the next one is as small as rounding allows.
 const QUADRATURE: f64 = 1e-5;
 /// Step after which the next one is expected to be the last.
 const LAST_BUT_ONE: f64 = 1e-2;
@@ -102,7 +114,7 @@ const LAST_BUT_ONE: f64 = 1e-2;
 pub(crate) struct Effort {
     pub(crate) iterations: u32,
     pub(crate) evaluations: u32,
-    /// Evaluations after which the search ends.
+    /// Limit on the evaluations of the search.
     most: u32,
 }
 
@@ -111,7 +123,7 @@ impl Effort {
         Self { iterations: 0, evaluations: 0, most }
     }
 
-    /// Whether it is time to give up.
+    /// Whether the evaluations are used up.
     pub(crate) fn is_spent(&self) -> bool {
         self.evaluations > self.most
     }
@@ -128,13 +140,15 @@ fn residuals<D: Real>(net: &Net<D>, contraction: D, trajectory: &Trajectory<D>) 
     [length, (found - asked) / shortening_scale(net, contraction.value())]
 }
 
-/// The shortening of straight inextensible fibres is all due to the bulge: its ratio counts, however small it is.
+/// Straight inextensible fibres shorten only because of the bulge. The ratio of the shortenings therefore
+/// counts, however small they are.
 fn counts_by_ratio<D: Real>(net: &Net<D>, contraction: f64, trajectory: &Trajectory<D>) -> bool {
     let straight = net.turn.value() == 0.0 && net.compliance.value() == 0.0;
     straight && contraction > 0.0 && trajectory.end[SHORTENING].value() > 0.0
 }
 
-/// In a braid or with elastic fibres a shortening near zero means nothing by itself: it counts against a part of the length.
+/// In a braid or with elastic fibres a shortening near zero has no meaning by itself. Its error is relative
+/// to a fraction of the length.
 fn shortening_scale<D: Real>(net: &Net<D>, contraction: f64) -> f64 {
     net.half_fibre.value() * (contraction.abs() * net.cos_rest.value() + 0.02)
 }
@@ -147,7 +161,7 @@ fn residual_by_contraction<D: Real>(net: &Net<D>, contraction: f64, trajectory: 
     -net.cos_rest.value() * net.half_fibre.value() / shortening_scale(net, contraction)
 }
 
-/// Solves for a contraction, from a start of its own or the one given.
+/// Solves for a contraction, from the given start or from one of its own.
 pub(crate) fn solve(
     net: &Net<f64>,
     contraction: f64,
@@ -163,6 +177,7 @@ pub(crate) fn solve(
             return near.map(|found| (found, effort));
         }
     }
+    // Without a start, or after a failed one, the search begins anew.
     let cold = (ending, USUAL.first);
     let direct =
         start(net, contraction).and_then(|start| newton(net, contraction, start, cold, &mut effort).ok());
@@ -170,6 +185,7 @@ pub(crate) fn solve(
         Some(found) => Ok(found),
         None => match continuation(net, contraction, &mut effort) {
             Err(FibreError::NotConverged { .. }) if net.cloth.is_some() || net.has_wall() => {
+                // The starts ignore bladder and cloth: soften both and let them stiffen step by step.
                 let mut more = Effort::of_at_most(ending.most);
                 let found = stiffening(net, contraction, &mut more);
                 effort.iterations += more.iterations;
@@ -182,8 +198,9 @@ pub(crate) fn solve(
     Ok((found?, effort))
 }
 
-/// Where the meridian is exactly straight, bulge and curvature are zero and their logarithms don't exist: a contraction within `STRAIGHT` of it is
-/// moved that far, and [`finish`] comes back along the derivatives (an error of the second order).
+/// Keeps a contraction away from that of an exactly straight meridian, where bulge and curvature are zero and
+/// their logarithms don't exist. A contraction within `STRAIGHT` of it is moved that far. [`finish`] comes
+/// back along the derivatives (an error of the second order).
 fn beside_straight(net: &Net<f64>, contraction: f64) -> f64 {
     match straight_contraction(net) {
         Some(straight) if (contraction - straight).abs() < STRAIGHT => {
@@ -215,7 +232,8 @@ fn newton_within(
     let lifted = net.lift::<2>();
     let exact = quadrature::suits(net);
     let mut at = start;
-    // Near the straight meridian the shortening that counts is a small difference.
+    // Near the straight meridian the relevant shortening is a small difference, so the tolerance starts
+    // tighter.
     let excess = straight_contraction(net).map_or(1.0, |straight| (contraction - straight).abs());
     let mut tolerance = (1e-2 * excess).clamp(TOLERANCE, first);
     let mut previous = f64::INFINITY;
@@ -253,14 +271,14 @@ fn newton_within(
             continue;
         }
         let Ok(g) = found else { continue };
-        // What the iterations no longer lessen is the error of the integration.
+        // A residual that the iterations no longer reduce is the integration error: tighten the tolerance.
         if size < NEAR && size > STALLED * previous {
             loosest = (1e-2 * loosest).max(TOLERANCE);
         }
         previous = size;
         halvings = 0;
         let step = solve_two([*g[0].gradient(), *g[1].gradient()], [g[0].value(), g[1].value()]);
-        // Along a cylinder the conditions are linear in ln|k|.
+        // Along a cylinder the conditions are linear in ln|k|, so longer steps are allowed.
         let most_second =
             if at.logs[1] < FLAT { MAX_STEP[1].max(CYLINDER * at.logs[1].abs()) } else { MAX_STEP[1] };
         let damping = (MAX_STEP[0] / step[0].abs()).min(most_second / step[1].abs()).min(1.0);
@@ -273,7 +291,7 @@ fn newton_within(
         if if exact { moved < QUADRATURE } else { moved < ending.step && tolerance <= ending.tolerance } {
             return Ok(at);
         }
-        // The next residual will be about the square of this step: no point in integrating it more exactly than that.
+        // The next residual will be about the square of this step. A more exact integration would be wasted.
         let most = if moved < LAST_BUT_ONE { ending.last_but_one } else { 1e-5 };
         tolerance = (1e-2 * moved * moved).clamp(TOLERANCE, most.min(loosest));
     }
@@ -287,8 +305,9 @@ pub(crate) fn solve_two(jacobian: [[f64; 2]; 2], g: [f64; 2]) -> [f64; 2] {
     [(g[0] * d - b * g[1]) / det, (a * g[1] - c * g[0]) / det]
 }
 
-/// The contraction at which the meridian is straight at the radius of the fitting (a cylinder), if the net has one: beyond it the
-/// muscle bulges, before it the muscle has a waist. Straight fibres (theta = 0) always bulge.
+/// The contraction at which the meridian is straight at the radius of the fitting (a cylinder), if the net
+/// has one: beyond it the muscle bulges, before it the muscle has a waist. Straight fibres (theta = 0) always
+/// bulge.
 pub(crate) fn straight_contraction(net: &Net<f64>) -> Option<f64> {
     if net.turn == 0.0 {
         return None;
@@ -298,7 +317,7 @@ pub(crate) fn straight_contraction(net: &Net<f64>) -> Option<f64> {
     Some(1.0 - net.sigma(net.end_radius, tension) / net.cos_rest)
 }
 
-/// The solution at the unknowns with exact derivatives.
+/// The solution at the final unknowns, with exact derivatives.
 pub(crate) struct Solved<const N: usize> {
     pub(crate) force: Total<N>,
     pub(crate) half_volume: Total<N>,
@@ -309,7 +328,7 @@ pub(crate) struct Solved<const N: usize> {
     pub(crate) residual: f64,
     /// Total derivatives of the two unknowns.
     pub(crate) follow: [Total<N>; 2],
-    /// The last Newton step, by which the trajectory misses the solution.
+    /// The last Newton step: the distance of the trajectory from the solution in the unknowns.
     step: [f64; 2],
 }
 
@@ -321,8 +340,8 @@ impl<const N: usize> Solved<N> {
     }
 }
 
-/// A value with its total derivatives: with respect to the contraction, and to the parameters that are the variables 2 .. of the net
-/// (the first two places, of the unknowns, are zero).
+/// A value with its total derivatives by the contraction and by the parameters. The parameters are the
+/// variables 2 .. of the net. (The first two places belong to the unknowns and are zero.)
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Total<const N: usize> {
     pub(crate) value: f64,
@@ -333,14 +352,15 @@ pub(crate) struct Total<const N: usize> {
 /// How the last trajectory is computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Way {
-    /// By the equilibrium ODE, whose first integral and end conditions then check everything that led there.
+    /// By the equilibrium ODE. Its first integral and end conditions then check everything before.
     Ode,
-    /// By quadrature where the meridian is one.
+    /// By quadrature where the net allows it.
     Fastest,
 }
 
-/// One last integration at the unknowns, whose own small Newton step corrects the values to second order, and the implicit function
-/// theorem: the unknowns z follow a parameter a by `dz/da = -J^-1 dg/da`, an output o by `do/da + (do/dz) dz/da`.
+/// Integrates a last time at the unknowns. The small Newton step of this integration corrects the values to
+/// second order. The implicit function theorem gives the derivatives: the unknowns z follow a parameter a by
+/// `dz/da = -J^-1 dg/da`, an output o by `do/da + (do/dz) dz/da`.
 pub(crate) fn finish<const N: usize>(
     net: &Net<Dual<N>>,
     contraction: f64,
@@ -360,7 +380,8 @@ pub(crate) fn finish<const N: usize>(
         };
         let run = match run {
             Ok(run) => run,
-            // Cloth a thousand times stiffer than the pressure needs is more than the integration can follow; a quadrature takes it.
+            // The integration can't follow cloth a thousand times stiffer than the pressure needs; a
+            // quadrature can.
             Err(_) if way == Way::Ode && quadrature::suits(net) => {
                 return finish(net, asked, unknowns, Way::Fastest);
             }
@@ -371,7 +392,8 @@ pub(crate) fn finish<const N: usize>(
         let jacobian = g.map(|g| [g.gradient()[0], g.gradient()[1]]);
         let step = solve_two(jacobian, g.map(Real::value));
         evaluations += run.evaluations;
-        // The derivatives are as exact as this step is small; a start from loose integrations may need one more round.
+        // The derivatives are as exact as this step is small. A start from loose integrations may need one
+        // more round.
         if step[0].abs().max(step[1].abs()) < DERIVATIVES || evaluations > 4 * run.evaluations {
             break (run, g, jacobian, step, bulge);
         }
@@ -379,7 +401,8 @@ pub(crate) fn finish<const N: usize>(
     };
     let residual = beyond_rounding(g.map(Real::value), jacobian);
     if step[0].abs().max(step[1].abs()) > ACCEPTED || run.first_integral > FIRST_INTEGRAL {
-        // Next to fittings on which the fibres nearly lie along the circumference the integration loses digits, a quadrature doesn't.
+        // Next to fittings on which the fibres nearly lie along the circumference the integration loses
+        // digits. A quadrature doesn't.
         if way == Way::Ode && quadrature::suits(net) {
             return finish(net, asked, unknowns, Way::Fastest);
         }
@@ -391,6 +414,7 @@ pub(crate) fn finish<const N: usize>(
         let o = out.gradient();
         let along = |z: [f64; 2]| o[0] * z[0] + o[1] * z[1];
         Total {
+            // The last term returns from the contraction that `beside_straight` has moved.
             value: out.value() - along(step) - along(by_contraction) * (asked - contraction),
             by_contraction: -along(by_contraction),
             by_parameter: std::array::from_fn(|i| if i < 2 { 0.0 } else { o[i] - along(follow[i]) }),
@@ -414,8 +438,8 @@ pub(crate) fn finish<const N: usize>(
     })
 }
 
-/// The larger residual, less what the rounding of the radius at mid-length makes of it: a long braid that is drawn out is exp(-q S) of the fittings'
-/// radius wide there, which is only known to 1e-16 of theirs.
+/// The larger residual, less the part that rounding of the radius at mid-length causes. A long braid that is
+/// drawn out has a radius there of exp(-q S) times that of the fittings, known only to 1e-16 of theirs.
 fn beyond_rounding(g: [f64; 2], jacobian: [[f64; 2]; 2]) -> f64 {
     let beyond = |i: usize| (g[i].abs() - f64::EPSILON * jacobian[i][0].abs()).max(0.0);
     beyond(0).max(beyond(1))
@@ -449,7 +473,8 @@ mod tests {
         }
     }
 
-    /// The saddle: the middle of a long braid differs from the cylinder by exp(-140), and doubling the length adds exactly a cylinder.
+    /// The saddle: the middle of a long braid differs from the cylinder by exp(-140), and doubling the length
+    /// adds exactly a cylinder.
     #[test]
     fn a_long_braid_is_two_ends_and_a_cylinder() {
         let at = |length: f64| {
@@ -463,7 +488,7 @@ mod tests {
         assert!(full.1 < 1e-10);
     }
 
-    /// A start given by a neighbour leads to the same solution as none.
+    /// A start given by a neighbour leads to the same solution as a search without one.
     #[test]
     fn the_start_does_not_matter() {
         let net = braid(25.0, 25.0);

@@ -1,4 +1,5 @@
-//! The questions: given the pressure and one of contraction, length, force or volume, the rest; the contraction limit; exact derivatives.
+//! The questions: given the pressure and one of contraction, length, force or volume, find the rest. Also the
+//! contraction limit and exact derivatives.
 
 use bulge_muscles::{Muscle, Parameter};
 use bulge_numerics::Dual;
@@ -18,7 +19,7 @@ pub const AMBIENT_PRESSURE: f64 = 101_325.0;
 /// Exponent of adiabatic air.
 pub const ADIABATIC: f64 = 1.4;
 
-/// What is given besides the pressure.
+/// The quantity that is given besides the pressure.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Given {
     /// Contraction (l0 - l)/l0 \[-\].
@@ -36,7 +37,8 @@ pub enum Given {
 pub enum RangeEnd {
     /// The contraction at which the force vanishes.
     ForceVanishes(f64),
-    /// The contraction at which the fibres slacken, where that comes first: from there on the bladder carries more than the pressure.
+    /// The contraction at which the fibres slacken, if that comes first. From there on the bladder carries
+    /// more than the pressure.
     FibresSlacken(f64),
 }
 
@@ -66,13 +68,14 @@ pub struct Gradient {
     pub by_contraction: [f64; 2],
     /// dF/dp \[N/Pa\], dV/dp \[m^3/Pa\], at constant contraction.
     pub by_pressure: [f64; 2],
-    /// dF/da and dV/da for each number of the muscle's [`Parts`] by its name, per SI unit, at constant contraction.
+    /// dF/da and dV/da for each number of the muscle's [`Parts`] by its name, per SI unit, at constant
+    /// contraction.
     pub by_part: Vec<(&'static str, [f64; 2])>,
 }
 
 impl Gradient {
-    /// dF/da and dV/da for a parameter of the muscle whose parts were asked, by the chain rule; none if the muscle doesn't state it. The radius
-    /// of a pleated muscle is that at its fittings.
+    /// dF/da and dV/da for a parameter of the muscle whose parts were solved, by the chain rule. `None` if
+    /// the muscle doesn't state it. The radius of a pleated muscle is that at its fittings.
     #[must_use]
     pub fn by(&self, muscle: &Muscle, parameter: Parameter) -> Option<[f64; 2]> {
         if !muscle.is_stated(parameter) || parameter == Parameter::FittingRadius && muscle.is_pleated() {
@@ -85,7 +88,7 @@ impl Gradient {
     }
 }
 
-/// An equilibrium with what is needed to go on from it.
+/// An equilibrium with the data needed to go on from it.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Found {
     pub(crate) response: Response,
@@ -100,7 +103,8 @@ impl Found {
 }
 
 impl Problem {
-    /// Solves for what is given. A contraction, force or volume beyond the limit at which the force vanishes is an error.
+    /// Solves for a given quantity. A contraction, force or volume beyond the limit at which the force
+    /// vanishes is an error.
     ///
     /// # Errors
     /// See [`FibreError`]; every variant carries the numbers.
@@ -108,8 +112,8 @@ impl Problem {
         self.find(given, approach).map(|found| found.response)
     }
 
-    /// The equilibrium at a contraction even where the force is negative (the muscle would have to push): for fits and tables
-    /// that must not end at the limit.
+    /// The equilibrium at a contraction even where the force is negative (the muscle would have to push): for
+    /// fits and tables that must not end at the limit.
     ///
     /// # Errors
     /// See [`FibreError`].
@@ -125,8 +129,9 @@ impl Problem {
         found.map(|found| found.response)
     }
 
-    /// Where no equilibrium was found beyond the limit, as a long braid or a soft one would bulge in more than one place, the error that says so; else the same. It
-    /// takes a search for the limit.
+    /// Explains an error beyond the limit, where a long braid or a soft one would bulge in more than one
+    /// place and no equilibrium was found. The result names the limit; other errors stay the same. This takes
+    /// a search for the limit.
     #[must_use]
     pub fn explained(&self, error: FibreError, contraction: f64, approach: Approach) -> FibreError {
         if !matches!(error, FibreError::NotConverged { .. }) {
@@ -151,12 +156,14 @@ impl Problem {
     /// The contraction at which the force vanishes.
     ///
     /// # Errors
-    /// [`FibreError::NotConverged`], or [`FibreError::Slack`] with its limit where the fibres become slack before.
+    /// [`FibreError::NotConverged`], or [`FibreError::Slack`] with its limit where the fibres become slack
+    /// before.
     pub fn contraction_limit(&self, approach: Approach) -> Result<f64, FibreError> {
         self.at_limit(self.method(approach)?, &mut { Seen::NOTHING }).map(|found| found.response.contraction)
     }
 
-    /// Where the equilibria that pull end as the muscle contracts: the one limit that every message and table names.
+    /// Where the equilibria that pull end as the muscle contracts. This is the one limit that every message
+    /// and table names.
     ///
     /// # Errors
     /// [`FibreError::NotConverged`], or that there is no equilibrium at all.
@@ -180,8 +187,9 @@ impl Problem {
         }
     }
 
-    /// Exact derivatives of force and volume with respect to the contraction, the pressure and every number of the muscle's parts, by
-    /// dual numbers and the implicit function theorem. The number of fibres counts as continuous.
+    /// Exact derivatives of force and volume with respect to the contraction, the pressure and every number
+    /// of the muscle's parts, by dual numbers and the implicit function theorem. The number of fibres counts
+    /// as continuous.
     ///
     /// # Errors
     /// See [`FibreError`].
@@ -260,7 +268,7 @@ impl Problem {
         }
         match self.longest() {
             Some(limit) if contraction <= limit => Err(FibreError::TooLong { contraction, limit }),
-            // Step by step from where there is one.
+            // Go step by step from an equilibrium that exists.
             _ if matches!(error, FibreError::NotConverged { .. }) => {
                 self.walked(method, contraction, true).ok_or(error)
             }
@@ -289,7 +297,7 @@ impl Problem {
                 }
                 self.on_a_path(method, Goal::Force(force), true, &seen).map_or_else(
                     || match self.at_limit(method, &mut { Seen::NOTHING }) {
-                        // Less than where the fibres slacken.
+                        // The force is less than where the fibres slacken.
                         Err(slack @ FibreError::Slack { limit: Some(_), .. }) => Err(slack),
                         _ => Err(error),
                     },
@@ -306,7 +314,8 @@ impl Problem {
         self.net.turn == 0.0 && self.net.compliance == 0.0
     }
 
-    /// The contraction at which inextensible fibres are drawn straight, if the muscle has one: equilibria lie beyond it.
+    /// The contraction at which inextensible fibres are drawn straight, if the muscle has one: equilibria lie
+    /// beyond it.
     #[must_use]
     pub fn longest(&self) -> Option<f64> {
         if self.net.compliance != 0.0 {
@@ -331,7 +340,7 @@ impl Problem {
         self.at_with(method, contraction, (from, USUAL))
     }
 
-    /// The same with the way in which the search ends.
+    /// The same with a prescribed end of the search.
     pub(crate) fn at_with(
         &self,
         method: Method,
@@ -342,14 +351,15 @@ impl Problem {
             let outcome = self.outcome(method, contraction, &self.net.lift::<2>(), from)?;
             return Ok(self.found(contraction, &outcome));
         }
-        // The pressure is the variable number 2 of what the dimensionless groups make of it.
+        // The pressure is the variable number 2; the dimensionless groups depend on it.
         let parts: Parts<Dual<3>> = self.parts.map(|_, number| Dual::from(number));
         let net = parts.net(Dual::variable(self.pressure, 2));
         let outcome = self.outcome(method, contraction, &net, from)?;
         Ok(self.found(contraction, &outcome))
     }
 
-    /// The response in SI. The place 2 of the derivatives, if there is one, is by the pressure at constant p R^2 .
+    /// The response in SI. Place 2 of the derivatives, if there is one, belongs to the pressure at constant
+    /// p R^2.
     fn found<const N: usize>(&self, contraction: f64, outcome: &Outcome<N>) -> Found {
         let p = self.pressure;
         let radius = self.parts.radius;
@@ -390,7 +400,8 @@ impl Problem {
     }
 }
 
-/// dF/dl with the gas enclosed, (p + pa) V^g constant: dp/dl = -g (p + pa) V_l/(V + g (p + pa) V_p) in F_l + F_p dp/dl.
+/// dF/dl with the gas enclosed, (p + pa) V^g constant: dp/dl = -g (p + pa) V_l/(V + g (p + pa) V_p) in
+/// F_l + F_p dp/dl.
 pub(crate) fn closed_stiffness(
     g: f64,
     pressure: f64,

@@ -1,4 +1,4 @@
-//! Values to start the shooting from, and how far a braid can be drawn out.
+//! Starting values for the shooting, and the limit to which a braid can be drawn out.
 
 use bulge_numerics::{gauss, root::illinois};
 
@@ -6,19 +6,21 @@ use crate::net::Net;
 use crate::shooting::straight_contraction;
 use crate::unknowns::{Unknowns, is_limited, steepest};
 
-/// Difference of the contraction from that of a straight meridian up to which the start is taken from the linear solution.
+/// Largest difference of the contraction from that of a straight meridian for which the start is taken from
+/// the linear solution.
 const SHALLOW: f64 = 1e-4;
 
-/// Part of the way to the circle of the lobes beyond which an arc that ignores them is no start.
+/// Fraction of the way to the circle of the lobes. Beyond it an arc that ignores the lobes is no start.
 const NEARLY_OPEN: f64 = 0.9;
 
-/// Values to start from, some per cent to some ten per cent off.
+/// Starting values, off by some per cent to some ten per cent.
 pub(crate) fn start(net: &Net<f64>, contraction: f64) -> Option<Unknowns> {
     open_start(net, contraction).or_else(|| usual_start(net, contraction))
 }
 
 fn usual_start(net: &Net<f64>, contraction: f64) -> Option<Unknowns> {
-    // Fibres that hardly turn bulge as straight ones do, and so does a net that has no cylinder at the fitting's radius.
+    // Fibres that hardly turn bulge as straight ones do. So does a net that has no cylinder at the fitting's
+    // radius.
     match straight_contraction(net) {
         Some(straight)
             if straight >= contraction - SHALLOW || net.turn * net.turn * net.half_fibre >= 0.02 =>
@@ -29,15 +31,17 @@ fn usual_start(net: &Net<f64>, contraction: f64) -> Option<Unknowns> {
     }
 }
 
-/// Lobes that form a circle in the middle of the muscle, or cloth that carries the pressure there: straight fibres at that radius r* between two curved
-/// ends. With `g = (B(r*) - B(r))/T`, B = A - u of the cloth, the first integral gives cos(psi) = 1 - g, so the end and its shortening against its
-/// length are
+/// A start for lobes that form a circle in the middle of the muscle, or for cloth that carries the pressure
+/// there. Straight fibres at that radius r* lie between two curved ends. Let `g = (B(r*) - B(r))/T` with
+/// B = A - u and u of the cloth. The first integral gives cos(psi) = 1 - g. The fibre length of an end and
+/// its shortening against that length are
 ///
 /// ```text
 /// S_end = integral dr/sin(psi) from R to r* - z        d = integral tan(psi/2) dr,  tan^2(psi/2) = g/(2 - g)
 /// ```
 ///
-/// and in the middle r* - r grows as cosh(lambda s), lambda^2 = -B''(r*)/T. An angle is neglected. None if the middle isn't like this.
+/// In the middle r* - r grows as cosh(lambda s), lambda^2 = -B''(r*)/T. An angle is neglected. `None` if the
+/// middle isn't of this kind.
 fn open_start(net: &Net<f64>, contraction: f64) -> Option<Unknowns> {
     // A braid carries the pressure even where its cloth is taut.
     let is_open = is_limited(net, 1.0) && (net.turn == 0.0 || net.lobes.is_some());
@@ -55,7 +59,8 @@ fn open_start(net: &Net<f64>, contraction: f64) -> Option<Unknowns> {
     let bend = rim.cloth.map_or(0.0, |cloth| 2.0 * cloth.scale()) - rim.section(limit).area_rr;
     let most = carried(limit);
     let missing = |r: f64| most - carried(r);
-    // r = r* - room exp(-u): the end has a logarithm at r*. The last piece of it is linear. Stiff cloth is taut on a small part of the room.
+    // r = r* - room exp(-u), because the length of the end has a logarithm at r*. Its last piece is linear.
+    // Stiff cloth is taut on a small part of the room.
     let taut = net.cloth.map_or(room, |cloth| (limit - cloth.radius).clamp(1e-12 * room, room));
     let last = 6.0 + (room / taut).ln();
     let panels = if last > 8.0 { 24 } else { 6 };
@@ -87,13 +92,13 @@ fn open_start(net: &Net<f64>, contraction: f64) -> Option<Unknowns> {
     });
     let rate = (bend / tension).sqrt();
     let straight = net.half_fibre * (1.0 + net.compliance * tension) - end;
-    // r* - r at mid-length: 2 z exp(-lambda s) of the z at which the end was left.
+    // r* - r at mid-length is 2 z exp(-lambda s), with the z at which the end was left.
     let ln_gap = (2.0 * room).ln() - last - rate * straight;
     if ln_gap > (0.5 * room).ln() - last {
         return None;
     }
     let ln_curvature = ln_gap + 2.0 * rate.ln();
-    // push = T k at mid-length, over k B; besides an angle that of the cylinder.
+    // push = T k at mid-length, over k B. With an angle the push of the cylinder is added.
     let first = if net.turn == 0.0 {
         ln_tension - room.ln()
     } else {
@@ -102,15 +107,16 @@ fn open_start(net: &Net<f64>, contraction: f64) -> Option<Unknowns> {
     Some(Unknowns { side: 1.0, logs: [first, ln_curvature] })
 }
 
-/// Straight fibres: a circular arc of the stretched fibre length, half-angle K: `sin(K)/K` is the end distance over the fibre length,
-/// and the tension that its curvature asks for stretches the fibres.
+/// Straight fibres form a circular arc of the stretched fibre length and half-angle K. `sin(K)/K` is the end
+/// distance over the fibre length. The tension that the curvature requires stretches the fibres.
 fn arc_start(net: &Net<f64>, contraction: f64) -> Option<Unknowns> {
     let arc = |angle: f64| {
         let straight = net.half_fibre;
         let radius = |length: f64| net.end_radius + length * (1.0 - angle.cos()) / angle;
         let mut strain: f64 = 0.0;
         if net.compliance > 0.0 {
-            // T = A'/k; A' grows with the stretched length: a contraction unless the fibres balloon.
+            // T = A'/k, and A' grows with the stretched length. The iteration converges unless the fibres
+            // balloon.
             for _ in 0..6 {
                 let length = straight * (1.0 + strain);
                 strain = (net.compliance * slope_at(net, radius(length)) * length / angle).min(2.0);
@@ -135,20 +141,22 @@ fn arc_start(net: &Net<f64>, contraction: f64) -> Option<Unknowns> {
     Some(Unknowns::new(net, 1.0, [bulge.ln(), (angle / length).ln()]))
 }
 
-/// A'(r) for a start; where lobes end, that of the last radius with some room.
+/// A'(r) for a start. Where the lobes end, it is that of the last radius with some room.
 fn slope_at(net: &Net<f64>, r: f64) -> f64 {
     let r = net.lobes.map_or(r, |lobes| r.min(0.99 * (lobes.limit() - net.depth)));
     net.acting_at(r).area_r(r)
 }
 
-/// Nets with an angle: the trial meridian `r = r_mid - B (cosh(kappa S) - 1)/(cosh(kappa S_half) - 1)` of the linearised equation about
-/// the mid radius, with the bulge that gives the asked end distance.
+/// Nets with an angle. The trial meridian `r = r_mid - B (cosh(kappa S) - 1)/(cosh(kappa S_half) - 1)` solves
+/// the equation linearised about the mid radius. Its bulge B is the one that gives the end distance asked
+/// for.
 fn net_start(net: &Net<f64>, contraction: f64) -> Option<Unknowns> {
     let straight = straight_contraction(net)?;
     let side = if contraction >= straight { 1.0 } else { -1.0 };
     let asked = (1.0 - contraction) * net.cos_rest * net.half_fibre;
     let half = net.half_fibre;
-    // kappa^2 = 3 q^4 r^2/sigma^2 of the plain net; bladder and strain change it little enough for a start.
+    // kappa^2 = 3 q^4 r^2/sigma^2 holds for the plain net. Bladder and strain change it little enough for a
+    // start.
     let rate = |r: f64| {
         let angle = (net.turn * r).min(0.98);
         3.0_f64.sqrt() * net.turn * angle / (1.0 - angle * angle).sqrt()
@@ -169,8 +177,9 @@ fn net_start(net: &Net<f64>, contraction: f64) -> Option<Unknowns> {
         }) - asked
     };
     let most = if side > 0.0 { (0.999 / net.turn - net.end_radius).min(half) } else { 0.9 * net.end_radius };
-    // The square root of the bulge is nearer to linear in the end distance than the bulge itself is for a shallow one. A waist first
-    // lengthens the muscle, then its slope shortens it again: the root is on the first branch.
+    // For a shallow bulge its square root is nearer to linear in the end distance than the bulge itself. A
+    // waist first lengthens the muscle, then its slope shortens it again. The root on the first branch is
+    // wanted.
     let (mut low, mut high) = (1e-9, most.max(1e-8).sqrt());
     if side < 0.0 {
         let mut probe = low;
@@ -202,13 +211,13 @@ fn net_start(net: &Net<f64>, contraction: f64) -> Option<Unknowns> {
     Some(Unknowns::new(net, side, [bulge.ln(), second]))
 }
 
-/// Beside a straight meridian, to first order in the bulge B with all that the net carries:
+/// A start beside a straight meridian, to first order in the bulge B, with everything that the net carries:
 ///
 /// ```text
 /// r - r_end = B (1 - (cosh(kappa s) - 1)/(cosh(kappa s_end) - 1))        kappa^2 = sigma^2 (h_r - A'')/N, of either sign (cos for cosh)
 /// ```
 ///
-/// with inextensible fibres; those that stretch follow nearly so.
+/// The fibres are inextensible here. Fibres that stretch follow nearly the same law.
 pub(crate) fn linear_start(net: &Net<f64>, contraction: f64) -> Option<Unknowns> {
     let straight = straight_contraction(net)?;
     let (end, half) = (net.acting_at(net.end_radius), net.half_fibre);
@@ -238,7 +247,7 @@ pub(crate) fn linear_start(net: &Net<f64>, contraction: f64) -> Option<Unknowns>
     Some(Unknowns::new(net, side, [bulge.ln(), second]))
 }
 
-/// cosh(x) - 1, with x kept below where it would overflow (for ratios at the same x).
+/// cosh(x) - 1. Large x are kept below where cosh would overflow (for ratios at the same x).
 fn shape(x: f64) -> f64 {
     let s = (0.5 * x.min(600.0)).sinh();
     2.0 * s * s
@@ -250,10 +259,12 @@ fn ln_shape(x: f64) -> f64 {
     if x > 30.0 { x - 2.0_f64.ln() } else { shape(x).ln() }
 }
 
-/// The contraction towards which a braid of inextensible fibres can be drawn out, where the tension has no limit.
+/// The limit of the contraction to which a braid of inextensible fibres can be drawn out. The tension has no
+/// limit there.
 ///
-/// The pressure then no longer counts and the end distance is the largest one, `integral of sqrt(1 - q^2 r^2 - r'^2) dS`. With the radius
-/// `r_m cosh(w)` its first integral gives, from the middle to the fitting,
+/// The pressure no longer counts in this limit, and the end distance is the largest one,
+/// `integral of sqrt(1 - q^2 r^2 - r'^2) dS`. With the radius `r_m cosh(w)` the first integral of this
+/// functional gives, from the middle to the fitting,
 ///
 /// ```text
 /// S = sqrt(1 - q^2 r_m^2)/q  integral dw/sqrt(1 - q^2 r_m^2 cosh^2 w)        x = 1/q  integral sqrt(1 - q^2 r_m^2 cosh^2 w) dw
@@ -262,7 +273,7 @@ pub(crate) fn longest(net: &Net<f64>) -> f64 {
     drawn_out(net).1
 }
 
-/// The radius at mid-length there, and that contraction.
+/// The radius at mid-length in the drawn-out limit, and the contraction there.
 pub(crate) fn drawn_out(net: &Net<f64>) -> (f64, f64) {
     let q = net.turn.abs();
     let drawn = |ln_mid: f64| {

@@ -5,19 +5,21 @@ use bulge_numerics::{Dual, Real};
 use crate::meridian::Middle;
 use crate::net::Net;
 
-/// Which side of the fitting's radius the middle lies on, and the two logarithms.
+/// The side of the fitting's radius on which the middle lies, and the two logarithms.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Unknowns {
     /// +1: bulge, -1: waist.
     pub(crate) side: f64,
-    /// ln|B|, ln|k|; where lobes or cloth limit the radius ln(push/(k B)), ln|k|, and with an angle besides ln(push/B), ln|k|.
+    /// ln|B| and ln|k|. Where lobes or cloth limit the radius they are ln(push/(k B)) and ln|k|, and with an
+    /// angle besides ln(push/B) and ln|k|.
     pub(crate) logs: [f64; 2],
 }
 
-/// ln|k| below which the middle is a cylinder up to rounding: the integration starts where it is this, see [`Middle::beyond`].
+/// ln|k| below which the middle is a cylinder up to rounding. The integration then starts at this value, see
+/// [`Middle::beyond`].
 pub(crate) const FLAT: f64 = -40.0;
 
-/// Part of the way to the radius of the lobes' circle that a start may cover.
+/// Largest part of the way to the radius of the lobes' circle that a start may cover.
 const OPEN: f64 = 0.98;
 
 impl Unknowns {
@@ -37,12 +39,13 @@ impl Unknowns {
         Self { side, logs: [first, second] }
     }
 
-    /// The middle of the meridian, with the unknowns as variables number 0 and 1 if `D` carries derivatives; `None` if the fibres can't be
-    /// there with a positive tension.
+    /// The middle of the meridian. If `D` carries derivatives, the unknowns are variables number 0 and 1.
+    /// `None` if the fibres can't be there with a positive tension.
     ///
-    /// The curvature of a waist is bounded: towards -q^2 r/sigma^2 the tension grows without limit. There the second unknown is that of the
-    /// tension, T = T_c + T_p exp(..), with T_c the tension of a cylinder of this radius and T_p the same without rubber; for a shallow waist it
-    /// is ln|k| up to a constant.
+    /// The curvature of a waist is bounded: towards -q^2 r/sigma^2 the tension grows without limit. The
+    /// second unknown of a waist therefore stands for the tension, T = T_c + T_p exp(..), with T_c the
+    /// tension of a cylinder of this radius and T_p the same without rubber. For a shallow waist it is ln|k|
+    /// up to a constant.
     pub(crate) fn middle<D: Real>(
         &self,
         net: &Net<D>,
@@ -58,7 +61,7 @@ impl Unknowns {
         self.curved(net, logs)
     }
 
-    /// The same where the curvature is one that numbers can have.
+    /// The same for a curvature that numbers can represent.
     fn curved<D: Real>(&self, net: &Net<D>, logs: [D; 2]) -> Option<Middle<D>> {
         let (second, straight) = (logs[1].exp(), D::from(0.0));
         if is_limited(net, self.side) {
@@ -90,12 +93,13 @@ impl Unknowns {
             net.tension_at_equator(r, push, D::from(0.0))?
         };
         let at_cylinder = net.local(r, cylinder);
-        // The tension of a cylinder without rubber, which may carry more than all of the pressure.
+        // The tension of a cylinder without rubber. (The rubber may carry more than all of the pressure.)
         let unit = if net.has_wall() { push / at_cylinder.hoop_t } else { cylinder };
         let excess = unit * second;
         let tension = cylinder + excess;
         let local = net.local(r, tension);
-        // k = (A' - h)/N = -(h(T) - h(T_c))/N; the difference is linear for inextensible fibres, and to first order for a small excess.
+        // k = (A' - h)/N = -(h(T) - h(T_c))/N. The difference is linear for inextensible fibres, and to first
+        // order for a small excess.
         let linear = net.compliance.value() == 0.0 || second.value() < 1e-6;
         let hoop = if linear { at_cylinder.hoop_t * excess } else { local.hoop - at_cylinder.hoop };
         let curvature = -(hoop / local.force);
@@ -112,7 +116,8 @@ impl Unknowns {
         self.is_slack_within(net, 0.0)
     }
 
-    /// Whether fibres are slack somewhere, or as good as: they carry less than a part of the meridional force.
+    /// Whether fibres are slack somewhere, or as good as slack: they carry less than a `part` of the
+    /// meridional force.
     pub(crate) fn is_slack_within(&self, net: &Net<f64>, part: f64) -> bool {
         let slack = |middle: Middle<f64>| net.is_slack(net.end_radius + middle.bulge, middle.tension, part);
         net.has_wall() && self.middle(net, |value, _| value).is_some_and(slack)
@@ -123,7 +128,7 @@ impl Unknowns {
     }
 }
 
-/// Whether lobes or cloth limit the radius of a bulge: the first unknown is then that of the tension.
+/// Whether lobes or cloth limit the radius of a bulge. The first unknown then stands for the tension.
 pub(crate) fn is_limited<D: Real>(net: &Net<D>, side: f64) -> bool {
     side > 0.0 && (net.lobes.is_some() || net.cloth.is_some())
 }

@@ -1,7 +1,9 @@
-//! The equilibrium with a volume: on the way up to the largest one, beyond it where it falls, or drawn out.
+//! The equilibrium with a given volume: on the way up to the largest volume, beyond it where the volume
+//! falls, or drawn out.
 //!
-//! `F = -p dV/dl` where nothing stores energy: the volume rises with the contraction as long as the muscle pulls. Rubber and fibres that stretch give energy
-//! back, and it may fall before the range ends; and a short muscle of elastic fibres that is drawn out far holds more again.
+//! `F = -p dV/dl` holds where nothing stores energy, so the volume rises with the contraction as long as the
+//! muscle pulls. Rubber and fibres that stretch give energy back, and the volume may fall before the range
+//! ends. A short muscle of elastic fibres that is drawn out far holds more again.
 
 use crate::FibreError;
 use crate::problem::Problem;
@@ -9,14 +11,15 @@ use crate::search::{Goal, Seen};
 use crate::shape::Method;
 use crate::solve::Found;
 
-/// Part of the largest volume within which it can't be told how far from there it belongs.
+/// Part of the largest volume. Within it the distance from the contraction of the largest volume can't be
+/// told.
 const FLAT: f64 = 1e-13;
-/// Part of the volume at the end of the range that rounding of the contraction there makes.
+/// Part of the volume at the end of the range that rounding of the contraction there causes.
 const END: f64 = 1e-9;
-/// Steps of the contraction back from where fibres are slack.
+/// Steps of the contraction back from the point at which fibres become slack.
 const SHORT_OF: [f64; 3] = [0.0, 1e-9, 1e-6];
 
-/// The equilibrium with the largest volume of some, and why there is no larger one.
+/// The equilibrium with the largest volume among several, and the reason why there is no larger one.
 #[derive(Clone, Copy)]
 struct Most {
     found: Found,
@@ -61,7 +64,7 @@ impl Problem {
                 }
             });
         }
-        // Where it is largest the volume is flat: within rounding of the largest one it is that.
+        // The volume is flat at its maximum. A volume within rounding of the largest one counts as that.
         if volume > most.volume() * (1.0 - FLAT) {
             return Ok(most.found);
         }
@@ -84,24 +87,25 @@ impl Problem {
         })
     }
 
-    /// From a start in the range to a contraction.
+    /// The way from a start in the range to a contraction.
     fn way_to(&self, contraction: f64) -> [f64; 2] {
         [self.contraction_start().min(contraction - 0.05 * contraction.abs()), contraction]
     }
 
-    /// The equilibrium with a volume on a way on which that rises.
+    /// The equilibrium with a volume, on a way on which the volume rises.
     fn rising(&self, method: Method, volume: f64, way: [f64; 2], seen: &mut Seen) -> Option<Found> {
         let found = self.root(method, way, seen, |found| volume - found.response.volume_m3);
         found.ok().filter(|found| self.pulls(&found.response))
     }
 
-    /// The same where it falls.
+    /// The same where the volume falls.
     fn falling(&self, method: Method, volume: f64, way: [f64; 2], seen: &mut Seen) -> Option<Found> {
         let found = self.root(method, way, seen, |found| found.response.volume_m3 - volume);
         found.ok().filter(|found| self.pulls(&found.response))
     }
 
-    /// The equilibrium of elastic fibres that are drawn out to more than the largest volume, that at a contraction `peak`.
+    /// The equilibrium of elastic fibres that are drawn out to more than the largest volume. The latter is at
+    /// the contraction `peak`.
     fn drawn_out(&self, method: Method, volume: f64, peak: f64, seen: &mut Seen) -> Option<Found> {
         if self.net.compliance == 0.0 {
             return None;
@@ -110,7 +114,8 @@ impl Problem {
         found.or_else(|| self.on_a_path(method, Goal::Volume(volume), true, seen))
     }
 
-    /// The same little above the least volume, beyond which they hold more again: the steps of a search pass over it.
+    /// The same for a volume just above the least one, beyond which the muscle holds more again. The steps of
+    /// a search pass over it.
     fn beside_least(&self, method: Method, volume: f64, peak: f64, seen: &mut Seen) -> Option<Found> {
         if self.net.compliance == 0.0 {
             return None;
@@ -127,7 +132,7 @@ impl Problem {
         match self.at_limit(method, &mut seen) {
             Ok(found) => Ok(Most { found, why: "where its force vanishes" }),
             Err(FibreError::Slack { contraction, limit: Some(limit) }) => {
-                // Just before it, where rounding makes them slack.
+                // Just short of the limit, because rounding may make the fibres slack at it.
                 let places = SHORT_OF.map(|step| limit - step);
                 let near = places.iter().find_map(|place| self.at(method, *place, seen.last).ok());
                 let found =
@@ -147,7 +152,7 @@ impl Problem {
         }
         let mut seen = Seen::NOTHING;
         let peak = self.root(method, self.way_to(end.contraction()), &mut seen, rising);
-        // It falls from where the fibres can't be drawn out farther.
+        // The volume falls from the point where the fibres can't be drawn out farther.
         match peak.or_else(|_| self.at(method, seen.fullest, None)) {
             Ok(found) if found.response.volume_m3 > end.volume() => {
                 Most { found, why: "and less if it contracts more" }

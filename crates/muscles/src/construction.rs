@@ -5,11 +5,11 @@ use crate::quantity::{Angle, Length};
 use crate::units::Quantity;
 use serde::Serialize;
 
-/// The two families of muscle. Both balance by the same equation; what differs is the path of the fibres.
+/// The two families of muscle. Both balance by the same equation; they differ in the path of the fibres.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Construction {
-    /// Pleated muscle (PPAM): every fibre lies in a meridian plane, the cloth between unfolds.
+    /// Pleated muscle (PPAM): every fibre lies in a meridian plane, and the cloth between the fibres unfolds.
     Pleated(Pleated),
     /// Braided muscle (McKibben): two families of fibres cross at a braid angle.
     Braided(Braided),
@@ -94,25 +94,26 @@ impl Pleated {
         })
     }
 
-    /// The same with the radius that the fibres really have at the fittings, where it is other than stated.
+    /// The same muscle with the actual radius of the fibres at the fittings, if it differs from the stated
+    /// one.
     ///
     /// # Errors
-    /// If it is not finite and > 0.
+    /// If the radius is not finite and > 0.
     pub fn with_end_radius(self, end_radius: Length) -> Result<Self, MuscleError> {
         check::positive("effects.end-radius.radius", end_radius)?;
         Ok(Self { end_radius: Some(end_radius), ..self })
     }
 
-    /// The same with pleats that stand this far outside the fibres under pressure.
+    /// The same muscle with pleats that stand this far outside the fibres under pressure.
     ///
     /// # Errors
-    /// If it is negative or not finite.
+    /// If the depth is negative or not finite.
     pub fn with_pleat_depth(self, pleat_depth: Length) -> Result<Self, MuscleError> {
         check::not_negative("effects.pleat-depth.depth", pleat_depth)?;
         Ok(Self { pleat_depth, ..self })
     }
 
-    /// The same with fibres that leave the end fittings at this angle to the meridian: a slight helix.
+    /// The same muscle with fibres that leave the end fittings at this angle to the meridian: a slight helix.
     ///
     /// # Errors
     /// If the angle is not between -90 and 90 degrees, both excluded.
@@ -125,10 +126,12 @@ impl Pleated {
         }
     }
 
-    /// The same with cloth of this circumference, inextensible around the muscle, that bulges in a lobe between every two fibres.
+    /// The same muscle with cloth of this circumference, inextensible around the muscle, that bulges in a
+    /// lobe between every two fibres.
     ///
     /// # Errors
-    /// If it is not finite and > 0, or the fibres are continuous: then there is nothing between them.
+    /// If the circumference is not finite and > 0, or the fibres are continuous: there is nothing between
+    /// those.
     pub fn with_cloth_circumference(self, circumference: Length) -> Result<Self, MuscleError> {
         check::positive("effects.lobes.circumference", circumference)?;
         match self.fibres {
@@ -137,13 +140,14 @@ impl Pleated {
         }
     }
 
-    /// Fibre radius R at the end fittings, as it acts: the separate end radius if there is one, else as stated.
+    /// Fibre radius R that acts at the end fittings: the separate end radius if there is one, else the stated
+    /// radius.
     #[must_use]
     pub fn radius(&self) -> Length {
         self.end_radius.unwrap_or(self.radius)
     }
 
-    /// The radius as the drawing states it, whatever the end radius is.
+    /// The radius stated in the drawing, whatever the end radius is.
     #[must_use]
     pub fn stated_radius(&self) -> Length {
         self.radius
@@ -155,7 +159,7 @@ impl Pleated {
         self.fibres
     }
 
-    /// How far the pleats stand outside the fibres under pressure; 0 if not stated.
+    /// Distance of the pleats outside the fibres under pressure; 0 if not stated.
     #[must_use]
     pub fn pleat_depth(&self) -> Length {
         self.pleat_depth
@@ -167,14 +171,14 @@ impl Pleated {
         self.misalignment
     }
 
-    /// Circumference of the cloth that bulges in lobes between the fibres, if it does.
+    /// Circumference of the cloth that bulges in lobes between the fibres, if there are lobes.
     #[must_use]
     pub fn cloth_circumference(&self) -> Option<Length> {
         self.cloth_circumference
     }
 }
 
-/// What holds the braid at its ends.
+/// How the braid is held at its ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Ends {
@@ -207,7 +211,8 @@ pub struct Braided {
 }
 
 impl Braided {
-    /// A braid of radius r0 and angle alpha0 between fibre and axis at rest, clamped to fittings of the same radius.
+    /// A braid of radius r0 and angle alpha0 between fibre and axis at rest, clamped to fittings of the same
+    /// radius.
     ///
     /// # Errors
     /// If the radius is not finite and > 0, or the angle is not between 0 and 90 degrees, both excluded.
@@ -220,34 +225,34 @@ impl Braided {
         Ok(Self { radius, braid_angle, fitting_radius: None, fibres: None, ends: Ends::Clamped, wall: None })
     }
 
-    /// The same, clamped to fittings of another radius.
+    /// The same braid, clamped to fittings of another radius.
     ///
     /// # Errors
-    /// If it is not finite and > 0.
+    /// If the radius is not finite and > 0.
     pub fn with_fitting_radius(self, fitting_radius: Length) -> Result<Self, MuscleError> {
         check::positive("effects.end-radius.radius", fitting_radius)?;
         Ok(Self { fitting_radius: Some(fitting_radius), ..self })
     }
 
-    /// The same with a known number of fibres, both families together.
+    /// The same braid with a known number of fibres, both families together.
     ///
     /// # Errors
-    /// If there are fewer than 3.
+    /// If there are fewer than 3 fibres.
     pub fn with_fibres(self, fibres: u32) -> Result<Self, MuscleError> {
         check::count(fibres)?;
         Ok(Self { fibres: Some(fibres), ..self })
     }
 
-    /// The same with other ends.
+    /// The same braid with other ends.
     #[must_use]
     pub fn with_ends(self, ends: Ends) -> Self {
         Self { ends, ..self }
     }
 
-    /// The same with a wall of known thickness.
+    /// The same braid with a wall of known thickness.
     ///
     /// # Errors
-    /// If it is not finite and > 0.
+    /// If the thickness is not finite and > 0.
     pub fn with_wall(self, wall: Length) -> Result<Self, MuscleError> {
         check::positive("wall", wall)?;
         Ok(Self { wall: Some(wall), ..self })
@@ -277,7 +282,7 @@ impl Braided {
         self.fibres
     }
 
-    /// What holds the ends.
+    /// How the ends are held.
     #[must_use]
     pub fn ends(&self) -> Ends {
         self.ends

@@ -28,7 +28,7 @@ pub fn significant(value: f64, digits: i32) -> String {
     #[expect(clippy::cast_possible_truncation, reason = "an exponent between -4 and 9")]
     let decimals = usize::try_from(digits - 1 - exponent as i32).unwrap_or(0);
     let rounded = format!("{value:.decimals$}");
-    // "-0.00" says nothing that "0.00" doesn't.
+    // "-0.00" says no more than "0.00".
     if rounded.trim_start_matches(['-', '0', '.']).is_empty() {
         return rounded.trim_start_matches('-').to_owned();
     }

@@ -1,13 +1,15 @@
-//! The physical dimension of any quantity: powers of metre, kilogram, second and kelvin (angles and ratios have none).
+//! The physical dimension of any quantity: powers of metre, kilogram, second and kelvin (angles and ratios
+//! have none).
 
 use serde::{Serialize, Serializer};
 use std::fmt;
 
-/// Powers of m, kg, s and K, kept in halves so that a square root stays exact: `sqrt(Pa)` has a dimension too.
+/// Powers of m, kg, s and K, kept in halves so that a square root stays exact: `sqrt(Pa)` has a dimension
+/// too.
 ///
-/// Exponents reach from -64 to 64; an operation that leaves this range gives `None`. Angles, ratios and decades have
-/// no dimension ([`Dimension::NONE`]). `Display` writes the SI unit, in newtons, pascals or joules where that is
-/// shorter, in a form that [`crate::units::unit`] reads back.
+/// Exponents reach from -64 to 64; an operation that leaves this range gives `None`. Angles, ratios and
+/// decades have no dimension ([`Dimension::NONE`]). `Display` writes the SI unit, in newtons, pascals or
+/// joules where that is shorter, in a form that [`crate::units::unit`] reads back.
 ///
 /// ```
 /// use bulge_muscles::Dimension;
@@ -25,7 +27,7 @@ pub struct Dimension {
 /// The largest magnitude of an exponent, in halves.
 const LIMIT: i16 = 128;
 
-/// Derived units that a dimension is shown in; each has kg to the power of one.
+/// Derived units in which a dimension is shown; each has kg to the power of one.
 const DERIVED: [(&str, Dimension); 3] =
     [("N", Dimension::FORCE), ("Pa", Dimension::PRESSURE), ("J", Dimension::ENERGY)];
 
@@ -118,19 +120,19 @@ impl Dimension {
         Some(Self { halves })
     }
 
-    /// Dimension of a square root; `None` if an exponent is an odd number of halves already.
+    /// Dimension of a square root; `None` if an exponent is already an odd number of halves.
     #[must_use]
     pub fn root(self) -> Option<Self> {
         self.power(0.5)
     }
 
-    /// What it is in words, such as "a pressure", where it has a common name.
+    /// Its common name in words, such as "a pressure", if it has one.
     #[must_use]
     pub fn name(self) -> Option<&'static str> {
         Self::NAMES.iter().find(|(_, dimension)| *dimension == self).map(|(name, _)| *name)
     }
 
-    /// What it is for a message: "a pressure (Pa)", or "a quantity in N s".
+    /// Its description for a message: "a pressure (Pa)", or "a quantity in N s".
     #[must_use]
     pub fn describe(self) -> String {
         match self.name() {
@@ -158,8 +160,8 @@ impl Dimension {
         [(symbol, power), ("kg", kilogram), ("m", metre), ("s", second), ("K", kelvin)]
     }
 
-    /// The shortest way of writing it, with the smallest sum of exponents: in newtons before the others, in base units
-    /// only where that is shorter by more than one power (a damping is N s/m, not kg/s).
+    /// The shortest way of writing it, with the smallest sum of exponents. Newtons come before the others.
+    /// Base units are used only if they are shorter by more than one power (a damping is N s/m, not kg/s).
     fn shortest(self) -> [(&'static str, i16); 5] {
         let length = |factors: &[(&str, i16); 5]| factors.iter().map(|(_, half)| half.abs()).sum::<i16>();
         let [_, power, second, _] = self.halves;

@@ -1,23 +1,26 @@
-//! The doubt of a geometry that states no widths: how far catalogues, rulers and protractors usually are from a muscle.
+//! The uncertainty of a geometry that states no widths: how far catalogues, rulers and protractors usually
+//! are from a muscle.
 //!
-//! A number of which the file states no width is known up to the one that such muscles have; `+- 0` says that it is exact.
+//! A number without a stated width is known up to the usual width of such muscles. `+- 0` says that it is
+//! exact.
 
 use crate::muscle::Muscle;
 use crate::parameter::Parameter;
 
-/// A usual width: of the number itself, or in SI.
+/// A usual width, relative to the number or in SI.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum UsualWidth {
-    /// A part of the number.
+    /// A fraction of the number.
     Relative(f64),
     /// In SI units.
     Absolute(f64),
 }
 
-/// Widths (one standard deviation) of numbers of which a muscle file states none.
+/// Widths (one standard deviation) of numbers for which a muscle file states none.
 ///
 /// - Length, 0.5 mm: a ruler between two fittings whose edges are rounded.
-/// - Radius, 3 %: a hose is named by its bore, while its fibres lie in the wall (a bore of 19.5 mm and an outside of 23.5 mm are "20 mm").
+/// - Radius, 3 %: a hose is named by its bore, while its fibres lie in the wall (a bore of 19.5 mm and an
+///   outside of 23.5 mm are "20 mm").
 /// - Braid angle, 2 deg: read off a photograph or a protractor.
 /// - Wall, 15 %: rubber tubes are drawn to a tolerance of a tenth, and a calliper presses them in.
 pub const USUAL_WIDTHS: [(Parameter, UsualWidth); 4] = [
@@ -27,13 +30,15 @@ pub const USUAL_WIDTHS: [(Parameter, UsualWidth); 4] = [
     (Parameter::Wall, UsualWidth::Relative(0.15)),
 ];
 
-/// Thickness of the wall of a braid that states none, over its radius: tubes of latex and silicone of 0.8 to 1.5 mm in braids of 8 to 12 mm.
+/// Thickness of the wall over the radius of a braid that states no wall: tubes of latex and silicone of 0.8
+/// to 1.5 mm in braids of 8 to 12 mm.
 const USUAL_WALL: f64 = 0.1;
 
 impl Muscle {
-    /// The same with usual widths where none is stated, and those that were added, in SI.
+    /// The same muscle with usual widths where none is stated, and the added widths in SI.
     ///
-    /// A radius at the fittings that the muscle has beside the stated one, if it is pleated, was found on it and is no catalogue's: it has no usual width.
+    /// A pleated muscle may have a radius at the fittings beside the stated one. That radius was found on the
+    /// muscle and is no catalogue's, so it has no usual width.
     ///
     /// ```
     /// use bulge_muscles::{Parameter, from_toml};
@@ -64,8 +69,8 @@ impl Muscle {
         (self, added)
     }
 
-    /// The same with a wall of a tenth of the radius if it is a braid that states none, and that thickness \[m\]: so that rubber can be looked for, of which a force
-    /// shows modulus times thickness only.
+    /// The same muscle with a wall of a tenth of the radius if it is a braid that states none, and that
+    /// thickness \[m\]. Rubber can then be looked for: a force shows only its modulus times its thickness.
     #[must_use]
     pub fn with_usual_wall(self) -> (Self, Option<f64>) {
         if self.is_pleated() || self.wall().is_some() {

@@ -4,7 +4,7 @@ use crate::construction::Kind;
 use crate::parameter::Parameter;
 use thiserror::Error;
 
-/// Why values do not make a muscle. Values are in SI; `key` is where the value stands in a muscle file.
+/// Why values do not make a muscle. Values are in SI; `key` is the place of the value in a muscle file.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum MuscleError {
     /// A value that must be finite and > 0.
@@ -39,7 +39,7 @@ pub enum MuscleError {
         /// The value.
         value: f64,
     },
-    /// A braid angle that is no braid.
+    /// A braid angle that makes no braid.
     #[error("`braid_angle` is {degrees} deg: it must lie between 0 deg and 90 deg, both excluded")]
     BraidAngle {
         /// The angle in degrees.
@@ -64,7 +64,7 @@ pub enum MuscleError {
     /// A muscle without a name.
     #[error("`name` is empty: every table and report shows it")]
     NoName,
-    /// Elastic fibres, but not how many.
+    /// Elastic fibres of unknown number.
     #[error("`fibre` gives the stiffness of one fibre, but `fibres` does not say how many the braid has")]
     NoFibreCount,
     /// A bladder without thickness.
@@ -83,12 +83,12 @@ pub enum MuscleError {
         /// Radius of the braid, or of its fittings \[m\].
         radius_m: f64,
     },
-    /// Lobes between fibres that have no distance.
+    /// Lobes between continuous fibres, which have no distance.
     #[error(
         "lobes stand between fibres that can be counted, such as `fibres = 40`: `continuous` fibres have none"
     )]
     LobesOfContinuous,
-    /// One part of an unfolding limit without the other.
+    /// One part of a limit to the unfolding without the other.
     #[error("`{}` alone does not limit the unfolding: hoop stiffness and unfolded radius are needed together", parameter.name())]
     HalfUnfolding {
         /// The one given.
@@ -125,7 +125,7 @@ pub enum MuscleError {
     /// A bladder in a pleated muscle.
     #[error("a pleated muscle has no bladder: `bladder-elasticity` belongs to a braided muscle")]
     BladderInPleated,
-    /// A width for something that has none.
+    /// A width for a parameter that can't have one.
     #[error("`{}` has no stated value that could have a width", parameter.name())]
     NoWidth {
         /// The parameter.
@@ -161,7 +161,7 @@ pub enum MuscleError {
 }
 
 impl MuscleError {
-    /// Where in a muscle file the cause stands, as a dotted path; `name` and `fibre` are such paths too.
+    /// Place of the cause in a muscle file, as a dotted path. `name` and `fibre` are such paths, too.
     #[must_use]
     pub fn key(&self) -> &'static str {
         match self {
@@ -187,7 +187,7 @@ impl MuscleError {
         }
     }
 
-    /// What would be in range, in words, where one number is out of it.
+    /// The allowed range in words, if one number is out of it.
     #[must_use]
     pub(crate) fn range(&self) -> Option<&'static str> {
         match self {
@@ -205,7 +205,7 @@ pub mod check {
     use super::MuscleError;
     use crate::units::Quantity;
 
-    /// Refuses what is not finite and > 0.
+    /// Refuses a quantity that is not finite and > 0.
     ///
     /// # Errors
     /// [`MuscleError::NotPositive`].
@@ -215,7 +215,7 @@ pub mod check {
         if holds { Ok(()) } else { Err(MuscleError::NotPositive { key, value, unit: si_unit::<Q>() }) }
     }
 
-    /// Refuses what is not finite and >= 0.
+    /// Refuses a quantity that is not finite and >= 0.
     ///
     /// # Errors
     /// [`MuscleError::Negative`].
@@ -233,7 +233,7 @@ pub mod check {
         if count >= 3 { Ok(()) } else { Err(MuscleError::TooFewFibres { count }) }
     }
 
-    /// The SI unit stands first in every list.
+    /// The SI unit is the first in every list.
     fn si_unit<Q: Quantity>() -> &'static str {
         Q::UNITS.first().map_or("", |unit| unit.0)
     }

@@ -1,6 +1,7 @@
-//! Whose fault an error is: what a caller does about it.
+//! Whose fault an error is, so that a caller knows what to do about it.
 
-/// What kind of answer an error is. Errors of all crates that compute say it of themselves, so that an exit status and an exception mean the same.
+/// The kind of answer that an error is. Errors of all crates that compute state it, so that an exit status
+/// and an exception mean the same.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Fault {
     /// The input is wrong: write something else.

@@ -20,13 +20,14 @@ const KIND: FileKind = FileKind { name: "muscle", file: "muscle.toml", line: "le
 /// Reads a muscle file.
 ///
 /// # Errors
-/// If the file cannot be read, is larger than 1 MiB, is not UTF-8 or is not a valid muscle. The message is complete.
+/// If the file cannot be read, is larger than 1 MiB, is not UTF-8 or is not a valid muscle. The message is
+/// complete.
 pub fn read(path: impl AsRef<Path>) -> Result<Muscle, FileError> {
     let path = path.as_ref();
     from_toml(&KIND.read(path)?, &path.display().to_string())
 }
 
-/// Reads a muscle from TOML text; `origin` is what messages call the text, usually a file name.
+/// Reads a muscle from TOML text. `origin` is the name of the text in messages, usually a file name.
 ///
 /// ```
 /// let error = bulge_muscles::from_toml("kind = \"pleated\"\nlength = 110\n", "muscle.toml").unwrap_err();
@@ -53,7 +54,7 @@ struct Reader<'a> {
     widths: Vec<(Parameter, f64)>,
 }
 
-/// A table within another, called by its path; its keys are checked.
+/// A table within another, named by its path. Its keys are checked.
 fn table<'a>(parent: &Settings<'a>, within: &str, name: &str) -> Result<Option<Settings<'a>>, FileError> {
     let path = keys::join(within, name);
     let table = parent.table(name, format!("`[{path}]`"), keys::of(&path))?;
@@ -90,7 +91,7 @@ impl<'a> Reader<'a> {
         if let Some(effects) = &effects {
             check_owner(effects, "effects", kind)?;
         }
-        // Wrong values come before missing ones: a file is usually right but for one slip.
+        // Wrong values come before missing ones: a file is usually right except for one slip.
         let name = self.root.text("name")?;
         let length = self.of_muscle::<Length>(Parameter::Length)?;
         let construction = match kind {
@@ -152,7 +153,7 @@ impl<'a> Reader<'a> {
         table(&self.root, "", name)
     }
 
-    /// A quantity, whose width is noted as that of a parameter.
+    /// A quantity. Its width is recorded as that of a parameter.
     fn wide<Q: Quantity>(
         &mut self,
         table: &Settings<'_>,
@@ -284,7 +285,7 @@ impl<'a> Reader<'a> {
             let c01 = self.wide(&table, "c01", Parameter::C01)?.unwrap_or(Pressure::pa(0.0));
             let c10 = self.wide(&table, "c10", Parameter::C10)?;
             let c10 = needed(&table, "c10", c10)?;
-            // Beside a wall of the muscle there is no second one that could have a width.
+            // If the muscle has a wall of its own, there is no second one that could have a width.
             let stated = match own {
                 Some(_) => table.parsed("wall", units::parse::<Length>)?,
                 None => self.wide(&table, "wall", Parameter::Wall)?,

@@ -1,4 +1,5 @@
-//! What is wrong with a muscle file: one complete message, with the line, a caret under the place, and what to write.
+//! What is wrong with a muscle file: one complete message, with the line, a caret under the place, and what
+//! to write.
 
 use std::fmt;
 use std::ops::Range;
@@ -21,7 +22,7 @@ pub struct FileError {
     instead: String,
 }
 
-/// Where in the file, and the line as it is shown.
+/// The place in the file, and the line as it is shown.
 #[derive(Debug, Clone, PartialEq, Eq)]
 struct Place {
     line: usize,
@@ -36,13 +37,13 @@ const BEFORE: usize = 60;
 const SHOWN: usize = 110;
 
 impl FileError {
-    /// About the file as a whole: what is wrong, and what to do instead.
+    /// An error in the file as a whole: what is wrong, and what to do instead.
     #[must_use]
     pub fn whole(origin: &str, what: impl Into<String>, instead: impl Into<String>) -> Self {
         Self { origin: origin.to_owned(), place: None, what: what.into(), instead: instead.into() }
     }
 
-    /// About a span of bytes in the text; any span has a place.
+    /// An error at a span of bytes in the text; any span has a place.
     #[must_use]
     pub fn at(
         origin: &str,
@@ -61,7 +62,7 @@ impl FileError {
         &self.origin
     }
 
-    /// The line, counted from 1; none if the file could not be read.
+    /// The line, counted from 1; `None` if the file could not be read.
     #[must_use]
     pub fn line(&self) -> Option<usize> {
         self.place.as_ref().map(|place| place.line)

@@ -1,4 +1,4 @@
-//! What a settings file is called, and its text: small, and UTF-8.
+//! The names of settings files, and their text, which must be small and UTF-8.
 
 use crate::file_error::FileError;
 use crate::settings::nearest;
@@ -9,14 +9,14 @@ use std::path::Path;
 /// Most bytes of a settings file.
 pub(crate) const MOST_BYTES: usize = 1 << 20;
 
-/// What messages call a kind of settings file.
+/// The names of a kind of settings file in messages.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct FileKind {
-    /// What the file is, such as "protocol".
+    /// The kind of file, such as "protocol".
     pub name: &'static str,
-    /// What such a file may be called, such as "protocol.toml".
+    /// A typical file name, such as "protocol.toml".
     pub file: &'static str,
-    /// A line of it with a unit, such as `period = "50 s"`.
+    /// A line of such a file with a unit, such as `period = "50 s"`.
     pub line: &'static str,
 }
 
@@ -45,13 +45,13 @@ impl FileKind {
         let mut bytes = Vec::new();
         let file = File::open(path).map_err(unreadable)?;
         file.take(MOST_BYTES as u64 + 1).read_to_end(&mut bytes).map_err(unreadable)?;
-        // Before the encoding: what is cut off may end within a character.
+        // The size is checked before the encoding: a file that is cut off may end within a character.
         if bytes.len() > MOST_BYTES {
             return Err(self.too_large(&origin));
         }
         String::from_utf8(bytes).map_err(|error| {
             let at = error.utf8_error().valid_up_to();
-            // Up to there the bytes are valid, so the replacement character stands exactly there.
+            // The bytes are valid up to there, so the replacement character stands exactly there.
             let text = String::from_utf8_lossy(error.as_bytes());
             let what = format!("byte {at} is not UTF-8 text");
             let instead = "save the file as plain text with the encoding UTF-8";
@@ -67,7 +67,7 @@ impl FileKind {
     }
 }
 
-/// The TOML file beside the missing one whose name is nearest.
+/// The TOML file in the same folder whose name is nearest to the missing one.
 fn similar_file(path: &Path) -> String {
     let directory = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let listed = std::fs::read_dir(directory).into_iter().flatten().flatten();

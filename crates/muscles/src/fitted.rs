@@ -1,4 +1,4 @@
-//! What a fit knows of a muscle's numbers: how sure they are, and how they go together.
+//! The results of a fit for a muscle's numbers: their uncertainties and their correlations.
 //!
 //! ```toml
 //! [fitted]
@@ -30,12 +30,12 @@ const NUMBER: Keys = &[
     ("correlations", "correlations = [0.12, -0.3]"),
 ];
 
-/// What a fit knows of numbers of a muscle. Other commands take the numbers as known.
+/// The results of a fit for numbers of a muscle. Other commands take the numbers as known.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct FittedNumbers {
-    /// RMS error of the rows that were fitted to \[N\].
+    /// RMS error of the rows to which the muscle was fitted \[N\].
     pub error_n: f64,
-    /// Rows that count as independent.
+    /// Number of these rows that count as independent.
     pub rows: u64,
     /// The numbers.
     pub numbers: Vec<FittedNumber>,
@@ -69,7 +69,7 @@ impl FittedNumbers {
         self.numbers.get(last).and_then(|number| number.correlations.get(first)).copied().unwrap_or(0.0)
     }
 
-    /// Those of the numbers that are to be kept, with their correlations.
+    /// The numbers to be kept, with their correlations.
     #[must_use]
     pub fn keeping(&self, keep: impl Fn(&FittedNumber) -> bool) -> Self {
         let kept: Vec<usize> = (0..self.numbers.len()).filter(|place| keep(&self.numbers[*place])).collect();
@@ -82,14 +82,14 @@ impl FittedNumbers {
 }
 
 impl Muscle {
-    /// The same with what a fit knows of its numbers; without it where there are none.
+    /// The same muscle with the results of a fit of its numbers; without results if they hold no numbers.
     #[must_use]
     pub fn with_fitted(mut self, fitted: FittedNumbers) -> Self {
         self.fitted = Some(fitted).filter(|fitted| !fitted.numbers.is_empty());
         self
     }
 
-    /// What a fit knows of its numbers.
+    /// The results of a fit of its numbers.
     #[must_use]
     pub fn fitted(&self) -> Option<&FittedNumbers> {
         self.fitted.as_ref()

@@ -1,11 +1,11 @@
-//! How well the rig measures: standard deviations from the data sheets of its instruments.
+//! The accuracy of the rig: standard deviations from the data sheets of its instruments.
 
 use crate::error::MuscleError;
 use crate::muscle::Muscle;
 use crate::quantity::Ratio;
 use serde::Serialize;
 
-/// The instruments of the rig; what no data sheet states is absent.
+/// The instruments of the rig. An instrument that no data sheet states is absent.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct Instruments {
     /// The force sensor, in N.
@@ -27,7 +27,8 @@ pub struct Instrument {
 }
 
 impl Instrument {
-    /// From the standard deviations of noise and zero, in the SI unit of what is measured, and of the gain.
+    /// Takes the standard deviations of noise and zero, in the SI unit of the measured quantity, and of the
+    /// gain.
     ///
     /// # Errors
     /// If one is negative or not finite, or all are 0.
@@ -64,7 +65,7 @@ impl Instrument {
 }
 
 impl Muscle {
-    /// The same on other instruments.
+    /// The same muscle, measured with other instruments.
     #[must_use]
     pub fn with_instruments(mut self, instruments: Instruments) -> Self {
         self.instruments = instruments;

@@ -104,13 +104,13 @@ const PRESSURE: (&str, &str) = ("pressure", "pressure = { noise = \"30 Pa\" }");
 const LENGTH: (&str, &str) = ("length", "length = { noise = \"5 um\" }");
 const GAIN: (&str, &str) = ("gain", "gain = \"0.1 %\"");
 
-/// Keys and tables that one family alone has.
+/// Keys and tables that only one family has.
 const OWNED: &[(Kind, &[&str])] = &[
     (Kind::Braided, &["braid_angle", "ends", "wall", "effects.bladder-elasticity", "effects.wall-thickness"]),
     (Kind::Pleated, &["effects.pleat-depth", "effects.fibre-misalignment", "effects.lobes"]),
 ];
 
-/// Other words for a key: not accepted, but answered.
+/// Other words for a key. They are not accepted, but answered.
 const SYNONYMS: &[(&str, &str)] = &[
     ("l0", "length"),
     ("r", "radius"),
@@ -130,7 +130,7 @@ const SYNONYMS: &[(&str, &str)] = &[
     ("ea", "fibre.stiffness"),
 ];
 
-/// A muscle file as short as it can be.
+/// The shortest possible muscle file.
 pub(crate) const EXAMPLE: &str = "\
 name = \"second-generation PPAM\"
 kind = \"pleated\"        # or \"braided\"
@@ -149,7 +149,7 @@ pub(crate) fn of(path: &str) -> Keys {
     TABLES.iter().find(|(table, _)| *table == path).map_or(&[], |(_, keys)| *keys)
 }
 
-/// The family that alone has this key, or this table.
+/// The family that alone has this key or this table, if there is one.
 pub(crate) fn owner(path: &str) -> Option<Kind> {
     OWNED.iter().find(|(_, paths)| paths.contains(&path)).map(|(kind, _)| *kind)
 }
@@ -166,7 +166,7 @@ pub(crate) fn example(path: &str) -> String {
     if table.is_empty() { format!("`{line}`") } else { format!("`{line}` in `[{table}]`") }
 }
 
-/// How a key is written that stands at the top of the file under another name, or belongs into a table.
+/// How to write a key that stands at the top of the file under another name, or that belongs in a table.
 pub(crate) fn elsewhere(unknown: &str) -> Option<String> {
     let plain = |text: &str| text.to_lowercase().replace('-', "_");
     let is_it = |name: &str| plain(name) == plain(unknown);

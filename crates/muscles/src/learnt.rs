@@ -1,4 +1,5 @@
-//! Effects that a muscle file states besides those that this crate knows: found by a fit, known by name to whoever computes with them.
+//! Effects in a muscle file that this crate doesn't know. They are found by a fit, and the code that computes
+//! with them knows them by name.
 
 use crate::dimension::Dimension;
 use crate::error::MuscleError;
@@ -13,8 +14,9 @@ use std::sync::Arc;
 
 /// An effect by its name, with its values.
 ///
-/// This crate doesn't know which names exist and what values they need; who does can answer with the place in the file ([`Learnt::error`],
-/// [`Learnt::value_error`], [`crate::Muscle::check_learnt`]). The place is no part of the effect: equal effects are equal wherever they stand.
+/// This crate doesn't know which names exist and which values they need. Code that does can answer with the
+/// place in the file ([`Learnt::error`], [`Learnt::value_error`], [`crate::Muscle::check_learnt`]). The place
+/// is no part of the effect: equal effects are equal wherever they stand.
 ///
 /// ```
 /// use bulge_muscles::{Dimension, from_toml};
@@ -62,7 +64,7 @@ impl PartialEq for LearntValue {
     }
 }
 
-/// Where an effect stands in a file, if it comes from one.
+/// The place of an effect in a file, if it comes from one.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Place {
     file: Option<Arc<SourceFile>>,
@@ -77,7 +79,7 @@ pub(crate) struct SourceFile {
     pub(crate) text: String,
 }
 
-/// Where something stands is no part of what it is.
+/// The place of an effect is no part of its value.
 impl PartialEq for Place {
     fn eq(&self, _: &Self) -> bool {
         true
@@ -89,27 +91,27 @@ impl Place {
         Self { file: Some(file), name, values }
     }
 
-    /// What is wrong at the name; none without a file.
+    /// An error at the name; `None` without a file.
     pub(crate) fn error(&self, what: String, instead: String) -> Option<FileError> {
         let file = self.file.as_ref()?;
         Some(FileError::at(&file.origin, &file.text, self.name.clone(), what, instead))
     }
 }
 
-/// Whether TOML takes it as a key without quotes.
+/// Whether TOML takes the name as a key without quotes.
 pub(crate) fn is_plain(name: &str) -> bool {
     !name.is_empty() && name.bytes().all(|byte| byte.is_ascii_alphanumeric() || matches!(byte, b'-' | b'_'))
 }
 
-/// Where the user's own effects are given.
+/// The option with which the user's own effects are given.
 const OWN_FILE: &str = "`--effects FILE`";
 
 impl Learnt {
     /// An effect with its values, in their order.
     ///
     /// # Errors
-    /// If the name or a key is no plain word, the name is one of [`Parameter::effects`], a key comes twice, a value is not finite, a width is not
-    /// finite and > 0, or a unit is not of its dimension.
+    /// If the name or a key is no plain word, the name is one of [`Parameter::effects`], a key comes twice, a
+    /// value is not finite, a width is not finite and > 0, or a unit is not of its dimension.
     pub fn new(name: impl Into<String>, values: Vec<LearntValue>) -> Result<Self, MuscleError> {
         let name = name.into();
         let wrong = |what: String| Err(MuscleError::Learnt { name: shortened(&name), what });
@@ -178,13 +180,14 @@ impl Learnt {
         self.place.file.as_ref().and_then(|_| self.error("", "").column())
     }
 
-    /// What is wrong with this effect, with its place in the file if it comes from one: what, and what to write instead.
+    /// An error in this effect: what is wrong, and what to write instead. It has the place in the file if the
+    /// effect comes from one.
     #[must_use]
     pub fn error(&self, what: impl Into<String>, instead: impl Into<String>) -> FileError {
         self.error_at(self.place.name.clone(), what.into(), instead.into())
     }
 
-    /// What is wrong with one of its values; a key that it doesn't have gives the place of the effect.
+    /// An error in one of its values. A key that it doesn't have gives the place of the effect.
     #[must_use]
     pub fn value_error(&self, key: &str, what: impl Into<String>, instead: impl Into<String>) -> FileError {
         let index = self.values.iter().position(|value| value.key == key);
@@ -199,7 +202,8 @@ impl Learnt {
         }
     }
 
-    /// Refuses a name that is neither among `known` nor a shape effect, with the nearest one of all.
+    /// Refuses a name that is neither among `known` nor a shape effect. The error names the nearest one of
+    /// all.
     pub(crate) fn check(&self, known: &[&str]) -> Result<(), FileError> {
         if known.contains(&self.name.as_str()) {
             return Ok(());
@@ -218,7 +222,8 @@ impl Learnt {
 }
 
 impl LearntValue {
-    /// As it is written in a file, so that reading gives exactly the same numbers: in its unit if that can be, else in SI.
+    /// The value as it is written in a file, so that reading gives exactly the same numbers: in its unit if
+    /// possible, else in SI.
     pub(crate) fn text(&self) -> String {
         let si_unit = if self.dimension.is_none() { String::new() } else { self.dimension.to_string() };
         let text = |unit: &str| {
@@ -240,7 +245,7 @@ impl LearntValue {
 }
 
 impl Muscle {
-    /// The same with one more learnt effect, or with other values of one that it has.
+    /// The same muscle with one more learnt effect, or with other values of an effect that it has.
     #[must_use]
     pub fn with_learnt(mut self, effect: Learnt) -> Self {
         match self.learnt.iter_mut().find(|other| other.name() == effect.name()) {
@@ -250,7 +255,7 @@ impl Muscle {
         self
     }
 
-    /// The same without learnt effects: what this crate itself knows of the muscle.
+    /// The same muscle without learnt effects: the part that this crate itself knows.
     #[must_use]
     pub fn without_learnt(mut self) -> Self {
         self.learnt.clear();

@@ -1,7 +1,9 @@
-//! Pneumatic artificial muscles as data: pleated and braided muscles, materials, instruments and units, from TOML.
+//! Pneumatic artificial muscles as data: pleated and braided muscles, materials, instruments and units, from
+//! TOML.
 //!
-//! A muscle is a value that is always valid: constructors check, fields are private, and a change gives a new muscle
-//! or an error. Quantities carry their dimension and are read and written in any of its units; inside they are SI.
+//! A muscle is a value that is always valid: constructors check, fields are private, and a change gives a new
+//! muscle or an error. Quantities carry their dimension and are read and written in any of its units; inside
+//! they are SI.
 //!
 //! ```
 //! use bulge_muscles::{Force, Length, Parameter, from_toml};

@@ -1,4 +1,4 @@
-//! What a muscle is made of: fibres that stretch, a rubber bladder, cloth that stops unfolding.
+//! The materials of a muscle: fibres that stretch, a rubber bladder, cloth that stops unfolding.
 
 use crate::error::{MuscleError, check};
 use crate::quantity::{Area, Force, Length, LineStiffness, Pressure};
@@ -21,7 +21,7 @@ impl Fibre {
         Ok(Self { stiffness, section: None })
     }
 
-    /// The same with a known cross-section, which turns tension into stress.
+    /// The same fibres with a known cross-section, which turns tension into stress.
     ///
     /// # Errors
     /// If the section is not finite and > 0.
@@ -47,7 +47,8 @@ impl Fibre {
     }
 }
 
-/// A rubber tube inside a braid (effect `bladder-elasticity`): Mooney-Rivlin, W = c10 (I1 - 3) + c01 (I2 - 3).
+/// A rubber tube inside a braid (effect `bladder-elasticity`): Mooney-Rivlin, W = c10 (I1 - 3) + c01
+/// (I2 - 3).
 ///
 /// With c01 = 0 it is a neo-Hookean rubber of shear modulus 2 c10.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -96,7 +97,8 @@ impl Bladder {
 /// ```text
 /// u(r) = K (2 pi (r - r_u))^2 / (2 * 2 pi r_u)   for r > r_u, else 0
 /// ```
-/// u (N): hoop energy per unit meridian length; K (N/m): hoop stiffness E t of the cloth; `r_u` (m): unfolded radius.
+/// u (N): hoop energy per unit meridian length; K (N/m): hoop stiffness E t of the cloth; `r_u` (m): unfolded
+/// radius.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Unfolding {
     hoop_stiffness: LineStiffness,
@@ -104,7 +106,7 @@ pub struct Unfolding {
 }
 
 impl Unfolding {
-    /// Cloth of hoop stiffness K = E t that is taut from the unfolded radius on.
+    /// Cloth of hoop stiffness K = E t that is taut beyond the unfolded radius.
     ///
     /// # Errors
     /// If either is not finite and > 0.

@@ -17,7 +17,7 @@ use serde::Serialize;
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 enum GasWall {
-    /// At the wall's inner face: the thickness is that of the wall, and follows it.
+    /// At the wall's inner face. The thickness is that of the wall and follows it.
     Inner,
     /// At a depth of its own.
     At(Length),
@@ -82,7 +82,7 @@ impl Muscle {
         muscle.with_room()?.with_name(name)
     }
 
-    /// The same under another name.
+    /// The same muscle under another name.
     ///
     /// # Errors
     /// If the name is blank.
@@ -91,10 +91,10 @@ impl Muscle {
         if self.name.trim().is_empty() { Err(MuscleError::NoName) } else { Ok(self) }
     }
 
-    /// The same with fibres that stretch.
+    /// The same muscle with fibres that stretch.
     ///
     /// # Errors
-    /// If a braid does not say how many fibres it has: their stiffness is per fibre.
+    /// If a braid does not say how many fibres it has: the stiffness is per fibre.
     pub fn with_fibre(mut self, fibre: Fibre) -> Result<Self, MuscleError> {
         if matches!(&self.construction, Construction::Braided(Braided { fibres: None, .. })) {
             return Err(MuscleError::NoFibreCount);
@@ -103,7 +103,7 @@ impl Muscle {
         Ok(self)
     }
 
-    /// The same with a rubber bladder in the braid. Where the muscle has no wall of its own, the bladder is its wall.
+    /// The same muscle with a rubber bladder in the braid. The bladder is the wall if there is no other.
     ///
     /// # Errors
     /// If the muscle is pleated, or the wall leaves no room for gas.
@@ -115,7 +115,7 @@ impl Muscle {
         self.with_room()
     }
 
-    /// The same, if its walls leave room for gas inside the braid and its fittings.
+    /// The same muscle, if its walls leave room for gas inside the braid and its fittings.
     fn with_room(self) -> Result<Self, MuscleError> {
         let radius = self.radius().si();
         let walls = [
@@ -130,21 +130,22 @@ impl Muscle {
         Ok(self)
     }
 
-    /// The same with cloth that can unfold only so far.
+    /// The same muscle with cloth that can unfold only so far.
     #[must_use]
     pub fn with_unfolding(mut self, unfolding: Unfolding) -> Self {
         self.unfolding = Some(unfolding);
         self
     }
 
-    /// The same with gas that acts on the inner face of the wall, at the braid radius less this thickness, instead of at the braid radius; none:
-    /// the thickness of the muscle's wall, also if that is changed later.
+    /// The same muscle with gas that acts not at the braid radius but at this thickness inside it, on the
+    /// inner face of the wall. `None`: the thickness of the muscle's wall, also if that is changed later.
     ///
-    /// The wall keeps its thickness (C.-P. Chou and B. Hannaford, 1996). Rubber keeps its *volume* instead, and a braid that lies in the
-    /// wall at the stated radius then needs no correction at all.
+    /// The wall keeps its thickness (C.-P. Chou and B. Hannaford, 1996). Rubber keeps its *volume* instead,
+    /// and a braid that lies in the wall at the stated radius then needs no correction at all.
     ///
     /// # Errors
-    /// If the thickness is negative, not finite or leaves no room for gas, none is given and the wall's is not known, or the muscle is pleated.
+    /// If the thickness is negative, not finite or leaves no room for gas, if none is given and that of the
+    /// wall is not known, or if the muscle is pleated.
     pub fn with_gas_wall(mut self, thickness: Option<Length>) -> Result<Self, MuscleError> {
         if self.is_pleated() {
             let (parameter, kind) = (Parameter::GasWall, Kind::Pleated);
@@ -161,7 +162,7 @@ impl Muscle {
         self.with_room()
     }
 
-    /// The same with other ends, if it is a braid: clamped in fittings, or a cylinder to the end.
+    /// The same muscle with other ends, if it is a braid: clamped in fittings, or a cylinder to the end.
     #[must_use]
     pub fn with_ends(mut self, ends: Ends) -> Self {
         if let Construction::Braided(braided) = &self.construction {
@@ -170,7 +171,8 @@ impl Muscle {
         self
     }
 
-    /// The same with a stated width (one standard deviation, SI) of a parameter; it replaces an earlier one. 0 says that the number is exact.
+    /// The same muscle with a stated width (one standard deviation, SI) of a parameter; it replaces an
+    /// earlier one. 0 says that the number is exact.
     ///
     /// # Errors
     /// If the width is not finite and >= 0, or the parameter is a count or is not stated.
@@ -189,12 +191,12 @@ impl Muscle {
 
     /// A copy with one parameter changed, in SI; a parameter that was absent is added.
     ///
-    /// - `Radius`: radii that are not stated separately follow. Of a pleated muscle with a separate end radius it is
-    ///   that one, the radius that acts.
-    /// - `Wall`: where the bladder has the muscle's wall thickness, it follows, and so does gas on the inner face of the wall.
+    /// - `Radius`: radii that are not stated separately follow. For a pleated muscle with a separate end
+    ///   radius it means that one, the radius that acts.
+    /// - `Wall`: a bladder of the same thickness follows, and so does gas on the inner face of the wall.
     /// - `GasWall` adds the effect if it is absent.
     /// - `Fibres` must be a whole number; a continuous membrane becomes discrete.
-    /// - `C10` or `C01` of a braid without bladder add one, if the wall is known.
+    /// - `C10` or `C01` add a bladder to a braid without one, if the wall is known.
     ///
     /// # Errors
     /// If the value is out of range, or the muscle cannot have the parameter.
@@ -231,7 +233,7 @@ impl Muscle {
         changed.with_room()
     }
 
-    /// The value of a parameter in SI; none if the muscle does not have it.
+    /// The value of a parameter in SI; `None` if the muscle does not have it.
     #[must_use]
     pub fn get(&self, parameter: Parameter) -> Option<f64> {
         let construction = &self.construction;
@@ -286,7 +288,7 @@ impl Muscle {
         self.kind() == Kind::Pleated
     }
 
-    /// Pleated: fibre radius R at the fittings, as it acts; braided: braid radius r0 at rest.
+    /// Pleated: fibre radius R that acts at the fittings; braided: braid radius r0 at rest.
     #[must_use]
     pub fn radius(&self) -> Length {
         match &self.construction {
@@ -295,7 +297,7 @@ impl Muscle {
         }
     }
 
-    /// Radius at the end fittings: of the fibres of a pleated muscle, of the clamped ends of a braid.
+    /// Radius at the end fittings: of the fibres in a pleated muscle, of the clamped ends in a braid.
     #[must_use]
     pub fn end_radius(&self) -> Length {
         match &self.construction {
@@ -304,7 +306,7 @@ impl Muscle {
         }
     }
 
-    /// Number of fibres; none for a continuous membrane, or a braid that does not say.
+    /// Number of fibres; `None` for a continuous membrane, or a braid that does not say.
     #[must_use]
     pub fn fibres(&self) -> Option<u32> {
         match &self.construction {
@@ -314,7 +316,7 @@ impl Muscle {
         }
     }
 
-    /// Fibres that stretch; none if they are inextensible.
+    /// Fibres that stretch; `None` if they are inextensible.
     #[must_use]
     pub fn fibre(&self) -> Option<Fibre> {
         self.fibre
@@ -332,13 +334,13 @@ impl Muscle {
         self.unfolding
     }
 
-    /// The effects that the file states besides those that shape the muscle, in its order.
+    /// The effects in the file besides those that shape the muscle, in the order of the file.
     #[must_use]
     pub fn learnt(&self) -> &[Learnt] {
         &self.learnt
     }
 
-    /// What is wrong with the learnt effect number `index`, with its place in the file: what, and what to write instead.
+    /// An error in learnt effect number `index` with its place in the file: what, and what to write instead.
     #[must_use]
     pub fn learnt_error(
         &self,
@@ -352,7 +354,8 @@ impl Muscle {
         }
     }
 
-    /// Refuses learnt effects whose name is not among `known`: a slip of the pen, also in the name of an effect that shapes the muscle.
+    /// Refuses learnt effects whose name is not among `known`: slips, also in the name of an effect that
+    /// shapes the muscle.
     ///
     /// # Errors
     /// Names the first one with its place in the file and the nearest known name.
@@ -360,7 +363,7 @@ impl Muscle {
         self.learnt.iter().try_for_each(|effect| effect.check(known))
     }
 
-    /// Stated widths ("110 mm +- 0.2 mm"): one standard deviation each in SI, in the order of [`Parameter::ALL`].
+    /// Stated widths ("110 mm +- 0.2 mm"), one standard deviation in SI each, ordered as [`Parameter::ALL`].
     #[must_use]
     pub fn widths(&self) -> &[(Parameter, f64)] {
         &self.widths
@@ -378,7 +381,7 @@ impl Muscle {
         self.own_wall().or_else(|| self.bladder.map(|bladder| bladder.wall()))
     }
 
-    /// How far inside the braid radius the gas acts; none if it acts at the braid.
+    /// Distance inside the braid radius at which the gas acts; `None` if it acts at the braid.
     #[must_use]
     pub fn gas_wall(&self) -> Option<Length> {
         match self.gas_wall? {
@@ -392,8 +395,8 @@ impl Muscle {
         if let Construction::Braided(braided) = &self.construction { braided.wall() } else { None }
     }
 
-    /// Whether the parameter has a place of its own in the muscle's file, where a width can be written. A fitting radius that is not stated
-    /// follows the radius, and the inner face of the wall follows the wall.
+    /// Whether the parameter has a place of its own in the muscle's file, where a width can be written. A
+    /// fitting radius that is not stated follows the radius, and the inner face of the wall follows the wall.
     #[must_use]
     pub fn is_stated(&self, parameter: Parameter) -> bool {
         match (parameter, &self.construction) {
@@ -439,7 +442,7 @@ impl Muscle {
         Ok(())
     }
 
-    /// Changes the wall where it is stated: the muscle's, the bladder's, or both where they are the same.
+    /// Changes the wall where it is stated: the muscle's, the bladder's, or both if they are the same.
     fn change_wall(&mut self, braided: Braided, wall: Length) -> Result<(), MuscleError> {
         check::positive("wall", wall)?;
         let own = braided.wall;
@@ -474,7 +477,7 @@ fn pleated_with(mut pleated: Pleated, parameter: Parameter, value: f64) -> Resul
     }
 }
 
-/// A number of fibres out of a sweep.
+/// A number of fibres from a sweep, as a whole number.
 fn whole(value: f64) -> Result<u32, MuscleError> {
     if value.fract() == 0.0 && (3.0..=f64::from(u32::MAX)).contains(&value) {
         #[expect(

@@ -6,14 +6,14 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Beginning of the names of files that aren't finished: what a killed process leaves is told by it.
+/// Beginning of the names of unfinished files. It identifies the files that a killed process leaves.
 pub const UNFINISHED: &str = ".unfinished-";
-/// More links in a row are a circle, as for the system.
+/// Most links in a row. More of them count as a circle, as they do for the system.
 const MOST_LINKS: usize = 40;
-/// Folders in which a name stands for something that a process has open.
+/// Folders in which a name stands for a file that a process has open.
 const OPEN_FILES: [&str; 2] = ["/proc", "/dev/fd"];
 
-/// Where bytes go that are written to a name.
+/// The target of bytes that are written to a name.
 #[derive(Debug, Clone, PartialEq, Eq)]
 enum Target {
     /// A regular file, perhaps a new one: it is replaced as a whole.
@@ -22,13 +22,14 @@ enum Target {
     Stream(PathBuf),
 }
 
-/// Writes a file so that it is there whole or not at all: under a temporary name beside it, forced to the disk, then renamed.
+/// Writes a file as a whole or not at all: under a temporary name beside it, forced to the disk, then
+/// renamed.
 ///
-/// A link is followed: what it points at is replaced, and the link stays. A FIFO, a device or another target that is no regular file is written into,
-/// never replaced. A file that is replaced keeps its permissions.
+/// A link is followed: its target is replaced, and the link stays. A FIFO, a device or another target that is
+/// no regular file is written into, never replaced. A file that is replaced keeps its permissions.
 ///
 /// # Errors
-/// What the system says; nothing is left of the file then, and an older one stands as it was.
+/// Those of the system. Nothing is left of the file then, and an older one stays as it was.
 pub fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
     match target(path)? {
         Target::File(path) => replace(&path, bytes),
@@ -41,7 +42,8 @@ pub fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
     }
 }
 
-/// The regular file that [`write()`] would replace, or make, with all links followed; none of a name that stands for something else, or lies in no folder.
+/// The regular file that [`write()`] would replace or make, with all links followed. `None` for a name that
+/// stands for something else or lies in no folder.
 #[must_use]
 pub fn file_of(path: &Path) -> Option<PathBuf> {
     let Target::File(path) = target(path).ok()? else { return None };
@@ -51,17 +53,17 @@ pub fn file_of(path: &Path) -> Option<PathBuf> {
     Some(fs::canonicalize(folder_of(&path)).ok()?.join(path.file_name()?))
 }
 
-/// Forces a folder's list of names to the disk, where the system knows how.
+/// Forces a folder's list of names to the disk, if the system can do that.
 ///
 /// # Errors
-/// What the system says.
+/// Those of the system.
 pub fn sync(folder: &Path) -> io::Result<()> {
     if cfg!(unix) { File::open(folder)?.sync_all() } else { Ok(()) }
 }
 
-/// Follows links to what is really written.
+/// Follows links to the target that is really written.
 fn target(path: &Path) -> io::Result<Target> {
-    // What is at the end of all links: the system alone can say it of what a process has open.
+    // The target at the end of all links. For a file that a process has open, only the system can tell it.
     match fs::metadata(path) {
         Ok(found) if found.is_dir() => {
             return Err(io::Error::new(
@@ -114,7 +116,7 @@ fn unfinished(folder: &Path, name: &OsStr) -> io::Result<(PathBuf, File)> {
         let count = COUNT.fetch_add(1, Ordering::Relaxed);
         let path = folder.join(format!("{UNFINISHED}{}-{count}-{name}", std::process::id()));
         match File::create_new(&path) {
-            // Left by a process that was killed and had the same number.
+            // Left by a killed process with the same number.
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
             found => return found.map(|file| (path, file)),
         }
@@ -123,7 +125,7 @@ fn unfinished(folder: &Path, name: &OsStr) -> io::Result<(PathBuf, File)> {
 
 fn fill(mut file: File, path: &Path, bytes: &[u8]) -> io::Result<()> {
     if let Ok(older) = fs::metadata(path) {
-        // Where the file system has none, there is nothing to keep.
+        // A file system without permissions has nothing to keep.
         let _ = file.set_permissions(older.permissions());
     }
     file.write_all(bytes)?;
@@ -166,7 +168,7 @@ mod tests {
         let own = file_of(&at("a"));
         assert!(own.as_ref().is_some_and(|path| path.ends_with("a")) && !at("a").exists());
         assert_ne!(file_of(&at("b")), own);
-        // By another way to the folder, and by a link to what isn't there yet.
+        // By another way to the folder, and by a link to a file that isn't there yet.
         fs::create_dir_all(at("inner")).unwrap();
         std::os::unix::fs::symlink("a", at("link")).unwrap();
         std::os::unix::fs::symlink(at("inner/.."), at("way")).unwrap();
@@ -177,7 +179,7 @@ mod tests {
         for name in ["a", "inner/../a", "link", "way/link"] {
             assert_eq!(file_of(&at(name)), own, "{name}");
         }
-        // What is no regular file, and what lies nowhere.
+        // A target that is no regular file, and targets that lie nowhere.
         assert_eq!([Path::new("/dev/null"), &at("inner"), &at("none/a")].map(file_of), [None, None, None]);
     }
 
@@ -251,7 +253,7 @@ mod tests {
         assert_eq!(folder.names(), ["fifo", "link"]);
     }
 
-    /// What a process has open is written into: a rename would leave the open file behind.
+    /// A file that a process has open is written into: a rename would leave the open file behind.
     #[cfg(target_os = "linux")]
     #[test]
     fn open_files_are_written_into() {

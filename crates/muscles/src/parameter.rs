@@ -13,7 +13,7 @@ pub enum Parameter {
     Length,
     /// Pleated: fibre radius R at the fittings; braided: braid radius r0 (m).
     Radius,
-    /// Radius at the end fittings, where it is stated separately (m).
+    /// Radius at the end fittings, if it is stated separately (m).
     FittingRadius,
     /// Braid angle alpha0 (rad).
     BraidAngle,
@@ -35,7 +35,7 @@ pub enum Parameter {
     GasWall,
     /// Hoop stiffness of cloth that limits the unfolding (N/m).
     HoopStiffness,
-    /// Radius from which the cloth is taut (m).
+    /// Radius beyond which the cloth is taut (m).
     UnfoldedRadius,
     /// Circumference of the cloth that bulges in lobes between the fibres (m).
     ClothCircumference,
@@ -89,7 +89,7 @@ impl Parameter {
         Self::ALL.into_iter().find(|parameter| parameter.name() == name)
     }
 
-    /// Where it stands in a muscle file.
+    /// Its place in a muscle file.
     #[must_use]
     pub const fn key(self) -> &'static str {
         match self {
@@ -107,19 +107,20 @@ impl Parameter {
         }
     }
 
-    /// The effect in whose table it stands in a muscle file and its key there, if it does.
+    /// The effect whose table in a muscle file holds the parameter, and its key there, if there is one.
     #[must_use]
     pub fn effect(self) -> Option<(&'static str, &'static str)> {
         self.key().strip_prefix("effects.")?.split_once('.')
     }
 
-    /// The parameter that stands under this key in the table `[effects.NAME]`.
+    /// The parameter under this key in the table `[effects.NAME]`.
     #[must_use]
     pub fn of_effect(name: &str, key: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|parameter| parameter.effect() == Some((name, key)))
     }
 
-    /// The effects whose tables hold parameters of the muscle; every other `[effects.NAME]` is a [`crate::Learnt`] one.
+    /// The effects whose tables hold parameters of the muscle; every other `[effects.NAME]` is a
+    /// [`crate::Learnt`] one.
     pub fn effects() -> impl Iterator<Item = &'static str> {
         let is_first = |(i, name): &(usize, &str)| {
             !Self::ALL[..*i].iter().any(|other| other.effect().is_some_and(|(other, _)| other == *name))
@@ -150,7 +151,7 @@ impl Parameter {
         }
     }
 
-    /// The family it belongs to, if not to both.
+    /// The family it belongs to, if it belongs to only one.
     #[must_use]
     pub const fn kind(self) -> Option<Kind> {
         match self {
@@ -175,7 +176,8 @@ impl Parameter {
         }
     }
 
-    /// A value in SI as it is written in a muscle file, with its unit and quotes, so that reading gives exactly the same number.
+    /// A value in SI as it is written in a muscle file, with its unit and quotes. Reading it gives exactly
+    /// the same number.
     pub(crate) fn text(self, value: f64) -> String {
         let text = match self.unit() {
             "rad" => units::exact_text(Angle::from_si(value)),
@@ -188,7 +190,8 @@ impl Parameter {
         format!("\"{text}\"")
     }
 
-    /// Reads values of this parameter, such as "100,110,120 mm" for `Length` or "20,40" for `Fibres`, into SI.
+    /// Reads values of this parameter, such as "100,110,120 mm" for `Length` or "20,40" for `Fibres`, into
+    /// SI.
     ///
     /// # Errors
     /// If an item is not a quantity of the parameter's dimension.

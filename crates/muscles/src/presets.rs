@@ -1,4 +1,4 @@
-//! Muscles that are shipped: those of the papers that the models are checked against.
+//! Shipped muscles: those of the papers against which the models are checked.
 
 use crate::file::from_toml;
 use crate::file_error::FileError;
@@ -10,9 +10,9 @@ use thiserror::Error;
 /// A shipped muscle file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Preset {
-    /// The name to ask for.
+    /// The name under which it is found.
     pub name: &'static str,
-    /// What it is, in one line.
+    /// Its description, in one line.
     pub about: &'static str,
     /// The file itself, with its sources in comments.
     pub text: &'static str,

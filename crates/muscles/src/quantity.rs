@@ -18,7 +18,7 @@ pub(crate) const fn in_unit(si: f64, factor: f64) -> f64 {
     if let Some(inverse) = whole_inverse(factor) { si * inverse } else { si / factor }
 }
 
-/// The inverse of a factor such as 1e-12, which a double holds exactly where it does not hold the factor.
+/// The inverse of a factor such as 1e-12. A double holds it exactly where it does not hold the factor.
 const fn whole_inverse(factor: f64) -> Option<f64> {
     let inverse = 1.0 / factor;
     let whole = inverse.round();
@@ -120,7 +120,8 @@ quantity! {
     mn, to_mn = 1e-3, ["mN"];
     kn, to_kn = 1e3, ["kN"];
     meganewton, to_meganewton = 1e6, ["MN"];
-    // The international avoirdupois pound (0.45359237 kg) and the kilogram under standard gravity 9.80665 m/s^2.
+    // The international avoirdupois pound (0.45359237 kg) and the kilogram under standard gravity
+    // 9.80665 m/s^2.
     lbf, to_lbf = 4.448_221_615_260_5, ["lbf"];
     kgf, to_kgf = 9.806_65, ["kgf"];
 }
@@ -154,7 +155,8 @@ quantity! {
 }
 
 quantity! {
-    /// A force per length, such as the hoop stiffness E t of a cloth or the stiffness of a frame; SI unit N/m.
+    /// A force per length, such as the hoop stiffness E t of a cloth or the stiffness of a frame; SI unit
+    /// N/m.
     LineStiffness: "stiffness per width" LINE_STIFFNESS, such as "81 kN/m", shown in "kN/m" (1e3);
     n_per_m, to_n_per_m = 1.0, ["N/m"];
     kn_per_m, to_kn_per_m = 1e3, ["kN/m"];

@@ -1,4 +1,5 @@
-//! Settings files: tables of TOML with the place of every key, values with units, and a cure for each mistake.
+//! Settings files: tables of TOML with the place of every key, values with units, and a cure for each
+//! mistake.
 
 use crate::dimension::Dimension;
 use crate::file::read;
@@ -56,7 +57,7 @@ pub struct Setting<'a> {
 }
 
 impl<'t> Document<'t> {
-    /// Parses TOML text; `origin` is what messages call the text, usually a file name.
+    /// Parses TOML text. `origin` is the name of the text in messages, usually a file name.
     ///
     /// # Errors
     /// If the text is larger than 1 MiB or is not TOML.
@@ -82,7 +83,7 @@ impl<'t> Document<'t> {
         Ok(Self { origin, text, root })
     }
 
-    /// The top of the file: what messages call it, and the keys that it may have.
+    /// The top of the file, with its name in messages and the keys that it may have.
     #[must_use]
     pub fn settings(&self, title: &'static str, keys: Keys) -> Settings<'_> {
         Settings {
@@ -97,13 +98,13 @@ impl<'t> Document<'t> {
 }
 
 impl<'a> Settings<'a> {
-    /// The same under another name, with the place of a key as its own.
+    /// The same table under another name, with the place of a key as its own.
     #[must_use]
     pub(crate) fn called(self, title: String, key: &str) -> Self {
         Settings { span: self.value_span(key), title: title.into(), ..self }
     }
 
-    /// What messages call it.
+    /// Its name in messages.
     pub(crate) fn title(&self) -> &str {
         &self.title
     }
@@ -136,7 +137,7 @@ impl<'a> Settings<'a> {
         self.check_keys_or(|_| None)
     }
 
-    /// The same; `elsewhere` may know what to write instead of a key that is like none of the table.
+    /// The same. `elsewhere` may know what to write instead of a key that resembles none of the table.
     pub(crate) fn check_keys_or(&self, elsewhere: fn(&str) -> Option<String>) -> Result<(), FileError> {
         let known = || self.keys.iter().map(|(key, _)| *key);
         let stranger = self.names().into_iter().find(|(name, _)| known().all(|key| key != *name));
@@ -157,7 +158,7 @@ impl<'a> Settings<'a> {
         Ok(self.parsed(name, units::parse::<Q>)?.map_or(0.0, Quantity::si))
     }
 
-    /// What `parse` makes of a number with its unit.
+    /// The result of `parse` for a number with its unit.
     pub(crate) fn parsed<T>(
         &self,
         name: &str,
@@ -176,7 +177,7 @@ impl<'a> Settings<'a> {
         self.get(name).map(|value| self.quantity_of(name, value, dimension)).transpose()
     }
 
-    /// The same of a value within that of a key.
+    /// The same for a value within that of a key.
     ///
     /// # Errors
     /// If the value is no such quantity.
@@ -203,7 +204,7 @@ impl<'a> Settings<'a> {
     /// A whole number.
     ///
     /// # Errors
-    /// If the value is none, or is negative or too large for the type.
+    /// If the value is no whole number, or is negative or too large for the type.
     pub fn count<N: TryFrom<u64>>(&self, name: &str) -> Result<Option<N>, FileError> {
         let Some(value) = self.get(name) else { return Ok(None) };
         let refused = || self.wrong_type(name, value, "a whole number, 1 or more");
@@ -235,12 +236,12 @@ impl<'a> Settings<'a> {
     /// One word of a list.
     ///
     /// # Errors
-    /// If the value is another one; the nearest word is named, else all of them.
+    /// If the value is another word. The message names the nearest word, else all of them.
     pub fn word<T: Copy>(&self, name: &str, known: &[(&'static str, T)]) -> Result<Option<T>, FileError> {
         self.word_or(name, known, &[])
     }
 
-    /// The same; words in `also` are not accepted, but answered with the right one.
+    /// The same. Words in `also` are not accepted, but answered with the right one.
     pub(crate) fn word_or<T: Copy>(
         &self,
         name: &str,
@@ -260,7 +261,8 @@ impl<'a> Settings<'a> {
         Err(self.error(value.span(), what, format!("write {}", lines.join(" or "))))
     }
 
-    /// The muscle that a key names: a muscle file in `folder`, or a shipped muscle where no file of that name exists.
+    /// The muscle that a key names: a muscle file in `folder`, or a shipped muscle where no file of that name
+    /// exists.
     ///
     /// # Errors
     /// If the key is absent, or names no muscle, or its file can't be read.
@@ -281,7 +283,7 @@ impl<'a> Settings<'a> {
         })
     }
 
-    /// A table within this one: what messages call it, and the keys that it may have.
+    /// A table within this one, with its name in messages and the keys that it may have.
     ///
     /// # Errors
     /// If the value is no table.
@@ -298,7 +300,8 @@ impl<'a> Settings<'a> {
         Ok(Some(self.inner(value.span(), entries, title.into(), keys)))
     }
 
-    /// An array of tables, such as `[[block]]`: what messages call each, and the keys that it may have.
+    /// An array of tables, such as `[[block]]`, with the name of each in messages and the keys that it may
+    /// have.
     ///
     /// # Errors
     /// If the value is no array of tables.
@@ -322,14 +325,14 @@ impl<'a> Settings<'a> {
         Settings { origin: self.origin, text: self.text, title, span, entries, keys }
     }
 
-    /// The place of a key, or of the table where it is absent.
+    /// The place of a key, or of the table if the key is absent.
     #[must_use]
     pub fn key_span(&self, name: &str) -> Range<usize> {
         let key = self.entries.keys().find(|key| key.get_ref() == name);
         key.map_or_else(|| self.span.clone(), Spanned::span)
     }
 
-    /// The place of a value, or of the table where it is absent.
+    /// The place of a value, or of the table if the value is absent.
     #[must_use]
     pub fn value_span(&self, name: &str) -> Range<usize> {
         self.get(name).map_or_else(|| self.span.clone(), Setting::span)
@@ -347,7 +350,7 @@ impl<'a> Settings<'a> {
         span
     }
 
-    /// What is wrong at a place, and what to write instead.
+    /// An error at a place: what is wrong, and what to write instead.
     #[must_use]
     pub fn error(
         &self,
@@ -358,19 +361,19 @@ impl<'a> Settings<'a> {
         FileError::at(self.origin, self.text, span, what, instead)
     }
 
-    /// What is wrong with the value of a key, with the line that shows how it is written.
+    /// An error in the value of a key, with the line that shows how the key is written.
     #[must_use]
     pub fn unreadable(&self, name: &str, value: Setting<'_>, what: impl Display) -> FileError {
         self.error(value.span(), what.to_string(), self.write(name))
     }
 
-    /// A value of another type than `wanted`.
+    /// An error for a value of another type than `wanted`.
     #[must_use]
     pub fn wrong_type(&self, name: &str, value: Setting<'_>, wanted: &str) -> FileError {
         self.unreadable(name, value, format!("`{name}` is {}, but must be {wanted}", value.type_name()))
     }
 
-    /// A key that the table needs.
+    /// An error for a missing key that the table needs.
     #[must_use]
     pub fn missing(&self, name: &str) -> FileError {
         let what = format!("{} needs `{name}`, which is missing", self.title);
@@ -443,7 +446,7 @@ impl<'a> Setting<'a> {
         }
     }
 
-    /// What it is in words, such as "a number".
+    /// Its type in words, such as "a number".
     #[must_use]
     pub fn type_name(self) -> &'static str {
         match self.value.get_ref() {
@@ -457,7 +460,8 @@ impl<'a> Setting<'a> {
     }
 }
 
-/// The name that was probably meant: a slip or two away but for case and hyphens, or of which the word is the beginning.
+/// The name that was probably meant: a slip or two away apart from case and hyphens, or beginning with the
+/// word.
 pub fn nearest<'n>(word: &str, names: impl Iterator<Item = &'n str>) -> Option<&'n str> {
     let plain = |text: &str| text.to_lowercase().replace(['-', ' '], "_");
     let (word, names) = (plain(word), names.collect::<Vec<_>>());

@@ -1,4 +1,4 @@
-//! Specimens that differ: numbers of the muscle that are others for one specimen. What isn't stated is shared.
+//! Specimens that have numbers of their own. A number that isn't stated for a specimen is shared.
 
 use crate::error::MuscleError;
 use crate::file_error::FileError;
@@ -48,7 +48,8 @@ impl Specimen {
 }
 
 impl Muscle {
-    /// The same with numbers \[SI\] in which a specimen differs; they replace earlier ones of that specimen.
+    /// The same muscle with numbers \[SI\] in which a specimen differs. They replace earlier ones of that
+    /// specimen.
     ///
     /// # Errors
     /// If the name is blank or has quotes or control characters, or the muscle can't have one of the numbers.
@@ -61,7 +62,7 @@ impl Muscle {
         if name.trim().is_empty() || name.contains(|c: char| c.is_control() || matches!(c, '"' | '\\')) {
             return Err(MuscleError::SpecimenName { name: shortened(&name) });
         }
-        // What a bladder or its gas needs is known first.
+        // The wall comes first, because a bladder or its gas needs it.
         numbers.sort_by_key(|(parameter, _)| (*parameter != Parameter::Wall, *parameter));
         let specimen = Specimen { name, numbers, place: Place::default() };
         self.with_numbers_of(&specimen)?;
@@ -78,14 +79,14 @@ impl Muscle {
         &self.specimens
     }
 
-    /// The same without specimens of their own numbers.
+    /// The same muscle without the specimens that differ from it.
     #[must_use]
     pub fn without_specimens(mut self) -> Self {
         self.specimens.clear();
         self
     }
 
-    /// The muscle that a specimen is; the muscle as stated if nothing is stated for the specimen.
+    /// The muscle of a specimen: the muscle as stated if nothing is stated for the specimen.
     ///
     /// # Errors
     /// If the muscle, changed since the specimen was added, can't have its numbers.
@@ -100,8 +101,8 @@ impl Muscle {
         self.clone().without_specimens().with_all(&specimen.numbers)
     }
 
-    /// A copy with several parameters changed, in SI and in their order. A number that stays what it is leaves the muscle as it is, to the bit; the
-    /// two numbers of a limit to the unfolding may be new together.
+    /// A copy with several parameters changed, in SI and in their order. A number that doesn't change leaves
+    /// the muscle as it is, to the bit. The two numbers of a limit to the unfolding may be new together.
     ///
     /// # Errors
     /// As [`Muscle::with`].
@@ -121,10 +122,12 @@ impl Muscle {
         Ok(muscle)
     }
 
-    /// Compares the specimens that are stated with those of the data; returns those of the data of which nothing is stated: they are the muscle as it is.
+    /// Compares the stated specimens with those of the data. Returns those of the data for which nothing is
+    /// stated: they are the muscle as it is.
     ///
     /// # Errors
-    /// If nothing is measured on a specimen that is stated, or a specimen of the data looks like a slip in the name of one that is stated. The message has the place in the muscle's file.
+    /// If nothing is measured on a stated specimen, or if a specimen of the data looks like a slip in the
+    /// name of a stated one. The message has the place in the muscle's file.
     pub fn check_specimens<'n>(&self, measured: &'n [String]) -> Result<Vec<&'n str>, FileError> {
         if self.specimens.is_empty() {
             return Ok(Vec::new());
@@ -168,7 +171,8 @@ impl Muscle {
         placed.unwrap_or_else(|| FileError::whole(self.name(), what, instead))
     }
 
-    /// The specimens' own numbers changed in the ratio in which those of the muscle have changed since `before`.
+    /// The same muscle with the specimens' own numbers changed in the ratio in which those of the muscle have
+    /// changed since `before`.
     #[must_use]
     pub fn with_specimens_following(mut self, before: &Self) -> Self {
         let ratio = |parameter: Parameter| {
@@ -192,7 +196,7 @@ fn is_slip(stated: &str, other: &str) -> bool {
     digits(stated) == digits(other)
 }
 
-/// A name as TOML takes it for a key.
+/// A name in the form that TOML takes as a key.
 pub(crate) fn toml_key(name: &str) -> String {
     if crate::learnt::is_plain(name) { name.to_owned() } else { format!("\"{name}\"") }
 }
@@ -230,7 +234,7 @@ pub(crate) fn specimens_in(all: &Settings<'_>, mut muscle: Muscle) -> Result<Mus
     Ok(muscle)
 }
 
-/// The numbers of a table and of the tables in it; `path` is theirs in a muscle file.
+/// The numbers of a table and of the tables in it. `path` is the table's path in a muscle file.
 fn numbers_in(
     table: &Settings<'_>,
     path: &str,

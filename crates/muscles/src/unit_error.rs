@@ -7,16 +7,16 @@ use crate::units::Quantity;
 use std::fmt;
 use thiserror::Error;
 
-/// What a text was to be: a quantity of one dimension, or a number with any unit.
+/// What a text should be: a quantity of one dimension, or a number with any unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Wanted {
-    /// What it is in words, such as "length".
+    /// The quantity in words, such as "length".
     pub quantity: &'static str,
     /// A value written as it should be.
     pub example: &'static str,
     /// The natural unit.
     pub unit: &'static str,
-    /// Its dimension; none where any will do.
+    /// Its dimension; `None` if any will do.
     pub dimension: Option<Dimension>,
     /// The units of the dimension, each with its size in SI units.
     pub known: Units,
@@ -41,7 +41,7 @@ impl Wanted {
         }
     }
 
-    /// The symbols of the units it may have, with commas.
+    /// The symbols of the allowed units, with commas.
     #[must_use]
     pub fn symbols(&self) -> String {
         let named = self.known.iter().map(|(symbol, _)| *symbol).filter(|symbol| !symbol.is_empty());
@@ -52,7 +52,7 @@ impl Wanted {
         self.dimension.is_none()
     }
 
-    /// What to do about a unit that is not known.
+    /// What to do about an unknown unit.
     fn cure(&self) -> String {
         if self.is_any() {
             let known = symbols().map(|(symbol, ..)| symbol).collect::<Vec<_>>();
@@ -187,7 +187,7 @@ pub enum UnitError {
         /// What is needed.
         wanted: &'static Wanted,
     },
-    /// A unit longer than any that is meant.
+    /// A unit that is longer than any sensible one.
     #[error(
         "the unit `{text}` has {length} bytes, at most {MAX_UNIT} are read: write it as powers, such as `m^3`"
     )]
@@ -208,7 +208,7 @@ pub enum UnitError {
         /// The symbol.
         unit: String,
     },
-    /// A product behind a quotient, which people read in two ways.
+    /// A product behind a quotient, which can be read in two ways.
     #[error(
         "`{text}` can be read in two ways: put what is divided by in parentheses, such as `J/(kg K)`, or write `J K/kg`"
     )]
@@ -216,7 +216,7 @@ pub enum UnitError {
         /// What was written.
         text: String,
     },
-    /// Not products, quotients and powers of units.
+    /// A unit that is not made of products, quotients and powers.
     #[error(
         "the unit `{text}` lacks {lacking}: write units with blanks, `/` and whole powers, such as `N s/m^2`"
     )]
@@ -226,7 +226,7 @@ pub enum UnitError {
         /// What should stand there.
         lacking: &'static str,
     },
-    /// A power beyond reason.
+    /// A power that is too large.
     #[error(
         "the unit `{text}` has a power beyond {MAX_POWER}, or is too large or small to count in: write a smaller power"
     )]

@@ -14,12 +14,13 @@ pub(crate) const MAX_POWER: f64 = 12.0;
 /// Temperature scales with an offset.
 const OFFSET: &[&str] = &["degC", "degF", "celsius", "fahrenheit"];
 
-/// Reads a unit of any dimension, such as "N s/Pa", "1/K", "mm^2" or "N/(m s)": its size in SI units and its dimension.
+/// Reads a unit of any dimension, such as "N s/Pa", "1/K", "mm^2" or "N/(m s)": its size in SI units and its
+/// dimension.
 ///
-/// Products are written with a blank, `*` or `.`, quotients with `/`, powers with `^` and a whole number (or one and a
-/// half, as in `m^1.5`). Nothing, "1" and "-" mean a pure number. What stands behind a `/` ends at the next `/`: a
-/// product there needs parentheses. Symbols are those of the quantities of this crate and s, ms, us, min, h, K, kg, g,
-/// J, Hz and decade.
+/// Products are written with a blank, `*` or `.`, quotients with `/`, powers with `^` and a whole number (or
+/// one and a half, as in `m^1.5`). Nothing, "1" and "-" mean a pure number. The divisor behind a `/` ends at
+/// the next `/`: a product there needs parentheses. Symbols are those of the quantities of this crate and s,
+/// ms, us, min, h, K, kg, g, J, Hz and decade.
 ///
 /// ```
 /// use bulge_muscles::{Dimension, units};
@@ -28,7 +29,8 @@ const OFFSET: &[&str] = &["degC", "degF", "celsius", "fahrenheit"];
 /// ```
 ///
 /// # Errors
-/// If the text has more than 64 bytes or is no such unit; a temperature scale with an offset (degC) is refused.
+/// If the text has more than 64 bytes or is no such unit; a temperature scale with an offset (degC) is
+/// refused.
 pub fn unit(text: &str) -> Result<(f64, Dimension), UnitError> {
     let length = text.trim().len();
     if length > MAX_UNIT {
@@ -81,7 +83,7 @@ impl Size {
     }
 }
 
-/// A power with a multiple of 1/2, which keeps whole numbers whole.
+/// A power with a multiple of 1/2 as exponent. Whole numbers stay whole.
 fn raise(value: f64, exponent: f64) -> f64 {
     #[expect(clippy::cast_possible_truncation, reason = "at most MAX_POWER")]
     let whole = value.powi(exponent.trunc() as i32);

@@ -26,7 +26,7 @@ pub(crate) const TABLE: &[(&str, Units, Dimension)] = &[
     ("ratio", &[("decade", 1.0)], Dimension::NONE),
 ];
 
-/// Units in words, which are not accepted (there would be no end of them) but recognised.
+/// Units in words. They are not accepted (there would be no end of them) but recognised.
 const WORDS: &[(&str, &str)] = &[
     ("meter", "m"),
     ("metre", "m"),
@@ -62,7 +62,7 @@ const fn of<Q: Quantity>() -> (&'static str, Units, Dimension) {
     (Q::NAME, Q::UNITS, Q::DIMENSION)
 }
 
-/// What a symbol measures, such as "length".
+/// The quantity that a symbol measures, such as "length".
 pub(crate) fn measured(matches: impl Fn(&str) -> bool) -> Option<&'static str> {
     TABLE.iter().find(|(_, units, _)| units.iter().any(|(symbol, _)| matches(symbol))).map(|(name, ..)| *name)
 }
@@ -106,7 +106,8 @@ fn raised(c: char) -> Option<char> {
     RAISED.chars().zip("0123456789-".chars()).find(|(from, _)| *from == c).map(|(_, to)| to)
 }
 
-/// The symbol of those known that was probably meant: the same but for case, a word for it, or one slip of the finger away.
+/// The known symbol that was probably meant: the same except for case, a word for it, or one slip of the
+/// finger away.
 pub(crate) fn nearest(
     unit: &str,
     known: &(impl Iterator<Item = &'static str> + Clone),

@@ -10,9 +10,9 @@ pub use crate::unit_error::{UnitError, Wanted};
 pub use crate::unit_expression::unit;
 use crate::unit_table::{Units, measured, nearest, normalised};
 
-/// A dimension with its units: what [`parse`] needs to know about a type.
+/// A dimension with its units: the properties of a type that [`parse`] needs.
 pub trait Quantity: Copy {
-    /// What it is in words, such as "length".
+    /// Its name in words, such as "length".
     const NAME: &'static str;
     /// Its physical dimension.
     const DIMENSION: Dimension;
@@ -28,7 +28,7 @@ pub trait Quantity: Copy {
     fn si(self) -> f64;
 }
 
-/// A number with its unit, of whatever dimension.
+/// A number with its unit, of any dimension.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Any {
     /// The value in SI units.
@@ -82,7 +82,7 @@ pub fn factor<Q: Quantity>(unit: &str) -> Result<f64, UnitError> {
 }
 
 impl Wanted {
-    /// The same of what is wanted.
+    /// The same for a wanted quantity.
     ///
     /// # Errors
     /// If the unit is not of the dimension.
@@ -95,8 +95,9 @@ impl Wanted {
 
 /// Reads a value with an optional width: "110 mm", "110 mm +- 0.2 mm", "110 ± 0.2 mm", "110 mm +- 0.5 %".
 ///
-/// The width (one standard deviation) has the same dimension, or is a percentage of the value; for a [`Ratio`], whose
-/// own unit is the percentage, it is absolute. `+- 0`, with or without a unit, says that the value is exact.
+/// The width (one standard deviation) has the same dimension, or is a percentage of the value; for a
+/// [`Ratio`], whose own unit is the percentage, it is absolute. `+- 0`, with or without a unit, says that the
+/// value is exact.
 ///
 /// # Errors
 /// If either part is not a quantity of the dimension or the width is negative.
@@ -105,7 +106,7 @@ pub fn parse_with_width<Q: Quantity>(text: &str) -> Result<(Q, Option<Q>), UnitE
     Ok((Q::from_si(value.si), width.map(Q::from_si)))
 }
 
-/// The same of any dimension: "1 N +- 0.2 N", "50 ± 30 N", "1 N s +- 5 %".
+/// The same for any dimension: "1 N +- 0.2 N", "50 ± 30 N", "1 N s +- 5 %".
 ///
 /// # Errors
 /// If either part is not a number with a unit, their dimensions differ, or the width is negative.
@@ -132,22 +133,23 @@ pub fn parse_range<Q: Quantity>(text: &str) -> Result<(Q, Q), UnitError> {
     Ok((ends[0], ends[1]))
 }
 
-/// Writes a quantity so that [`parse`] gives back exactly the same number: in the natural unit with as few digits as
-/// that takes, else in SI.
+/// Writes a quantity so that [`parse`] gives back exactly the same number: in the natural unit with as few
+/// digits as possible, else in SI.
 #[must_use]
 pub fn exact_text<Q: Quantity>(quantity: Q) -> String {
     exact_text_in(quantity, Q::SHOWN.0)
 }
 
-/// The same in another unit of the dimension; a unit that is not known gives SI.
+/// The same in another unit of the dimension. An unknown unit gives SI.
 pub(crate) fn exact_text_in<Q: Quantity>(quantity: Q, unit: &str) -> String {
     let in_si = Q::UNITS.first().map_or("", |first| first.0);
     let (unit, factor) = find(Q::UNITS, unit).unwrap_or((in_si, 1.0));
     exact(quantity.si(), unit, factor, in_si)
 }
 
-/// Writes an SI value in a unit so that [`any`] gives back exactly the same number, with as few digits as that takes;
-/// where the unit cannot do that, in SI units; as a pure number if the unit is none that [`unit()`] reads.
+/// Writes an SI value in a unit so that [`any`] gives back exactly the same number, with as few digits as
+/// possible. If the unit cannot do that, the value is written in SI units. If [`unit()`] does not read the
+/// unit, it is written as a pure number.
 ///
 /// ```
 /// use bulge_muscles::units;
@@ -167,7 +169,7 @@ fn exact(si: f64, unit: &str, factor: f64, in_si: &str) -> String {
     format!("{} {unit}", plain_number(number)).trim_end().to_owned()
 }
 
-/// A double as people write it, and with an exponent where that would take many zeros.
+/// A double as people write it, with an exponent if it would take many zeros otherwise.
 fn plain_number(value: f64) -> String {
     if value == 0.0 || (1e-5..1e16).contains(&value.abs()) { value.to_string() } else { format!("{value:e}") }
 }
@@ -192,7 +194,7 @@ fn read_with_width(wanted: &'static Wanted, text: &str) -> Result<(Any, Option<f
         return Ok((scaled(wanted, value_text, value_number, &value_unit)?, Some(0.0)));
     }
     let is_ratio = |unit: &str| !unit.is_empty() && find(Ratio::UNITS, &normalised(unit)).is_some();
-    // Of what may be a pure number, "20 +- 1 %" has one unit for both, as "110 ± 0.2 mm" has.
+    // If the value may be a pure number, "20 +- 1 %" has one unit for both, as "110 ± 0.2 mm" has.
     let may_be_pure = wanted.dimension.is_none() || find(wanted.known, "").is_some();
     let is_relative =
         is_ratio(&width_unit) && !is_ratio(&value_unit) && !(may_be_pure && value_unit.is_empty());
@@ -207,14 +209,14 @@ fn read_with_width(wanted: &'static Wanted, text: &str) -> Result<(Any, Option<f
     }
     let width = if is_relative { value.si.abs() * width.si } else { width.si };
     if width >= 0.0 && width.is_finite() {
-        // Without the sign of a zero, which nobody writes back.
+        // The sign of a zero is dropped, because nobody writes it back.
         Ok((value, Some(width.abs())))
     } else {
         Err(UnitError::NegativeWidth { text: shortened(text), width, wanted })
     }
 }
 
-/// Values of which those without a unit take that of the last.
+/// A list of values. Those without a unit take that of the last.
 fn read_all<Q: Quantity>(items: &[&str]) -> Result<Vec<Q>, UnitError> {
     let wanted = Wanted::of::<Q>();
     let parts = items.iter().map(|item| split(wanted, item)).collect::<Result<Vec<_>, _>>()?;
@@ -244,7 +246,7 @@ fn split(wanted: &'static Wanted, text: &str) -> Result<(f64, String), UnitError
             let fixed = shortened(&body.replacen(',', ".", 1));
             Err(UnitError::DecimalComma { text: shortened(text), fixed })
         }
-        // What a unit of any dimension begins with is for its reader to say.
+        // Only the reader of units can judge the beginning of a unit of any dimension.
         Some(c)
             if wanted.dimension.is_some()
                 && !(c.is_alphabetic() || matches!(c, '%' | '\u{2030}' | '\u{b0}' | '\u{b5}')) =>
@@ -272,7 +274,8 @@ fn not_finite(wanted: &'static Wanted, text: &str) -> UnitError {
     UnitError::NotFinite { text: shortened(text), wanted }
 }
 
-/// How many bytes at the beginning are a decimal number: sign, digits, point, exponent ("12e" has no exponent).
+/// How many bytes at the beginning are a decimal number: sign, digits, point, exponent ("12e" has no
+/// exponent).
 fn number_length(text: &str) -> usize {
     let bytes = text.as_bytes();
     let digits = |from: usize| bytes[from..].iter().take_while(|b| b.is_ascii_digit()).count();

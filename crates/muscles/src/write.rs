@@ -95,7 +95,7 @@ fn effect_lines(lines: &mut Vec<String>, muscle: &Muscle) {
         lines.push(format!("\n[effects.{name}]"));
         lines.extend(body);
     };
-    // What is 0 and has no width need not be said.
+    // A number that is 0 and has no width need not be stated.
     let counts = |value: f64, parameter| value != 0.0 || muscle.width(parameter).is_some();
     let end_radius = match muscle.construction() {
         Construction::Pleated(pleated) => pleated.end_radius,
@@ -129,7 +129,7 @@ fn effect_lines(lines: &mut Vec<String>, muscle: &Muscle) {
         effect("bladder-elasticity", body);
     }
     if let Some(thickness) = muscle.gas_wall() {
-        // Without a thickness it is that of the wall.
+        // A missing thickness means that of the wall.
         let stated = muscle.is_stated(Parameter::GasWall);
         let body = stated.then(|| line(muscle, "thickness", Parameter::GasWall, thickness));
         effect("wall-thickness", body.into_iter().collect());

@@ -1,4 +1,5 @@
-//! Muscle files: every mistake is answered with its place and its cure, every muscle survives writing and reading.
+//! Muscle files: every mistake is answered with its place and its cure, every muscle survives writing and
+//! reading.
 
 #![expect(clippy::unwrap_used, clippy::panic, reason = "helpers of tests may fail like the tests")]
 
@@ -371,7 +372,8 @@ fn effects_that_are_wrong() {
     refused(&format!("{PLEATED}[[effects]]"), (6, 1), &["is a list"]);
 }
 
-/// Names are checked by who knows them all; a slip in the name of a shape effect is answered as well.
+/// Names are checked by the code that knows them all. A slip in the name of a shape effect is answered as
+/// well.
 #[test]
 fn learnt_effects() {
     let text = format!(
@@ -393,7 +395,7 @@ fn learnt_effects() {
     assert!(error.to_string().starts_with("m.toml:12:11: this is too late"), "{error}");
     assert_eq!(muscle.learnt_error(0, "w", "i").line(), Some(6));
     assert_eq!(muscle.learnt_error(9, "w", "i").line(), None);
-    // Equal wherever it stands, and whatever the file is called.
+    // Effects are equal wherever they stand, and whatever the file is called.
     let moved = from_toml(&text.replace("[effects.coulomb", "\n\n[effects.coulomb"), "n.toml").unwrap();
     assert_eq!(moved, muscle);
     assert_eq!(from_toml(&to_toml(&muscle), "copy").unwrap(), muscle);
@@ -475,7 +477,7 @@ fn specimens_have_numbers_of_their_own() {
         assert_eq!(muscle.of_specimen(name).unwrap(), base);
     }
     assert_eq!(from_toml(&to_toml(&muscle), "copy").unwrap(), muscle);
-    // What is stated for all is that of all that don't state it.
+    // A number stated for all specimens applies to those that don't state it.
     let wide = muscle.with(Parameter::Radius, 0.012).unwrap();
     assert_eq!(wide.of_specimen("short").unwrap().radius(), Length::mm(12.0));
     let longer = muscle.with(Parameter::Length, 0.275).unwrap().with_specimens_following(&muscle);

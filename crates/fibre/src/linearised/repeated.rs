@@ -1,4 +1,5 @@
-//! The same question at many pressures and contractions: what doesn't depend on them is worked out once.
+//! The same question at many pressures and contractions. Everything that doesn't depend on them is computed
+//! once.
 
 use bulge_muscles::{Pressure, Quantity};
 
@@ -14,11 +15,11 @@ use crate::problem::Problem;
 pub struct Repeated {
     problem: Problem,
     moving: Parts<Jet>,
-    /// Where there is a closed form.
+    /// The closed form, if there is one.
     straight: Option<Straight>,
 }
 
-/// Any pressure will do to make the problem.
+/// An arbitrary pressure to make the problem.
 const REFERENCE: f64 = 1e5;
 
 impl Repeated {
@@ -32,14 +33,14 @@ impl Repeated {
         Ok(Self { problem, moving, straight })
     }
 
-    /// The muscle at some pressure.
+    /// The muscle at an arbitrary pressure.
     #[must_use]
     pub fn problem(&self) -> &Problem {
         &self.problem
     }
 
-    /// [`Problem::linearised_from`] at a gauge pressure, for a fit: from a neighbouring equilibrium, values of straight fibres are as exact as
-    /// without it, to 1e-13, and their derivatives to 3e-7.
+    /// [`Problem::linearised_from`] at a gauge pressure, for a fit. From a neighbouring equilibrium the
+    /// values of straight fibres are as exact as without one, to 1e-13, and their derivatives to 3e-7.
     ///
     /// # Errors
     /// Those of [`Problem::at_pressure`] and [`Problem::linearised`].
@@ -51,7 +52,7 @@ impl Repeated {
     ) -> Result<Linearised, FibreError> {
         let found =
             self.straight.as_ref().and_then(|straight| straight.at(start, pressure.si(), contraction));
-        // What has no answer there, or none that makes sense, is told why by the usual way.
+        // If there is no answer, or none that makes sense, the usual way tells why.
         found.map_or_else(
             || {
                 self.problem.at_pressure(pressure)?.linearised_from(
@@ -79,7 +80,8 @@ mod tests {
         from_toml(&text, "m.toml").unwrap()
     }
 
-    /// Within these parts of the value, and of the slopes by contraction, pressure and the variables, of these sizes.
+    /// The values agree within the first part, the slopes by contraction, pressure and the variables, of
+    /// these sizes, within the second.
     fn close(a: &Linear, b: &Linear, [value, slope]: [f64; 2], sizes: &[f64]) {
         assert!((a.value - b.value).abs() <= value * b.value.abs(), "{a:?} {b:?}");
         let slopes = |l: &Linear| -> Vec<f64> {

@@ -1,6 +1,7 @@
-//! Straight fibres in closed form, asked many times: only pressure and contraction change.
+//! Straight fibres in closed form, solved many times: only pressure and contraction change.
 //!
-//! With the closed form's f, v and rho = 1/cos(phi_R), all functions of (eps, L, kappa), kappa proportional to p, and h the depth of the pleats:
+//! With f, v and rho = 1/cos(phi_R) of the closed form, all functions of (eps, L, kappa), with kappa
+//! proportional to p, and with the depth h of the pleats:
 //!
 //! ```text
 //! F = p A f     N = F + p B rho^2     r = C rho - h     V = W v             A = a l0^2,  B = a pi (R + h)^2,  C = R + h,  W = a l0^3
@@ -16,7 +17,7 @@ use crate::parts::{Jet, LANES, Parts};
 use crate::problem::Problem;
 use crate::shape::{Convergence, Method};
 
-/// What doesn't depend on pressure and contraction.
+/// The numbers that don't depend on pressure and contraction.
 #[derive(Debug, Clone)]
 pub(super) struct Straight {
     slenderness: Jet,
@@ -31,7 +32,7 @@ pub(super) struct Straight {
 }
 
 impl Straight {
-    /// Of the parts of a problem with derivatives; none if there is no closed form.
+    /// Made from the parts of a problem with derivatives. `None` if there is no closed form.
     pub(super) fn of(problem: &Problem, moving: &Parts<Jet>) -> Option<Self> {
         if problem.is_cylinder() || problem.method(Approach::Auto) != Ok(Method::ClosedForm) {
             return None;
@@ -53,7 +54,7 @@ impl Straight {
         })
     }
 
-    /// The answer from a neighbour; none where it has to be looked at more closely.
+    /// The answer, started from a neighbour. `None` if it needs a closer look.
     pub(super) fn at(&self, start: Option<&Start>, pressure: f64, contraction: f64) -> Option<Linearised> {
         let kappa = pressure * self.compliance.value();
         let usual =
@@ -133,7 +134,7 @@ impl Straight {
     }
 }
 
-/// p times a number.
+/// Multiplies a number by p.
 #[inline]
 fn under_pressure(linear: &mut Linear, pressure: f64) {
     linear.by_pressure = linear.value + pressure * linear.by_pressure;

@@ -1,19 +1,21 @@
-//! Interpolation and integration between Chebyshev's points (L. N. Trefethen, *Approximation Theory and Approximation Practice*, SIAM 2013, chapters 2 to 8).
+//! Interpolation and integration between Chebyshev's points (L. N. Trefethen, *Approximation Theory and
+//! Approximation Practice*, SIAM 2013, chapters 2 to 8).
 
 use arrayvec::ArrayVec;
 use bulge_numerics::gauss;
 use std::f64::consts::PI;
 use std::sync::LazyLock;
 
-/// Intervals between Chebyshev's points: the first that is enough.
+/// Intervals between Chebyshev's points. The first number that is enough is used.
 pub(super) const INTERVALS: [usize; 4] = [8, 16, 32, 64];
 /// Points for the most intervals.
 pub(super) const MOST: usize = 65;
-/// Size of the last two Chebyshev coefficients, relative to the function, from which on it counts as resolved: the integrals then err by about the square root of the ratio of
-/// two coefficients less.
+/// Size of the last two Chebyshev coefficients, relative to the function, below which the function counts as
+/// resolved. The integrals then err by about the square root of the ratio of two coefficients less.
 const RESOLVED: f64 = 3e-12;
 
-/// Chebyshev's points between 0 (mid-length) and 1 (fitting), with what interpolates and integrates between them.
+/// Chebyshev's points between 0 (mid-length) and 1 (fitting), with the weights for interpolation and
+/// integration between them.
 pub(super) struct Grid {
     pub(super) places: Vec<f64>,
     /// Barycentric weights.
@@ -47,10 +49,12 @@ impl Grid {
         grid
     }
 
-    /// Weights of the values in the integral of a factor of t times f(t x) over t from 0 to 1, with x the place `last`.
+    /// Weights of the values in the integral of a factor of t times f(t x) over t from 0 to 1, where x is the
+    /// point number `last`.
     ///
-    /// In the angle of `x = sin^2(angle/2)` the polynomials change no faster at the ends than between: on one interval the highest one passes through
-    /// half a period, which the rule of six points has to 1e-9 (at half the degree to 1e-12).
+    /// In the angle of `x = sin^2(angle/2)` the polynomials change no faster at the ends than in between. On
+    /// one interval the highest one passes through half a period. The rule of six points integrates that to
+    /// 1e-9 (at half the degree to 1e-12).
     fn integrated(&self, last: usize, factor: impl Fn(f64) -> f64) -> Vec<f64> {
         let mut weights = vec![0.0; self.places.len()];
         if last == 0 {
@@ -73,7 +77,7 @@ impl Grid {
         weights
     }
 
-    /// The weights of the values in the interpolated one at `x`: the barycentric formula.
+    /// The weights of the values in the interpolated value at `x` (barycentric formula).
     pub(super) fn shares(&self, x: f64) -> ArrayVec<f64, MOST> {
         let pairs = self.places.iter().zip(&self.weights);
         let mut shares: ArrayVec<f64, MOST> = pairs.map(|(place, weight)| weight / (x - place)).collect();
@@ -82,13 +86,13 @@ impl Grid {
             let per_sum = 1.0 / sum;
             shares.iter_mut().for_each(|share| *share *= per_sum);
         } else {
-            // One of the points.
+            // `x` is one of the points.
             shares.iter_mut().for_each(|share| *share = f64::from(u8::from(share.is_infinite())));
         }
         shares
     }
 
-    /// Whether values at the points are those of a function that they resolve, where it counts against a `floor` too.
+    /// Whether the points resolve the function with these values. Its size is at least `floor` in this test.
     pub(super) fn resolves(&self, values: &(impl Iterator<Item = f64> + Clone), floor: f64) -> bool {
         let sum = |weights: &[f64]| weights.iter().zip(values.clone()).map(|(w, v)| w * v).sum::<f64>().abs();
         let largest = values.clone().fold(floor.abs(), |largest: f64, value| largest.max(value.abs()));
@@ -103,8 +107,8 @@ pub(super) static GRIDS: LazyLock<[Grid; INTERVALS.len()]> = LazyLock::new(|| IN
 mod tests {
     use super::*;
 
-    /// The weights against the integrals of Chebyshev's polynomials of every degree that a grid resolves: T_k(2 x - 1) by differences of its
-    /// antiderivatives, and twice by those of these.
+    /// The weights against the integrals of Chebyshev's polynomials of every degree that a grid resolves:
+    /// T_k(2 x - 1) by differences of its antiderivatives, and twice by those of these.
     #[test]
     fn polynomials_are_integrated_to_the_highest_degree() {
         let polynomial = |k: i32, x: f64| (f64::from(k) * (2.0 * x - 1.0).acos()).cos();

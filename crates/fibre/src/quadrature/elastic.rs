@@ -1,4 +1,5 @@
-//! Fibres that stretch: the tension at every radius follows from the first integral, and the difference of the forces from its derivatives there.
+//! Fibres that stretch. The tension at every radius follows from the first integral, and the difference of
+//! the forces from its derivatives at that radius.
 //!
 //! ```text
 //! H(r, T) = H_mid                              gives T(r)
@@ -6,10 +7,11 @@
 //! G = rho (s + rho g),      s = |k| N at mid-length,      g(rho) = integral from 0 to 1 of (1 - t) G''(t rho) dt,      G'' = dh/dr - A''
 //! ```
 //!
-//! with rho = |r_mid - r|. G'' is known wherever T is ([`Net::local`]), and nothing is a difference of large numbers: near a saddle, where s is exp(-50), as elsewhere.
-//! T and g are smooth functions of rho, interpolated between Chebyshev's points (see `chebyshev`): twice as many, until the last
-//! coefficients of both vanish; on pieces, where that takes too many. One begins where cloth comes taut: there H and G'
-//! are continuous and G'' jumps.
+//! with rho = |r_mid - r|. G'' is known wherever T is ([`Net::local`]). Nothing is a difference of large
+//! numbers, not even near a saddle, where s is exp(-50). T and g are smooth functions of rho and are
+//! interpolated between Chebyshev's points (see `chebyshev`). Their number is doubled until the last
+//! coefficients of both vanish. Where that takes too many points, the meridian is cut into pieces. One piece
+//! begins where cloth comes taut: there H and G' are continuous and G'' jumps.
 
 use arrayvec::ArrayVec;
 use bulge_numerics::Real;
@@ -25,10 +27,10 @@ const MOST_PIECES: usize = 6;
 const MOST_NODES: usize = 200;
 /// Newton steps for a tension from that of a neighbour.
 const STEPS: u32 = 20;
-/// Step of the tension, relative, at which they end: the next one is rounding.
+/// Relative step of the tension at which the Newton steps end. The next step is rounding.
 const SETTLED: f64 = 1e-9;
 
-/// What is known at one of Chebyshev's points.
+/// The values at one of Chebyshev's points.
 #[derive(Debug, Clone, Copy)]
 struct Node<D> {
     strain: D,
@@ -36,11 +38,12 @@ struct Node<D> {
     curve: D,
 }
 
-/// A part of the way from mid-length to the fitting on which one law acts and one grid is enough, with G = G_0 + x (G'_0 + x g), x from its beginning.
+/// A part of the way from mid-length to the fitting on which one law acts and one grid is enough. There
+/// G = G_0 + x (G'_0 + x g), with x from the beginning of the piece.
 #[derive(Debug, Clone, Copy)]
 struct Piece<D> {
     span: Span,
-    /// Place of its first node.
+    /// Index of its first node.
     first: usize,
     /// G_0, G'_0.
     rise: D,
@@ -82,7 +85,7 @@ pub(super) struct Elastic<D> {
     rise: D,
     slope: D,
     bend: D,
-    /// The net with what acts at mid-length.
+    /// The net that acts at mid-length.
     net: Net<D>,
 }
 
@@ -93,7 +96,8 @@ pub(super) struct Tensions {
 }
 
 impl Tensions {
-    /// As many as resolve the meridian from a middle; none where there is none, or where that takes too many. They are added to `evaluations`.
+    /// Takes as many points as resolve the meridian from a middle. `None` if there is no meridian, or if it
+    /// takes too many points. The points are added to `evaluations`.
     pub(super) fn of(net: &Net<f64>, middle: &Middle<f64>, evaluations: &mut u32) -> Option<Self> {
         let mut meridian = Elastic::begun(net, middle);
         let mut found = Self { spans: ArrayVec::new(), values: ArrayVec::new() };
@@ -125,7 +129,7 @@ impl Tensions {
     }
 }
 
-/// The tension at which H has a value.
+/// The tension at which H has the value `energy`.
 fn tension_at(net: &Net<f64>, r: f64, energy: f64, near: f64) -> Option<f64> {
     let mut tension = near;
     for _ in 0..STEPS {
@@ -135,7 +139,7 @@ fn tension_at(net: &Net<f64>, r: f64, energy: f64, near: f64) -> Option<f64> {
         if !step.is_finite() {
             return None;
         }
-        // Fibres that are nearly slack carry less than rounding makes of the rubber's energy.
+        // In fibres that are nearly slack the tension is less than the rounding of the rubber's energy.
         if step.abs() <= SETTLED * tension.abs().max(energy.abs()) {
             return Some(tension - (net.hamiltonian(r, tension) - energy) / slope);
         }
@@ -238,7 +242,7 @@ impl<D: Real> Elastic<D> {
             && span.slack
             && !last.span.slack
         {
-            // The pieces stay where they are as the radius moves at which G'' jumps.
+            // The pieces stay where they are while the radius at which G'' jumps moves.
             let moved = self.ends.r_m - cloth.radius - size * span.from;
             slope += (self.bend - *bends.first()?) * moved;
         }

@@ -1,10 +1,12 @@
-//! Elastic braids drawn out to a waist: the tension at mid-length is an unknown of its own, since two tensions can have one curvature.
+//! Elastic braids drawn out to a waist: the tension at mid-length is an unknown of its own, since two
+//! tensions can have one curvature.
 
 use bulge_fibre::{Approach, Problem};
 use bulge_muscles::{Angle, Braided, Construction, Fibre, Force, Length, Muscle, Pressure};
 
-/// Forces of a braid of l0 = 55.8 mm, r0 = 10 mm, 7.22 degrees, 60 fibres of EA = 11 840 N at 32 676 Pa, from an independent integration of the
-/// equilibrium in Hamiltonian form from the fitting inwards (SciPy, relative tolerance 3e-13), 8 digits.
+/// Forces of a braid of l0 = 55.8 mm, r0 = 10 mm, 7.22 degrees, 60 fibres of EA = 11 840 N at 32 676 Pa, from
+/// an independent integration of the equilibrium in Hamiltonian form from the fitting inwards (SciPy,
+/// relative tolerance 3e-13), 8 digits.
 #[test]
 fn force_agrees_with_an_independent_integration() {
     let braid = Braided::new(Length::mm(10.0), Angle::deg(7.22)).unwrap().with_fibres(60).unwrap();

@@ -1,4 +1,5 @@
-//! Two independent ways to one equilibrium: `linearised` takes the meridian by quadrature, `follow` integrates the ODE.
+//! Two independent ways to one equilibrium: `linearised` takes the meridian by quadrature, `follow`
+//! integrates the ODE.
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
@@ -56,7 +57,8 @@ fn both_ways_give_the_same_equilibrium() {
                     ("radius", ode.mid_radius_m, found.mid_radius_m.value, 0.0),
                 ] {
                     let error = (a - b).abs() / (a.abs() + size);
-                    // A muscle held far beyond its limit pushes with fibres that are nearly slack; the integration of the ODE loses digits there.
+                    // A muscle held far beyond its limit pushes with fibres that are nearly slack; the
+                    // integration of the ODE loses digits there.
                     let most = if ode.force_n >= 0.0 { 3e-10 } else { 2e-7 };
                     assert!(error < most, "{name} {bar} bar {contraction} {a} {b} {error:e}: {muscle:?}");
                 }
@@ -73,8 +75,9 @@ fn cloth(muscle: &Muscle, stiffness: f64, radius: f64) -> Muscle {
         .with_unfolding(Unfolding::new(LineStiffness::from_si(stiffness), Length::from_si(radius)).unwrap())
 }
 
-/// Equilibria that are hard to find: cloth 10^5 times stiffer than p R, fittings on which the fibres nearly lie along the circumference, a long
-/// braid whose middle is a cylinder, a waist. F = -p dV/dl, or dF/dp = -dV/dl with stored energy, and derivatives as differences.
+/// Equilibria that are hard to find: cloth 10^5 times stiffer than p R, fittings on which the fibres nearly
+/// lie along the circumference, a long braid whose middle is a cylinder, a waist. They satisfy F = -p dV/dl,
+/// or dF/dp = -dV/dl with stored energy, and their derivatives agree with differences.
 #[test]
 fn hard_equilibria_obey_virtual_work() {
     let pleated = preset("ppam-2-r16").unwrap();
@@ -119,9 +122,11 @@ fn hard_equilibria_obey_virtual_work() {
     }
 }
 
-/// What a cold search costs: evaluations of the ODE's right-hand side and of the quadratures' integrands, the same on every machine. 336 to 410 of a pleated muscle
-/// until its meridians became quadratures; 471 to 669 while their integrands had 1/r in them; since the substitution in the radius these. A count below its
-/// range is a gain: then these numbers and those of `docs/speed.md` are to be brought up to date.
+/// The cost of a cold search: evaluations of the ODE's right-hand side and of the quadratures' integrands,
+/// the same on every machine. A pleated muscle took 336 to 410 until its meridians became quadratures, and
+/// 471 to 669 while their integrands had 1/r in them. The numbers here hold since the substitution in the
+/// radius. A count below its range is a gain: these numbers and those of `docs/speed.md` must then be brought
+/// up to date.
 #[test]
 fn evaluations_stay_few() {
     let pleated = preset("ppam-2-r16").unwrap();
@@ -165,8 +170,9 @@ fn evaluations_stay_few() {
     }
 }
 
-/// Braids on narrow fittings whose stiff cloth comes taut within a part of 10^4 of the contraction, a long one whose gas acts far inside, and rubber on wide fittings, which
-/// leaves little to contract: found on a path of equilibria. F = -p dV/dl, or dF/dp = -dV/dl with stored energy.
+/// Equilibria that are found on a path: braids on narrow fittings whose stiff cloth comes taut within a part
+/// of 10^4 of the contraction, a long one whose gas acts far inside, and rubber on wide fittings, which
+/// leaves little to contract. They satisfy F = -p dV/dl, or dF/dp = -dV/dl with stored energy.
 #[test]
 fn paths_lead_where_no_start_does() {
     let narrow = cloth(&with(&braid(150.0, 40.0), &[(Parameter::FittingRadius, 0.004)]), 3e5, 0.0042);
@@ -194,7 +200,8 @@ fn paths_lead_where_no_start_does() {
     assert!((at(0.01356).force_n / (1e5 * slope) - 1.0).abs() < 1e-5, "{slope}");
 }
 
-/// Elastic fibres are not drawn out farther than any fibre bears: status 3 with the largest force, and every approach alike.
+/// Elastic fibres are not drawn out farther than any fibre bears. The answer is status 3 with the largest
+/// force, the same for every approach.
 #[test]
 fn fibres_are_not_drawn_out_beyond_what_they_bear() {
     let stiffness = [(Parameter::FibreStiffness, 5e3)];

@@ -1,4 +1,5 @@
-//! A braid whose rubber alone carries the pressure has no equilibrium with taut fibres, and the answer says so.
+//! A braid whose rubber alone carries the pressure has no equilibrium with taut fibres, and the answer says
+//! so.
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
@@ -20,7 +21,8 @@ fn rubber_that_carries_the_pressure_leaves_the_fibres_slack() {
     assert!(
         matches!(at(1.0, 0.2), Err(FibreError::Slack { contraction, .. }) if contraction.to_bits() == 0.2_f64.to_bits())
     );
-    // The hoop of a tube without fibres: p = (2 t/r0) W_2/(l1 l2), which the fibres take over as soon as p is larger.
+    // The hoop of a tube without fibres: p = (2 t/r0) W_2/(l1 l2), which the fibres take over as soon as p is
+    // larger.
     let (l1, cos): (f64, f64) = (0.8, 25.0_f64.to_radians().cos());
     let l2 = (1.0 - (l1 * cos).powi(2)).sqrt() / 25.0_f64.to_radians().sin();
     let carried = 2e-3 / 0.01 * 2.0 * 0.29 * (l2 - 1.0 / (l2.powi(3) * l1 * l1)) / (l1 * l2) * 10.0;
@@ -35,8 +37,9 @@ fn clamped() -> Muscle {
     from_toml(text, "m.toml").unwrap()
 }
 
-/// Where the fibres become slack, the rubber of the middle carries its whole meridional force, N = 2 pi r0 t W_1/cos(alpha0), and what
-/// is said of contractions beyond the limit is one thing: the limit, at which the muscle ceases to pull before its fibres are slack.
+/// Where the fibres become slack, the rubber of the middle carries its whole meridional force, N = 2 pi
+/// r0 t W_1/cos(alpha0). All messages about contractions beyond the limit name the same limit, at which the
+/// muscle ceases to pull before its fibres are slack.
 #[test]
 fn fibres_become_slack_where_the_rubber_carries_all() {
     let problem = Problem::new(&clamped(), Pressure::bar(0.5)).unwrap();
@@ -83,9 +86,10 @@ fn elastic(muscle: &Muscle, newton: f64) -> Muscle {
     muscle.clone().with_fibre(Fibre::new(Force::n(newton)).unwrap()).unwrap()
 }
 
-/// What a muscle holds at a contraction at which it pulls is answered with an equilibrium, and more than it holds anywhere with the limit: where its fibres become slack before
-/// the force vanishes (stiff rubber on wide fittings, gas far inside), where stretched fibres give way and the volume falls before the limit, and
-/// where a short muscle that is drawn out holds more again.
+/// A volume that the muscle holds at a contraction at which it pulls is answered with an equilibrium, and a
+/// larger one with the limit. This holds where the fibres become slack before the force vanishes (stiff
+/// rubber on wide fittings, gas far inside), where stretched fibres give way and the volume falls before the
+/// limit, and where a short muscle that is drawn out holds more again.
 #[test]
 fn a_volume_that_a_muscle_holds_is_found() {
     let wide = rubber(&braid(972.0, 11.58, 22.33, 15.4), 87.0, 0.0, 2.96);
@@ -114,8 +118,9 @@ fn a_volume_that_a_muscle_holds_is_found() {
     }
 }
 
-/// Fibres that stiff rubber on narrow fittings stretches by 30.4 % at the muscle's length at rest, more than the 30 % that drawing out may: rounding of the
-/// length doesn't refuse that, and the range ends where the force vanishes.
+/// Stiff rubber on narrow fittings stretches the fibres by 30.4 % at the muscle's length at rest, more than
+/// the 30 % that drawing out may. Rounding of the length doesn't cause a refusal, and the range ends where
+/// the force vanishes.
 #[test]
 fn stretched_at_rest_is_not_drawn_out() {
     let cloth = Unfolding::new(LineStiffness::n_per_m(401.0), Length::mm(7.026)).unwrap();
