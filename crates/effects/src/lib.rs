@@ -1,5 +1,5 @@
-//! The catalogue of physical effects of pneumatic muscles: equations, parameters, sources and signatures.
-//! Also the force laws.
+//! The catalogue of physical effects of pneumatic muscles (equations, parameters, sources, signatures), and
+//! the force laws.
 //!
 //! An effect is one file and one entry in the list of its group. Its [`Action`] is one of four. It changes
 //! the muscle whose equilibrium is solved ([`ShapeEffect`]) or the input of that muscle ([`InputEffect`]),
@@ -8,15 +8,15 @@
 //!
 //! # A new effect
 //!
-//! 1. Write one file in the folder of its group (`geometry`, `material`, `load`, `rig`, `specimen`). It contains
-//!    a unit struct with `impl Effect` (its card and its parameters) and with the one trait of its action. Start
-//!    from a neighbour with the same action: `pleat_depth.rs` (shape), `pressure_gain.rs` (input),
-//!    `coulomb_friction.rs` (load), `force_gain.rs` (output). Numbers are [`Jet`]s, which compute their own
-//!    derivatives, so there are none to write.
+//! 1. Write one file in the folder of its group (`geometry`, `material`, `load`, `rig`, `specimen`). It
+//!    contains a unit struct with `impl Effect` (its card and its parameters) and with the one trait of its
+//!    action. Start from a neighbour with the same action: `pleat_depth.rs` (shape), `pressure_gain.rs`
+//!    (input), `coulomb_friction.rs` (load), `force_gain.rs` (output). Numbers are [`Jet`]s, which compute
+//!    their own derivatives, so there are none to write.
 //! 2. Add its line to the list in the `mod.rs` of the folder.
-//! 3. Test it in the file: a force that is known otherwise, its limit, no change at `off`. The tests of the whole
-//!    catalogue include it automatically. They check the card, the units, the bounds, the derivatives against
-//!    differences, and that it changes nothing where it is off.
+//! 3. Test it in the file: a force that is known otherwise, its limit, no change at `off`. The tests of the
+//!    whole catalogue include it automatically. They check the card, the units, the bounds, the derivatives
+//!    against differences, and that it changes nothing where it is off.
 //!
 //! Help, muscle files, fits, rankings, sweeps, reports and Python then know the effect. A shape effect
 //! changes [`bulge_fibre::Parts`], from which the equilibrium is solved with all derivatives. If a formula

@@ -6,8 +6,8 @@
 //! - Numbers, with a unit in brackets where they have one: `3 [N]`, `0.1 [N/mm^2]`. The constant `pi`.
 //! - The variables of [`VARIABLES`], and parameters.
 //! - `+ - * / ^` (`a^b^c` is `a^(b^c)`, `-x^2` is `-(x^2)`) and parentheses.
-//! - `sqrt exp ln log10 sin cos tan asin atan tanh sinh cosh abs sign min max step clamp`, and `if(a < b, x, y)` with
-//!   `< <= > >=`.
+//! - `sqrt exp ln log10 sin cos tan asin atan tanh sinh cosh abs sign min max step clamp`, and
+//!   `if(a < b, x, y)` with `< <= > >=`.
 //!
 //! At a kink the derivative is that of the active branch. For equal arguments of `min` and `max` this is the
 //! first one. `clamp` is active up to and including its limits. `abs`, `sqrt` and powers between 0 and 1 have

@@ -59,8 +59,8 @@ pub(super) fn force<D: Real, const N: usize>(at: LawPoint<D>, length: f64, c: [D
     at.pressure * (l.squared() * 3.0 - b.squared()) / (turns.squared() * (4.0 * PI))
 }
 
-/// Efficiency eta = F/F_t of a muscle (S5 eq. 13): the measured force F over the force F_t of the ideal braid,
-/// both in N.
+/// Efficiency eta = F/F_t of a muscle (S5 eq. 13): the measured force F over the force F_t of the ideal
+/// braid, both in N.
 ///
 /// None if the ideal braid doesn't pull (F_t below 1 uN, which is rounding error). At its largest contraction
 /// the ratio is 0/0.
