@@ -332,6 +332,7 @@ impl Model {
             None => Jet::from(theta[index]),
         };
         let mut parts = body.parts.still();
+        // A specimen that differs from the muscle also needs the effects on the stated muscle.
         let all = Parts::of(&self.muscle);
         let mut stated = (body.parts != all).then(|| all.still());
         for chosen in self.effects.iter().filter(|chosen| chosen.effect.stage() == Stage::Shape) {

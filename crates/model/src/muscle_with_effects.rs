@@ -218,6 +218,7 @@ impl MuscleWithEffects {
             return Ok(found);
         }
         for isobar in &mut found {
+            // The effects move the end of the range, and the muscle may push at some of the points.
             let end = self.range_end(Pressure::pa(isobar.pressure_pa), approach).ok();
             isobar.contraction_limit = end.map(RangeEnd::contraction);
             isobar.ends_slack = matches!(end, Some(RangeEnd::FibresSlacken(_)));

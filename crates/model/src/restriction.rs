@@ -115,6 +115,7 @@ impl Model {
             }
         }
         for Restriction { number, says } in restrictions.iter() {
+            // Ties come last, because a tie copies the value of its source.
             let Says::Tied(to) = says else { continue };
             for place in 0..self.parameters.len() {
                 let p = &self.parameters[place];
@@ -133,9 +134,11 @@ impl Model {
             to.is_of(p) && (to.specimen.is_some() || p.specimen.is_none() || p.specimen == own)
         };
         let Some(mut source) = self.parameters.iter().position(is_source) else { return };
+        // Following ties to their source avoids chains of ties.
         while let Some(next) = self.parameters[source].tied {
             source = next;
         }
+        // A circle of ties is ignored.
         if source == place {
             return;
         }

@@ -46,6 +46,7 @@ pub(crate) fn segment(
                 continue;
             }
             let slot = if task.keeps { i } else { 0 };
+            // An empty slot may be filled from the previous row of the same muscle.
             let same = before.filter(|(_, body)| *body == run.body && run.walks());
             if !task.keeps && same.is_none() {
                 slots[slot] = None;

@@ -45,6 +45,7 @@ pub fn specimen(muscle: &Muscle, name: &str, known: &[Known]) -> Result<(Muscle,
         let mut changed = false;
         for ((name, set), (_, found)) in of_muscle.iter().zip(&of_own) {
             let (stated, own) = (value(&muscle.numbers(), name), value(&own_parts.numbers(), name));
+            // Equal values mean that the effect sets the number itself.
             let same = set.value().to_bits() == found.value().to_bits();
             if stated == 0.0 || stated.to_bits() == own.to_bits() || !same {
                 continue;

@@ -56,6 +56,7 @@ impl Strands {
     ) -> Jet {
         let step = Jet::from(moment.step);
         let Some(memory) = memory.filter(|memory| memory.len() == MEMORY) else { return step };
+        // The limit keeps cos(theta) away from 0.
         let sine = (self.sine_per_radius * found.mid_radius.value()).min(0.999);
         let stretch = found.tension * (self.compliance / (1.0 - sine * sine).sqrt());
         let radius = if self.is_solved { found.mid_radius / (stretch + 1.0) } else { found.mid_radius };

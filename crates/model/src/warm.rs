@@ -62,6 +62,7 @@ impl Held {
         shapes: &[usize],
         shape: impl Fn(&[f64]) -> Option<Parts>,
     ) -> Option<Arc<Lattice>> {
+        // With the shape parameters of the derivatives set back, the parts must be those that were solved.
         let mut back = theta.to_vec();
         for index in &self.shapes {
             back[*index] = self.theta[*index];
