@@ -35,7 +35,7 @@ const LEVEL_WIDTH: usize = 3;
 pub(crate) const FEWEST_NODES: usize = WIDTH * WIDTH;
 /// Steps of ln(p) and s at refinement 1.
 const STEP: [f64; 2] = [0.15, 0.115];
-/// Number of steps of ln(p) on a lattice for levels that make one of those.
+/// A lattice for levels of pressure divides one of these steps of ln(p) into this many.
 const LEVEL_STEPS: i64 = 5;
 /// The contraction at which the lattice turns from even to logarithmic spacing.
 const BEND: f64 = 0.02;

@@ -123,8 +123,8 @@ impl Record {
         &self.specimens
     }
 
-    /// The unpressurised length of the muscle over that of the row's specimen. An error of length changes the
-    /// contraction by this factor more.
+    /// The unpressurised length of the muscle over that of the row's specimen. The contraction due to an
+    /// error of length scales with this factor.
     #[must_use]
     pub fn shortness(&self, row: usize) -> f64 {
         let specimen = self.moments.get(row).map_or(0, |moment| moment.specimen as usize);
