@@ -1,30 +1,31 @@
-//! The card of an effect: what a person, a fit, a ranking and a report need to know about it.
+//! The card of an effect: the information that people, fits, rankings and reports need about it.
 
 use bulge_muscles::{Kind, Muscle, Parameter};
 use serde::Serialize;
 
 use crate::mechanism::{Form, Mechanism};
 
-/// For [`Card::kind`]: an effect of pleated muscles alone.
+/// For [`Card::kind`]: an effect of pleated muscles only.
 pub const PLEATED: Option<Kind> = Some(Kind::Pleated);
-/// For [`Card::kind`]: an effect of braided muscles alone.
+/// For [`Card::kind`]: an effect of braided muscles only.
 pub const BRAIDED: Option<Kind> = Some(Kind::Braided);
 
-/// Where in the chain from reading to reading an effect acts.
+/// The stage of an effect in the chain from reading to reading.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Stage {
     /// It changes the muscle whose equilibrium is solved: geometry and material.
     Shape,
-    /// It changes what reaches the muscle: the true pressure and contraction behind the readings, or how the equilibrium is taken.
+    /// It changes the input of that muscle: the true pressure and contraction behind the readings, or the way
+    /// the equilibrium is evaluated.
     Input,
     /// It adds a force to that of the equilibrium.
     Load,
-    /// It changes what the load cell reads.
+    /// It changes the reading of the load cell.
     Output,
 }
 
-/// What kind of thing it is.
+/// The group of an effect.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Group {
@@ -41,7 +42,7 @@ pub enum Group {
 }
 
 impl Group {
-    /// All groups in the order in which they are listed.
+    /// All groups in the order of the catalogue.
     pub const ALL: [Self; 5] = [Self::Geometry, Self::Material, Self::Load, Self::Rig, Self::Specimen];
 
     /// The heading.
@@ -57,7 +58,7 @@ impl Group {
     }
 }
 
-/// How far the source can be relied on.
+/// The reliability of a source.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Evidence {
@@ -67,7 +68,8 @@ pub enum Evidence {
     Derived,
     /// Read in a public source other than the five papers.
     LookedUp,
-    /// From the literature by memory: the formula was derived again where possible, constants were not read again.
+    /// Recalled from the literature. The formula was derived again where possible; the constants were not
+    /// checked against the source.
     Literature,
     /// Stated by the user.
     User,
@@ -99,7 +101,7 @@ pub enum Parity {
     Mixed,
 }
 
-/// How the effect shows in a residual F - F_model(p, eps, direction).
+/// The signature of an effect in a residual F - F_model(p, eps, direction).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Signature<'a> {
     /// Power of the pressure, in words: "0", "1", "2", "0 and 1".
@@ -110,51 +112,51 @@ pub struct Signature<'a> {
     pub shape: &'a str,
 }
 
-/// An effect that data may not tell from this one.
+/// Another effect that data may not distinguish from this one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct Twin<'a> {
     /// Its name.
     pub name: &'a str,
-    /// How near it is: "identical", "0.98 after calibration".
+    /// How similar it is: "identical", "0.98 after calibration".
     pub how: &'a str,
 }
 
-/// A card without its parameters (those are [`crate::Effect::parameters`]).
+/// A card without its parameters, which are [`crate::Effect::parameters`].
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Card<'a> {
     /// Name in commands, files and reports: lower-case words with hyphens.
     pub name: &'a str,
-    /// The family it counts under; its own name if it is the family's first member.
+    /// The family under which it counts. The first member of a family has the family's name.
     pub family: &'a str,
-    /// What happens physically, above the family: all members of a family share it.
+    /// The physical mechanism, which all members of a family share.
     pub mechanism: Mechanism,
     /// How exact the formula can be.
     pub form: Form,
     /// A heading.
     pub title: &'a str,
-    /// What happens physically, in two or three sentences.
+    /// The physical process, in two or three sentences.
     pub about: &'a str,
     /// The equation, in plain text.
     pub equation: &'a str,
-    /// Where the equation comes from.
+    /// The source of the equation.
     pub source: &'a str,
-    /// How reliable that is.
+    /// The reliability of the source.
     pub evidence: Evidence,
-    /// What kind of thing it is.
+    /// The group.
     pub group: Group,
-    /// The family of muscle that has it; both if none.
+    /// The kind of muscle that has the effect; none if both have it.
     pub kind: Option<Kind>,
-    /// How it shows.
+    /// The signature in a residual.
     pub signature: Signature<'a>,
-    /// What it is confused with.
+    /// The effects with which it is confused.
     pub twins: &'a [Twin<'a>],
-    /// The experiment that separates it from its twins.
+    /// The experiment that distinguishes it from its twins.
     pub separate: &'a str,
     /// Columns beyond pressure, contraction and force without which the effect cannot be seen.
     pub needs: Needs,
 }
 
-/// What the data must have for an effect to show.
+/// The data that are needed for an effect to show.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Needs {
@@ -162,7 +164,7 @@ pub enum Needs {
     Nothing,
     /// A path: rows in the order of measurement, shortening and lengthening.
     Path,
-    /// A path on which the length or the pressure goes to and fro.
+    /// A path on which the length or the pressure reverses.
     Motion,
     /// A path with time on which the pressure rises and falls.
     PressurePath,
@@ -193,45 +195,49 @@ impl Needs {
     }
 }
 
-/// One number of an effect.
+/// One parameter of an effect.
 ///
-/// `low`, `high`, `typical`, `off` and `prior` are in SI, or multiples of the muscle's own value where `relative_to` names one.
+/// `low`, `high`, `typical`, `off` and `prior` are in SI. If `relative_to` names a number of the muscle, they
+/// are multiples of it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct ParameterCard<'a> {
-    /// Name in results.
+    /// The name in results.
     pub name: &'a str,
-    /// Key in a muscle file's table `[effects.NAME]`; the name, if not stated otherwise.
+    /// The key in the table `[effects.NAME]` of a muscle file; by default the name.
     pub key: &'a str,
-    /// Unit in which it is shown and written, such as "MPa".
+    /// The unit in which it is shown and written, such as "MPa".
     pub unit: &'a str,
     /// Size of that unit in SI.
     pub factor: f64,
-    /// Bounds of a fit.
+    /// Lower bound of a fit.
     pub low: f64,
-    /// Bounds of a fit.
+    /// Upper bound of a fit.
     pub high: f64,
-    /// A usual value, from which a fit starts.
+    /// The usual value from which a fit starts.
     pub typical: f64,
     /// The value at which the effect does nothing.
     pub off: f64,
-    /// Mean and standard deviation on the scale of the literature.
+    /// Mean and standard deviation from the literature, in the same units.
     pub prior: Option<(f64, f64)>,
-    /// The range outside which the value is no cure but a symptom; the bounds if not stated.
+    /// The plausible range; by default the bounds. A fitted value outside it points to another cause.
     pub plausible: Option<(f64, f64)>,
-    /// The muscle's number of which the others are multiples.
+    /// The number of the muscle of which the values are multiples.
     pub relative_to: Option<Parameter>,
-    /// Whether a fit runs over its logarithm: positive numbers that may differ by orders of magnitude.
+    /// Whether the logarithm is fitted. This suits positive parameters that may differ by orders of
+    /// magnitude.
     pub logarithmic: bool,
-    /// Whether a result is also shown as its reciprocal: name and unit with its size in SI.
+    /// Whether results also show the reciprocal: its name, its unit and the size of the unit in SI.
     pub reciprocal: Option<(&'a str, &'a str, f64)>,
-    /// Whether a muscle file may leave it out: then it is off, as in files from before the effect had it.
+    /// Whether a muscle file may leave it out. The value is then `off`, as in files from before the effect
+    /// had this parameter.
     pub may_be_absent: bool,
-    /// What it is.
+    /// A description.
     pub about: &'a str,
 }
 
 impl<'a> ParameterCard<'a> {
-    /// A number with its unit (and the size of the unit in SI), bounds and usual value in that unit, switched off at 0.
+    /// A parameter with its unit (and the size of the unit in SI). Bounds and usual value are in that unit,
+    /// and `off` is 0.
     #[must_use]
     pub const fn new(
         name: &'a str,
@@ -259,7 +265,7 @@ impl<'a> ParameterCard<'a> {
         }
     }
 
-    /// A multiple of one of the muscle's own numbers, switched off at 1; shown in `unit`.
+    /// A multiple of one of the muscle's own numbers, with `off` at 1. It is shown in `unit`.
     #[must_use]
     pub const fn multiple(
         name: &'a str,
@@ -272,52 +278,52 @@ impl<'a> ParameterCard<'a> {
         Self { low, high, typical: 1.0, off: 1.0, relative_to: Some(parameter), ..base }
     }
 
-    /// Mean and standard deviation, in the shown unit (or as multiples).
+    /// Sets the prior mean and standard deviation, in the shown unit (or as multiples).
     #[must_use]
     pub const fn prior(self, mean: f64, sd: f64) -> Self {
         let factor = if self.relative_to.is_some() { 1.0 } else { self.factor };
         Self { prior: Some((mean * factor, sd * factor)), ..self }
     }
 
-    /// The range outside which a fitted value is a wrong cure, in the shown unit (or as multiples).
+    /// Sets the plausible range, in the shown unit (or as multiples).
     #[must_use]
     pub const fn plausible(self, low: f64, high: f64) -> Self {
         let factor = if self.relative_to.is_some() { 1.0 } else { self.factor };
         Self { plausible: Some((low * factor, high * factor)), ..self }
     }
 
-    /// The same, fitted over its logarithm.
+    /// Has the logarithm fitted.
     #[must_use]
     pub const fn logarithmic(self) -> Self {
         Self { logarithmic: true, ..self }
     }
 
-    /// The same under another key in muscle files.
+    /// Sets another key for muscle files.
     #[must_use]
     pub const fn key(self, key: &'a str) -> Self {
         Self { key, ..self }
     }
 
-    /// The same, which a muscle file may leave out.
+    /// Allows muscle files to leave the parameter out.
     #[must_use]
     pub const fn off_if_absent(self) -> Self {
         Self { may_be_absent: true, ..self }
     }
 
-    /// The same with another value, in the shown unit (or as a multiple), at which the effect does nothing.
+    /// Sets the value at which the effect does nothing, in the shown unit (or as a multiple).
     #[must_use]
     pub const fn off_at(self, off: f64) -> Self {
         let factor = if self.relative_to.is_some() { 1.0 } else { self.factor };
         Self { off: off * factor, ..self }
     }
 
-    /// The same, with its reciprocal shown beside it.
+    /// Has the reciprocal shown as well.
     #[must_use]
     pub const fn reciprocal(self, name: &'a str, unit: &'a str, factor: f64) -> Self {
         Self { reciprocal: Some((name, unit, factor)), ..self }
     }
 
-    /// The card for one muscle: multiples become SI values.
+    /// The card for one muscle, with multiples converted to SI values.
     ///
     /// A multiple of a number that the muscle doesn't have stays a multiple of 1.
     #[must_use]

@@ -1,4 +1,4 @@
-//! The list: every effect that fits, rankings, help and reports know, built in or added by the user.
+//! The list of all effects, built in or added by the user. Fits, rankings, help and reports use it.
 
 use std::sync::Arc;
 
@@ -6,18 +6,18 @@ use crate::effect::Effect;
 use crate::law::LAWS;
 use crate::{geometry, load, material, rig, specimen};
 
-/// Why an effect is not in the catalogue, or can't enter it.
+/// The reason why an effect isn't in the catalogue, or can't be added to it.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum CatalogueError {
-    /// A name that nobody knows.
+    /// An unknown name.
     #[error("there is no effect `{name}`; {instead}")]
     Unknown {
         /// The name asked for.
         name: String,
-        /// What to write instead.
+        /// A hint at the name to write instead.
         instead: String,
     },
-    /// A name that is taken.
+    /// A name that is already taken.
     #[error("an effect or a law `{name}` is in the catalogue already; give yours another name")]
     Taken {
         /// The name.
@@ -25,7 +25,7 @@ pub enum CatalogueError {
     },
 }
 
-/// Effects by name.
+/// All effects, by name.
 #[derive(Debug, Clone)]
 pub struct Catalogue {
     effects: Vec<Arc<dyn Effect>>,
@@ -45,7 +45,7 @@ impl Catalogue {
         Self { effects: groups.into_iter().flatten().collect() }
     }
 
-    /// The same with one more effect.
+    /// Adds an effect.
     ///
     /// # Errors
     /// If its name is taken.
@@ -64,10 +64,10 @@ impl Catalogue {
         self.effects.iter()
     }
 
-    /// The effect of that name.
+    /// The effect with this name.
     ///
     /// # Errors
-    /// If there is none; the message names the nearest ones.
+    /// If there is none. The message lists the nearest names.
     pub fn find(&self, name: &str) -> Result<&Arc<dyn Effect>, CatalogueError> {
         self.effects.iter().find(|effect| effect.card().name == name).ok_or_else(|| {
             let plain = |text: &str| text.to_lowercase().replace(['_', ' '], "-");

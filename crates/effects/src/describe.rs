@@ -1,4 +1,5 @@
-//! Cards to read: an effect on a page, the catalogue as a list, and both as documents for programs.
+//! Descriptions of effects: a card as a page of text, the catalogue as a list, and both as documents for
+//! programs.
 
 use bulge_muscles::Kind;
 use serde::Serialize;
@@ -9,14 +10,15 @@ use crate::effect::Effect;
 use crate::law::PAPERS;
 use crate::mechanism::{Form, Mechanism};
 
-/// Widest line.
+/// The largest line width.
 const WIDTH: usize = 100;
-/// Columns of the labels below the parameters.
+/// The width of the labels below the parameters.
 const LABEL: usize = 10;
-/// An equation in the overview shorter than this says nothing.
+/// The overview leaves out a beginning of an equation that is shorter than this.
 const LEAST_EQUATION: usize = 12;
 
-/// The card of an effect as a page of text: title, what happens, equation, parameters, signature, twins and how to tell them apart, source.
+/// The card of an effect as a page of text: title, physical process, equation, parameters, signature, twins,
+/// the experiment that distinguishes them, and source.
 ///
 /// ```
 /// let catalogue = bulge_effects::Catalogue::builtin();
@@ -58,7 +60,8 @@ pub fn describe(effect: &dyn Effect) -> String {
     page.text
 }
 
-/// All effects, one line each: name, title and the beginning of the equation, by group, the members of a family below its first.
+/// All effects by group, one line each: name, title and the beginning of the equation. The members of a
+/// family follow its first one.
 #[must_use]
 pub fn overview(catalogue: &Catalogue) -> String {
     let cards: Vec<Card<'_>> = catalogue.iter().map(|effect| effect.card()).collect();
@@ -91,46 +94,46 @@ pub fn overview(catalogue: &Catalogue) -> String {
     page.text.trim_start_matches('\n').to_owned()
 }
 
-/// A card for programs: owned texts, numbers in the units in which they are shown.
+/// A card for programs. It owns its texts, and its numbers are in the units in which they are shown.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CardDocument {
     /// Name in commands, files and reports.
     pub name: String,
-    /// The family it counts under.
+    /// The family under which it counts.
     pub family: String,
-    /// What happens physically, above the family.
+    /// The physical mechanism, above the family.
     pub mechanism: Mechanism,
     /// How exact the formula can be.
     pub form: Form,
     /// A heading.
     pub title: String,
-    /// What happens physically.
+    /// The physical process.
     pub about: String,
     /// The equation in plain text.
     pub equation: String,
     /// Its parameters.
     pub parameters: Vec<ParameterDocument>,
-    /// What kind of thing it is.
+    /// The group.
     pub group: Group,
-    /// Where it acts.
+    /// The stage at which it acts.
     pub stage: Stage,
-    /// The family of muscle that has it; both if none.
+    /// The kind of muscle that has the effect; none if both have it.
     pub kind: Option<Kind>,
-    /// How it shows in a residual.
+    /// The signature in a residual.
     pub signature: SignatureDocument,
-    /// What it is confused with.
+    /// The effects with which it is confused.
     pub twins: Vec<TwinDocument>,
-    /// The experiment that separates it from its twins.
+    /// The experiment that distinguishes it from its twins.
     pub separate: String,
-    /// What the data must have.
+    /// The data that are needed.
     pub needs: Needs,
-    /// Where the equation comes from.
+    /// The source of the equation.
     pub source: String,
-    /// How reliable that is.
+    /// The reliability of the source.
     pub evidence: Evidence,
 }
 
-/// How an effect shows.
+/// The signature of an effect.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SignatureDocument {
     /// Power of the pressure, in words.
@@ -141,48 +144,49 @@ pub struct SignatureDocument {
     pub shape: String,
 }
 
-/// An effect that data may not tell from another.
+/// Another effect that data may not distinguish from this one.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct TwinDocument {
     /// Its name.
     pub name: String,
-    /// How near it is.
+    /// How similar it is.
     pub how: String,
 }
 
-/// A parameter with its numbers in `unit`, or as multiples where `multiple_of` names one of the muscle's own numbers.
+/// A parameter with its numbers in `unit`. If `multiple_of` names a number of the muscle, they are multiples
+/// of it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ParameterDocument {
-    /// Name in results.
+    /// The name in results.
     pub name: String,
-    /// Key in a muscle file.
+    /// The key in a muscle file.
     pub key: String,
     /// Unit.
     pub unit: String,
-    /// The muscle's number of which the others are multiples.
+    /// The number of the muscle of which the values are multiples.
     pub multiple_of: Option<&'static str>,
-    /// Bounds of a fit.
+    /// Lower bound of a fit.
     pub low: f64,
-    /// Bounds of a fit.
+    /// Upper bound of a fit.
     pub high: f64,
     /// A usual value.
     pub typical: f64,
     /// The value at which the effect does nothing.
     pub off: f64,
-    /// Mean and standard deviation on the scale of the literature.
+    /// Mean and standard deviation from the literature.
     pub prior: Option<[f64; 2]>,
-    /// The range outside which the value is no cure.
+    /// The plausible range.
     pub plausible: Option<[f64; 2]>,
-    /// Whether a fit runs over its logarithm.
+    /// Whether the logarithm is fitted.
     pub logarithmic: bool,
-    /// Name and unit of its reciprocal, where that is shown too.
+    /// Name and unit of the reciprocal, if it is shown too.
     pub reciprocal: Option<[String; 2]>,
-    /// What it is.
+    /// A description.
     pub about: String,
 }
 
 impl CardDocument {
-    /// Of an effect.
+    /// The document of an effect.
     #[must_use]
     pub fn of(effect: &dyn Effect) -> Self {
         let card = effect.card();
@@ -214,7 +218,7 @@ impl CardDocument {
 impl ParameterDocument {
     fn of(card: &ParameterCard<'_>) -> Self {
         let factor = if card.relative_to.is_some() { 1.0 } else { card.factor };
-        // As a person would write it: 0.3 MPa, not 0.30000000000000004.
+        // Numbers as a person writes them: 0.3 MPa, not 0.30000000000000004.
         let shown = |si: f64| format!("{:.11e}", si / factor).parse().unwrap_or(si / factor);
         let pair = |(a, b): (f64, f64)| [shown(a), shown(b)];
         Self {
@@ -234,7 +238,7 @@ impl ParameterDocument {
         }
     }
 
-    /// Its range and the rest in one sentence.
+    /// The range and the other numbers in one sentence.
     fn range(&self) -> String {
         let times =
             self.multiple_of.map_or(String::new(), |of| format!(" times the {}", of.replace('_', " ")));
@@ -283,7 +287,7 @@ fn shows(signature: &Signature<'_>) -> String {
     format!("{pressure}, {parity}; over the contraction: {}", signature.shape)
 }
 
-/// The parts of an equation: two blanks or more, or a new line, stand between them.
+/// The parts of an equation, which are separated by two or more blanks or by a new line.
 fn parts(equation: &str) -> impl Iterator<Item = &str> {
     equation.split("  ").flat_map(str::lines).map(str::trim).filter(|part| !part.is_empty())
 }
@@ -309,12 +313,12 @@ fn shortened(text: &str, room: usize) -> String {
     if end == 0 { String::new() } else { format!("{} ...", text[..end].trim_end_matches([' ', ',', ';'])) }
 }
 
-/// Whether a text has a word, such as "S1".
+/// Whether a text contains a word, such as "S1".
 fn has_word(text: &str, word: &str) -> bool {
     text.split(|c: char| !c.is_ascii_alphanumeric()).any(|other| other == word)
 }
 
-/// A number with six significant digits at most.
+/// A number with at most six significant digits.
 fn digits(value: f64) -> String {
     let rounded: f64 = format!("{value:.5e}").parse().unwrap_or(value);
     if rounded != 0.0 && !(1e-4..1e7).contains(&rounded.abs()) {
@@ -324,7 +328,7 @@ fn digits(value: f64) -> String {
     }
 }
 
-/// Text in lines of [`WIDTH`].
+/// Text in lines of at most [`WIDTH`] characters.
 #[derive(Debug, Default)]
 struct Page {
     text: String,
@@ -336,18 +340,18 @@ impl Page {
         self.text.push('\n');
     }
 
-    /// Running text, the first line indented by `first`, the others by `rest`.
+    /// Writes running text. The first line is indented by `first`, the others by `rest`.
     fn paragraph(&mut self, first: usize, rest: usize, text: &str) {
         self.hanging(&" ".repeat(first), rest, text);
     }
 
-    /// Running text after what stands before it on the first line.
+    /// Writes running text after `before` on the first line.
     fn hanging(&mut self, before: &str, rest: usize, text: &str) {
         let mut line = before.to_owned();
         let mut is_empty = true;
         let mut words = text.split_whitespace().peekable();
         while let Some(word) = words.next() {
-            // A differential such as dF/d eps stays in one piece.
+            // A differential such as dF/d eps is kept in one piece.
             let is_split = word == "d" || word.ends_with("/d") || word.ends_with("(d");
             let rest_of_it = words.peek().filter(|_| is_split).map_or(0, |next| 1 + next.chars().count());
             if !is_empty && line.chars().count() + 1 + word.chars().count() + rest_of_it > WIDTH {

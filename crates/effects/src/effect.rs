@@ -1,4 +1,4 @@
-//! What an effect does: the public trait, and the states it reads and changes along a measured history.
+//! The public trait of an effect, and the states that effects read and change along a measured history.
 
 use bulge_fibre::Parts;
 pub use bulge_fibre::{Jet, LANES};
@@ -8,16 +8,17 @@ use std::fmt::Debug;
 
 use crate::card::{Card, ParameterCard, Stage};
 
-/// One measured moment: what is known of a row before any model is asked. SI.
+/// One measured moment: the readings of a row and its history, before any model is evaluated. In SI.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Moment {
-    /// Gauge pressure, as read \[Pa\].
+    /// Gauge pressure reading \[Pa\].
     pub pressure: f64,
-    /// Contraction, as read \[-\].
+    /// Contraction reading \[-\].
     pub contraction: f64,
-    /// +1 while shortening, -1 while lengthening, 0 at rest, at held length or in a static map: what friction outside the muscle follows.
+    /// +1 while shortening, -1 while lengthening, 0 at rest, at held length or in a static map. Friction
+    /// outside the muscle follows it.
     pub direction: f64,
-    /// +1 while the pressure rises, -1 while it falls, 0 where it is held.
+    /// +1 while the pressure rises, -1 while it falls, 0 while it is held.
     pub pressure_direction: f64,
     /// d(contraction)/dt \[1/s\]; 0 without time.
     pub rate: f64,
@@ -27,26 +28,28 @@ pub struct Moment {
     pub time: f64,
     /// Time since the first row of the file \[s\]; 0 without time.
     pub clock: f64,
-    /// Time since the row before \[s\]; 0 for the first of a sweep and without time.
+    /// Time since the previous row \[s\]; 0 for the first row of a sweep and without time.
     pub since: f64,
-    /// Change of the contraction since the row before; 0 for the first of a sweep.
+    /// Change of the contraction since the previous row; 0 for the first row of a sweep.
     pub step: f64,
-    /// Change of the pressure since the row before \[Pa\]; 0 for the first of a sweep and where the pressure is held.
+    /// Change of the pressure since the previous row \[Pa\]; 0 for the first row of a sweep and while the
+    /// pressure is held.
     pub pressure_step: f64,
-    /// Temperature above that of the first row \[K\]; 0 without the column.
+    /// Temperature above that of the first row \[K\]; 0 without a temperature column.
     pub temperature: f64,
-    /// Loops so far, from 0, with the part of the one under way: half of it at the far end.
+    /// Number of loops so far, from 0, including the completed part of the current one: half a loop at the
+    /// far end.
     pub cycle: f64,
-    /// Largest contraction so far in the sweep, this row included.
+    /// Largest contraction so far in the sweep, including this row.
     pub largest: f64,
-    /// Whether the row begins a sweep: memory starts anew.
+    /// Whether the row begins a sweep, where memory is reset.
     pub begins: bool,
-    /// Number of the specimen, from 0.
+    /// Index of the specimen, from 0.
     pub specimen: u32,
 }
 
 impl Moment {
-    /// A moment at rest: a point of a static map.
+    /// A moment at rest, such as a point of a static map.
     #[must_use]
     pub const fn at_rest(pressure: f64, contraction: f64) -> Self {
         Self {
@@ -69,14 +72,14 @@ impl Moment {
         }
     }
 
-    /// The branch of a loop: the direction of the length, or that of the pressure where the length is held.
+    /// The branch of a loop: the direction of the length, or that of the pressure if the length is held.
     #[must_use]
     pub fn branch(&self) -> f64 {
         if self.direction == 0.0 { self.pressure_direction } else { self.direction }
     }
 }
 
-/// The muscle's numbers that effects need. SI.
+/// The muscle's numbers that effects need. In SI.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Setting {
     /// Family of the muscle.
@@ -89,12 +92,12 @@ pub struct Setting {
     pub braid_angle: f64,
     /// Number of fibres, if known.
     pub fibres: Option<u32>,
-    /// Whether the equilibrium holds a bladder, or a wall energy of one's own.
+    /// Whether the equilibrium includes a bladder or a user's own wall energy.
     pub has_bladder: bool,
 }
 
 impl Setting {
-    /// Of a muscle.
+    /// The setting of a muscle.
     #[must_use]
     pub fn of(muscle: &Muscle) -> Self {
         Self {
@@ -107,13 +110,13 @@ impl Setting {
         }
     }
 
-    /// Whether it is a pleated muscle.
+    /// Whether the muscle is pleated.
     #[must_use]
     pub fn is_pleated(&self) -> bool {
         self.kind.is_pleated()
     }
 
-    /// The same with the fibres and the bladder of parts that effects have changed.
+    /// The setting with the fibres and the bladder of parts that effects have changed.
     #[must_use]
     pub fn with(self, parts: &Parts) -> Self {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a count of at least 3")]
@@ -122,60 +125,62 @@ impl Setting {
     }
 }
 
-/// What reaches the muscle: input effects change it before the equilibrium is taken.
+/// The input of the muscle. Input effects change it before the equilibrium is solved.
 ///
 /// ```text
 /// F = wall B(pressure area/wall, e),    e = contraction + give_force(F) + give_tension(N),    averaged over e + spread z
 /// ```
-/// with B the base law, N the meridional force at mid-length and z a standard normal number.
+/// Here B is the base law, N the meridional force at mid-length and z a standard normal number.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Input {
     /// True gauge pressure in the muscle \[Pa\].
     pub pressure: Jet,
     /// True contraction \[-\].
     pub contraction: Jet,
-    /// Factor on the area on which the pressure acts; 1.
+    /// Factor on the area on which the pressure acts. Without effects it is 1.
     pub area: Jet,
-    /// Factor on the moduli of bladder and cloth (and of fibres that stretch); 1.
+    /// Factor on the moduli of bladder and cloth (and of fibres that stretch). Without effects it is 1.
     pub wall: Jet,
-    /// Standard deviation of the fibres' lengths over l0; 0.
+    /// Standard deviation of the fibre lengths over l0. Without effects it is 0.
     pub spread: Jet,
-    /// Contraction hidden from the displacement sensor under the force; none.
+    /// Contraction under the force that the displacement sensor doesn't see. Without effects there is none.
     pub give_force: Give,
-    /// Contraction of the muscle under the meridional force at mid-length; none.
+    /// Contraction of the muscle under the meridional force at mid-length. Without effects there is none.
     pub give_tension: Give,
 }
 
-/// Contraction under a load L in newtons.
+/// Contraction under a load L \[N\].
 ///
 /// ```text
 /// give(L) = linear L + joint L (|L|/1 kN)^(power - 1)
 /// ```
-/// A joint under less than [`Give::SEATED`] is as stiff as under it: below it a power less than one would leave it without stiffness.
+/// Below [`Give::SEATED`] a joint has the stiffness it has there. A power below one would otherwise leave it
+/// without stiffness at zero load.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Give {
-    /// Of what gives in proportion to the load \[1/N\].
+    /// Compliance of the parts that give in proportion to the load \[1/N\].
     pub linear: Jet,
-    /// Of a joint, per load, under 1 kN \[1/N\].
+    /// Secant compliance of a joint at 1 kN \[1/N\].
     pub joint: Jet,
-    /// Power of the load with which the joint gives; 1.
+    /// Power of the load with which the joint gives. Without effects it is 1.
     pub power: Jet,
 }
 
 impl Give {
-    /// Load at which a joint's compliance is stated \[N\].
+    /// The load at which a joint's compliance is stated \[N\].
     pub const REFERENCE: f64 = 1e3;
-    /// Load under which a joint counts as seated \[N\]: what its own weight and a hand-tight screw come to.
+    /// The load from which a joint counts as seated \[N\], about that of its own weight and a hand-tight
+    /// screw.
     pub const SEATED: f64 = 1.0;
 
-    /// Nothing gives.
+    /// No compliance.
     #[must_use]
     pub fn none() -> Self {
         let [zero, power] = [0.0, 1.0].map(Jet::from);
         Self { linear: zero, joint: zero, power }
     }
 
-    /// Whether nothing gives, and no parameter makes it give.
+    /// Whether there is no compliance and no derivative of it.
     #[must_use]
     pub fn is_none(&self) -> bool {
         let still = |x: &Jet| x.value() == 0.0 && x.gradient().iter().all(|d| *d == 0.0);
@@ -189,7 +194,7 @@ impl Give {
         load * (self.linear + self.joint * ((self.power - 1.0) * 0.5 * seated.ln()).exp())
     }
 
-    /// Its derivative by the load \[1/N\].
+    /// The derivative of the contraction by the load \[1/N\].
     #[must_use]
     pub fn slope(&self, load: f64) -> f64 {
         let (squared, bend) = (load * load + Self::SEATED * Self::SEATED, self.power.value() - 1.0);
@@ -199,7 +204,7 @@ impl Give {
 }
 
 impl Input {
-    /// The readings taken as they are.
+    /// The input that equals the readings.
     #[must_use]
     pub fn of(pressure: Jet, contraction: Jet) -> Self {
         let [zero, one] = [0.0, 1.0].map(Jet::from);
@@ -214,13 +219,14 @@ impl Input {
         }
     }
 
-    /// Multiplies the force of the equilibrium: `F = wall B(pressure area/wall, e)`, so both factors together do.
+    /// Multiplies the force of the equilibrium. Since `F = wall B(pressure area/wall, e)`, this multiplies
+    /// both factors.
     pub fn multiply_force(&mut self, factor: Jet) {
         self.wall = self.wall * factor;
         self.area = self.area * factor;
     }
 
-    /// Multiplies the modulus of the bladder; the force of a muscle whose equilibrium has none.
+    /// Multiplies the modulus of the bladder, or the force if the equilibrium has no bladder.
     pub fn multiply_modulus(&mut self, factor: Jet, setting: &Setting) {
         if setting.has_bladder {
             self.wall = self.wall * factor;
@@ -230,7 +236,7 @@ impl Input {
     }
 }
 
-/// The equilibrium that the input leads to: load effects read it.
+/// The equilibrium at the input. Load effects read it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Balance {
     /// True gauge pressure in the muscle \[Pa\].
@@ -245,43 +251,46 @@ pub struct Balance {
     pub mid_radius: Jet,
     /// Enclosed volume \[m^3\].
     pub volume: Jet,
-    /// dF/d(contraction) of the equilibrium \[N\], without derivatives.
+    /// dF/d(contraction) of the equilibrium \[N\]. It carries no derivatives.
     pub slope: f64,
-    /// How far the strands turned at mid-length since the row before, as the contraction that turns them as much \[-\].
+    /// Turn of the strands at mid-length since the previous row, as the contraction that turns them by the
+    /// same angle \[-\].
     ///
-    /// Where the pressure is held it is the change of the contraction. At held length the strands turn because fibres stretch and the bladder
-    /// bears a smaller part of a higher pressure; a net of rigid fibres without bladder doesn't turn at all.
+    /// At held pressure it is the change of the contraction. At held length the strands turn because fibres
+    /// stretch and because the bladder bears a smaller part of a higher pressure. A net of rigid fibres
+    /// without a bladder doesn't turn at all.
     pub turn: Jet,
 }
 
-/// What an effect reads of a row, and what it remembers.
+/// The inputs of an effect for one row, and its memory.
 #[derive(Debug)]
 pub struct Row<'a> {
-    /// What is known of the row.
+    /// The readings of the row and its history.
     pub moment: &'a Moment,
     /// The muscle's numbers.
     pub setting: &'a Setting,
-    /// The numbers of the effect, in SI.
+    /// The parameters of the effect, in SI.
     pub theta: &'a [Jet],
-    /// [`Effect::memory`] numbers that it keeps from row to row of a sweep; 0 when a sweep begins.
+    /// The [`Effect::memory`] numbers that the effect carries from row to row. They are 0 at the beginning of
+    /// a sweep.
     pub memory: &'a mut [Jet],
 }
 
-/// What an effect does, by the place in the chain from what is set to what is read.
+/// The action of an effect, by its place in the chain from the set values to the readings.
 #[derive(Debug, Clone, Copy)]
 pub enum Action<'a> {
     /// Changes the muscle whose equilibrium is solved.
     Shape(&'a dyn ShapeEffect),
-    /// Changes what reaches that muscle.
+    /// Changes the input of that muscle.
     Input(&'a dyn InputEffect),
     /// Adds a force to that of the equilibrium.
     Load(&'a dyn LoadEffect),
-    /// Changes what the load cell reads.
+    /// Changes the reading of the load cell.
     Output(&'a dyn OutputEffect),
 }
 
 impl Action<'_> {
-    /// Its place in the chain.
+    /// The place in the chain.
     #[must_use]
     pub const fn stage(&self) -> Stage {
         match self {
@@ -295,48 +304,54 @@ impl Action<'_> {
 
 /// An effect that changes the parts of the muscle whose equilibrium is solved.
 pub trait ShapeEffect: Debug + Sync {
-    /// Changes the parts; `theta` are the numbers of the effect in SI, and what they move gets its derivatives from them.
+    /// Changes the parts. `theta` are the parameters of the effect in SI, and numbers that depend on them
+    /// carry their derivatives.
     ///
-    /// With the parameters `off` the parts must stay what they are, whatever they state; any other value replaces what they state. An effect
-    /// without parameters has no `off`: it is there or not.
+    /// At the parameters `off` the parts must stay unchanged, whatever they state. Any other value replaces
+    /// the stated one. An effect without parameters has no `off`: it is either present or absent.
     ///
-    /// A part that is absent where the effect is off (the rubber of a bladder) may be put there with the size 0 if `theta` carries
-    /// derivatives. Where no part moves with a parameter at `off`, because the force is even in it (an angle), whoever needs a derivative takes
-    /// it at a small value beside `off`. A parameter that is absent at 0 and has no small values either (a circumference) starts at its
-    /// `typical` value.
+    /// If a part is absent when the effect is off (the rubber of a bladder), the effect may add it with size
+    /// 0 when `theta` carries derivatives. If no part depends on a parameter at `off` to first order because
+    /// the force is even in it (an angle), callers take the derivative at a small value beside `off`. A
+    /// parameter that is absent at 0 and has no small values either (a circumference) starts at its `typical`
+    /// value.
     ///
     /// # Errors
-    /// If the muscle can't have the effect, or not with these values.
+    /// If the effect doesn't fit the muscle, or not with these values.
     fn reshape(&self, theta: &[Jet], parts: &mut Parts<Jet>) -> Result<(), MuscleError>;
 
-    /// Changes what reaches the muscle where the change of its shape makes that another: a contraction counts from the length. Nothing by default.
+    /// Changes the input if the change of shape affects it: contractions, for example, refer to the length.
+    /// By default it does nothing.
     fn act(&self, row: Row<'_>, input: &mut Input) {
         let _ = (row, input);
     }
 }
 
-/// An effect that changes what reaches the muscle.
+/// An effect that changes the input of the muscle.
 pub trait InputEffect: Debug + Sync {
-    /// Changes the input of a row; rows come in order, each once. With the parameters `off` nothing may change, bit for bit.
+    /// Changes the input of a row. Each row comes once, in order. At the parameters `off` nothing may change,
+    /// bit for bit.
     fn act(&self, row: Row<'_>, input: &mut Input);
 }
 
 /// An effect that adds a force.
 pub trait LoadEffect: Debug + Sync {
-    /// Adds its force to those of the other effects \[N\]; rows come in order, each once. With the parameters `off` nothing may change, bit for bit.
+    /// Adds its force to those of the other effects \[N\]. Each row comes once, in order. At the parameters
+    /// `off` nothing may change, bit for bit.
     fn act(&self, row: Row<'_>, balance: &Balance, force: &mut Jet);
 }
 
-/// An effect on what the load cell reads.
+/// An effect that changes the reading of the load cell.
 pub trait OutputEffect: Debug + Sync {
-    /// Changes the reading \[N\]; rows come in order, each once. With the parameters `off` nothing may change, bit for bit.
+    /// Changes the reading \[N\]. Each row comes once, in order. At the parameters `off` nothing may change,
+    /// bit for bit.
     fn act(&self, row: Row<'_>, balance: &Balance, reading: &mut Jet);
 }
 
 /// A physical effect.
 ///
-/// Built-in effects are one file each in this crate; any Rust value can be one too, and enters the same list
-/// ([`crate::Catalogue::with`]), so that help, fits, rankings and reports treat it alike.
+/// Each built-in effect is one file in this crate. Any other Rust type can be an effect too and enters the
+/// same list ([`crate::Catalogue::with`]), so that help, fits, rankings and reports treat it alike.
 ///
 /// ```
 /// use bulge_effects::{Action, Balance, Card, Catalogue, Effect, Evidence, Form, Group, Jet, LoadEffect, Mechanism, Needs, ParameterCard, Parity, Row, Signature};
@@ -387,25 +402,26 @@ pub trait Effect: Debug + Send + Sync {
     /// The card.
     fn card(&self) -> Card<'_>;
 
-    /// The numbers of the effect; their order is that of `theta`.
+    /// The parameters of the effect, in the order of `theta`.
     fn parameters(&self) -> Vec<ParameterCard<'_>>;
 
-    /// What it does: `Action::Load(self)` of a type that is a [`LoadEffect`], and so on.
+    /// The action: `Action::Load(self)` for a type that is a [`LoadEffect`], and so on.
     fn action(&self) -> Action<'_>;
 
-    /// Whether it comes anew with each mounting, so that specimens that differ have each their own numbers: the zero of an instrument.
+    /// Whether the effect changes with each mounting, like the zero of an instrument. Specimens that differ
+    /// then have their own parameters.
     fn is_of_mounting(&self) -> bool {
         false
     }
 
-    /// How many numbers it keeps along a sweep.
+    /// The number of values that it remembers along a sweep.
     fn memory(&self) -> usize {
         0
     }
 }
 
 impl dyn Effect + '_ {
-    /// Its place in the chain from what is set to what is read.
+    /// The place in the chain from the set values to the readings.
     #[must_use]
     pub fn stage(&self) -> Stage {
         self.action().stage()
@@ -414,7 +430,8 @@ impl dyn Effect + '_ {
     /// Changes the parts of a muscle, if the effect acts on its shape.
     ///
     /// # Errors
-    /// If the effect belongs to the other family, and as [`ShapeEffect::reshape`]; the parts may then be half changed.
+    /// If the effect belongs to the other kind of muscle, and as [`ShapeEffect::reshape`]. The parts may then
+    /// be partly changed.
     pub fn reshape(&self, theta: &[Jet], parts: &mut Parts<Jet>) -> Result<(), MuscleError> {
         let Action::Shape(shape) = self.action() else { return Ok(()) };
         let card = self.card();
@@ -426,7 +443,7 @@ impl dyn Effect + '_ {
         parts.values().check()
     }
 
-    /// The parts of a muscle as the effect with these numbers \[SI\] changes them.
+    /// The parts of a muscle as changed by the effect with these parameters \[SI\].
     ///
     /// # Errors
     /// As [`ShapeEffect::reshape`].

@@ -1,4 +1,4 @@
-//! Effects in muscle files: `[effects.NAME]` tables as effects with their numbers, and back.
+//! Conversion between effects with parameters and the `[effects.NAME]` tables of muscle files.
 
 use bulge_muscles::{FileError, Learnt, LearntValue, Muscle, MuscleError};
 use std::sync::Arc;
@@ -7,12 +7,14 @@ use crate::card::ParameterCard;
 use crate::catalogue::Catalogue;
 use crate::effect::Effect;
 
-/// An effect with its numbers \[SI\], in the order of [`Effect::parameters`].
+/// An effect with its parameters \[SI\], in the order of [`Effect::parameters`].
 pub type Known = (Arc<dyn Effect>, Vec<f64>);
 
-/// The effects that a muscle states in tables of their own, with their numbers, in the order of the file.
+/// The effects that a muscle states in `[effects.NAME]` tables, with their parameters, in the order of the
+/// file.
 ///
-/// The effects that shape a muscle and have fields in it ([`bulge_muscles::Parameter::effects`]) are not among them: they are in the muscle already.
+/// Shape effects that are fields of the muscle ([`bulge_muscles::Parameter::effects`]) are not included,
+/// because the muscle already contains them.
 ///
 /// ```
 /// use bulge_effects::{Catalogue, known};
@@ -26,8 +28,9 @@ pub type Known = (Arc<dyn Effect>, Vec<f64>);
 /// ```
 ///
 /// # Errors
-/// With the place in the file: a name that is not in the catalogue, an effect of the other kind of muscle, a key that the effect doesn't
-/// have, one that is missing, a quantity of another dimension, or a value out of the effect's bounds.
+/// With the place in the file: an unknown effect, an effect of the other kind of muscle, a key that the
+/// effect doesn't have, a missing key, a quantity of another dimension, or a value outside the bounds of the
+/// effect.
 pub fn known(muscle: &Muscle, catalogue: &Catalogue) -> Result<Vec<Known>, FileError> {
     let names: Vec<&str> = catalogue.iter().map(|effect| effect.card().name).collect();
     muscle.check_learnt(&names)?;
@@ -40,10 +43,10 @@ pub fn known(muscle: &Muscle, catalogue: &Catalogue) -> Result<Vec<Known>, FileE
     muscle.learnt().iter().map(one).collect()
 }
 
-/// The table of an effect with these numbers \[SI\] and their standard deviations, where they are known.
+/// The table of an effect with these parameters \[SI\] and their standard deviations, where known.
 ///
 /// # Errors
-/// If a number is not finite, or one is missing.
+/// If a parameter is missing or not finite.
 pub fn learnt(effect: &dyn Effect, numbers: &[f64], widths: &[Option<f64>]) -> Result<Learnt, MuscleError> {
     let name = effect.card().name.to_owned();
     let value = |(i, card): (usize, &ParameterCard<'_>)| LearntValue {

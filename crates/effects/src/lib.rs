@@ -1,20 +1,26 @@
-//! The catalogue of physical effects of pneumatic muscles: equations, parameters, sources, signatures and laws.
+//! The catalogue of physical effects of pneumatic muscles (equations, parameters, sources, signatures), and
+//! the force laws.
 //!
-//! An effect is one file and one entry of the list of its group. Its [`Action`] is one of four: it changes the muscle whose equilibrium is
-//! solved ([`ShapeEffect`]), what reaches that muscle ([`InputEffect`]), adds a force ([`LoadEffect`]) or changes what the load cell
-//! reads ([`OutputEffect`]). Everything that a fit, a ranking, the help or a report says about it comes from its [`Card`].
+//! An effect is one file and one entry in the list of its group. Its [`Action`] is one of four. It changes
+//! the muscle whose equilibrium is solved ([`ShapeEffect`]) or the input of that muscle ([`InputEffect`]),
+//! adds a force ([`LoadEffect`]), or changes the reading of the load cell ([`OutputEffect`]). Fits, rankings,
+//! help and reports take everything that they say about an effect from its [`Card`].
 //!
 //! # A new effect
 //!
-//! 1. Write one file in the folder of its group (`geometry`, `material`, `load`, `rig`, `specimen`): a unit struct with `impl Effect` (its card and its
-//!    numbers) and the one trait of what it does. A neighbour of the same action is the best start: `pleat_depth.rs` (shape), `pressure_gain.rs` (input),
-//!    `coulomb_friction.rs` (load), `force_gain.rs` (output). Numbers are [`Jet`]s: computing with them gives the derivatives, so there are none to write.
+//! 1. Write one file in the folder of its group (`geometry`, `material`, `load`, `rig`, `specimen`). It
+//!    contains a unit struct with `impl Effect` (its card and its parameters) and with the one trait of its
+//!    action. Start from a neighbour with the same action: `pleat_depth.rs` (shape), `pressure_gain.rs`
+//!    (input), `coulomb_friction.rs` (load), `force_gain.rs` (output). Numbers are [`Jet`]s, which compute
+//!    their own derivatives, so there are none to write.
 //! 2. Add its line to the list in the `mod.rs` of the folder.
-//! 3. Test it in the file: a force that is known otherwise, its limit, nothing at `off`. The tests of the whole catalogue find it by themselves: card, units,
-//!    bounds, derivatives against differences, nothing changed where it is off.
+//! 3. Test it in the file: a force that is known otherwise, its limit, no change at `off`. The tests of the
+//!    whole catalogue include it automatically. They check the card, the units, the bounds, the derivatives
+//!    against differences, and that it changes nothing where it is off.
 //!
-//! Help, muscle files, fits, rankings, sweeps, reports and Python know it then. An effect of the shape changes [`bulge_fibre::Parts`], from which the
-//! equilibrium is solved with all derivatives; where a formula says all of it, a file of [`user`] effects needs no Rust.
+//! Help, muscle files, fits, rankings, sweeps, reports and Python then know the effect. A shape effect
+//! changes [`bulge_fibre::Parts`], from which the equilibrium is solved with all derivatives. If a formula
+//! describes the whole effect, a file of [`user`] effects needs no Rust.
 //!
 //! Deliberately absent: data. An effect sees one [`Moment`] after the other, never a data set.
 

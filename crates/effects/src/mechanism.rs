@@ -1,51 +1,54 @@
-//! The two levels that a card adds to its name: the mechanism above its family, and how exact its formula can be.
+//! Two properties of an effect besides its name: its mechanism, which stands above its family, and how exact
+//! its formula can be.
 
 use serde::Serialize;
 
-/// What happens physically, above families and formulas: data may decide it although they don't decide the formula.
+/// The physical mechanism, above families and formulas. Data may identify the mechanism even if they can't
+/// identify the formula.
 ///
-/// A mechanism has families, a family has members that are formulas of the same thing. Every member of a family has the mechanism of the family.
+/// A mechanism has families, and the members of a family are formulas for the same thing. All members of a
+/// family share its mechanism.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Mechanism {
-    /// Surfaces that rub on each other: a force against the motion, whatever the speed.
+    /// Friction between surfaces: a force against the motion that doesn't depend on the speed.
     DryFriction,
     /// Viscosity: a force that grows with the speed.
     Rate,
-    /// Material that yields under load with time, and forgets.
+    /// Material that yields under load in the course of time, and recovers.
     Relaxation,
     /// A stiffness that changes with cycles, clock or temperature.
     SofteningAndHeat,
     /// Elasticity and loss of the bladder or membrane.
     Rubber,
-    /// Fibres and cloth that stretch, aren't taut together, or unfold no further.
+    /// Fibres and cloth that stretch, aren't equally taut, or stop unfolding.
     ClothAndFibres,
-    /// The form of the cross-section, and the radius at which it is held.
+    /// The shape of the cross-section, and the radius at which it is held.
     Section,
-    /// Lengths, angles and numbers of the fibres, and the wall between them.
+    /// Lengths, angles and number of the fibres, and the wall between them.
     FibreGeometry,
     /// The ends, where the muscle can't widen.
     Ends,
-    /// From the displacement sensor to the contraction: zero and gain.
+    /// Zero and gain between the displacement sensor and the contraction.
     LengthChain,
-    /// Frame, clamps and ends that give under the force.
+    /// Compliance of frame, clamps and ends under the force.
     GiveOfTheRig,
-    /// From the pressure sensor to the pressure that acts: zero, gain, threshold, hysteresis.
+    /// Zero, gain, threshold and hysteresis between the pressure sensor and the acting pressure.
     PressureChain,
-    /// Regulator and valve: a pressure that isn't held.
+    /// Regulator and valve that don't hold the pressure.
     Regulator,
-    /// From the force to the reading of the load cell: zero, gain, curvature, drift.
+    /// Zero, gain, curvature and drift between the force and the reading of the load cell.
     ForceChain,
-    /// A reading that is late against the others.
+    /// A reading that lags behind the others.
     LateReading,
-    /// Muscles of the same make that differ.
+    /// Differences between muscles of the same make.
     Specimens,
-    /// A formula of the user's whose mechanism isn't stated: each such family stands for itself.
+    /// A user's formula without a stated mechanism. Each such family stands for itself.
     User,
 }
 
 impl Mechanism {
-    /// Those that the catalogue knows: all but [`Mechanism::User`].
+    /// The mechanisms of the catalogue: all but [`Mechanism::User`].
     pub const ALL: [Self; 16] = [
         Self::DryFriction,
         Self::Rate,
@@ -65,7 +68,7 @@ impl Mechanism {
         Self::Specimens,
     ];
 
-    /// In words; with hyphens for blanks it is the name in files and documents.
+    /// The mechanism in words. With hyphens in place of blanks this is the name in files and documents.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -92,24 +95,25 @@ impl Mechanism {
 
 /// How well the formula of an effect can be expected to describe a real effect of its kind.
 ///
-/// The error of the form is what remains between a real effect and the formula at its best numbers, as a part of the effect: its standard
-/// deviation over the states that a test goes through.
+/// The error of the form is the difference that remains between a real effect and the formula with its best
+/// parameters, relative to the effect. It is stated as a standard deviation over the states of a test.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Form {
-    /// Geometry or arithmetic: only its numbers can be wrong. A zero, a gain, a radius.
+    /// Geometry or arithmetic such as a zero, a gain or a radius: only the parameters can be wrong.
     Exact,
-    /// A first term of what happens whose next terms are small: a drift that is nearly steady.
+    /// A first term whose next terms are small, such as a nearly steady drift.
     Near,
-    /// A constitutive law among several: friction, rubber, relaxation. Real ones follow none of them exactly.
+    /// One of several constitutive laws, for friction, rubber or relaxation. Real materials follow none of
+    /// them exactly.
     Loose,
 }
 
 impl Form {
-    /// All of them, the most exact first.
+    /// All forms, the most exact first.
     pub const ALL: [Self; 3] = [Self::Exact, Self::Near, Self::Loose];
 
-    /// As files and documents have it.
+    /// The name in files and documents.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -119,7 +123,8 @@ impl Form {
         }
     }
 
-    /// The largest standard deviation of the relative error of the form in each of the ways in which it may be wrong.
+    /// The largest standard deviation of the relative error of the form, for each of the ways in which it may
+    /// be wrong.
     #[must_use]
     pub const fn largest_error(self) -> f64 {
         match self {

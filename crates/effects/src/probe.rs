@@ -1,4 +1,4 @@
-//! For the tests of effects: one call, or a path, on made-up equilibria.
+//! Helpers for the tests of effects: single calls and paths on made-up equilibria.
 
 use bulge_muscles::Kind;
 use bulge_numerics::Real;
@@ -15,7 +15,7 @@ pub(crate) const SETTING: Setting = Setting {
     has_bladder: false,
 };
 
-/// An equilibrium of round numbers: 2 bar, 10 %, 500 N with 800 N along the meridians; the strands stand still.
+/// An equilibrium of round numbers: 2 bar, 10 %, 500 N, 800 N along the meridians, no turn of the strands.
 pub(crate) fn balance(contraction: f64) -> Balance {
     let jet = Jet::from;
     Balance {
@@ -30,7 +30,7 @@ pub(crate) fn balance(contraction: f64) -> Balance {
     }
 }
 
-/// The force that an effect adds at 2 bar and 10 % in a moment changed by `change`.
+/// The force that an effect adds at 2 bar and 10 %, at a moment modified by `change`.
 pub(crate) fn load(effect: &dyn Effect, theta: &[f64], change: impl FnOnce(&mut Moment)) -> f64 {
     let mut moment = Moment::at_rest(2e5, 0.1);
     change(&mut moment);
@@ -43,13 +43,14 @@ pub(crate) fn load(effect: &dyn Effect, theta: &[f64], change: impl FnOnce(&mut 
     force.value()
 }
 
-/// The forces that an effect adds along a path of contractions at 2 bar, one second from row to row.
+/// The forces that an effect adds along a path of contractions at 2 bar, with one second between rows.
 pub(crate) fn path(effect: &dyn Effect, theta: &[f64], contractions: &[f64]) -> Vec<f64> {
     let rows: Vec<[f64; 2]> = contractions.iter().map(|contraction| [2e5, *contraction]).collect();
     driven(effect, theta, &rows)
 }
 
-/// The forces that an effect adds along a path of pressures \[Pa\] and contractions, one second from row to row; pressure alone turns no strand.
+/// The forces that an effect adds along a path of pressures \[Pa\] and contractions, with one second between
+/// rows. The pressure alone turns no strand.
 pub(crate) fn driven(effect: &dyn Effect, theta: &[f64], rows: &[[f64; 2]]) -> Vec<f64> {
     let sign = |step: f64| if step == 0.0 { 0.0 } else { step.signum() };
     let theta: Vec<Jet> = theta.iter().map(|v| Jet::from(*v)).collect();
@@ -84,7 +85,7 @@ pub(crate) fn driven(effect: &dyn Effect, theta: &[f64], rows: &[[f64; 2]]) -> V
     forces
 }
 
-/// The input that an effect makes of 2 bar and 10 % in a moment changed by `change`.
+/// The input after an effect at 2 bar and 10 %, at a moment modified by `change`.
 pub(crate) fn input(effect: &dyn Effect, theta: &[f64], change: impl FnOnce(&mut Moment)) -> Input {
     let mut moment = Moment::at_rest(2e5, 0.1);
     change(&mut moment);
@@ -100,7 +101,7 @@ pub(crate) fn input(effect: &dyn Effect, theta: &[f64], change: impl FnOnce(&mut
     input
 }
 
-/// What the load cell reads of 500 N at 2 bar and 10 % in a moment changed by `change`.
+/// The reading of the load cell for 500 N at 2 bar and 10 %, at a moment modified by `change`.
 pub(crate) fn reading(effect: &dyn Effect, theta: &[f64], change: impl FnOnce(&mut Moment)) -> f64 {
     let mut moment = Moment::at_rest(2e5, 0.1);
     change(&mut moment);

@@ -1,14 +1,16 @@
-//! A number of an effect as people write it, such as "0.31 MPa": read within the bounds of its card, and shown in its unit.
+//! Parameters of effects in written form, such as "0.31 MPa": they are read within the bounds of the card and
+//! shown in its unit.
 
 use bulge_muscles::{Dimension, units};
 
 use crate::card::ParameterCard;
 
 impl ParameterCard<'_> {
-    /// The number of `effect` that a text states \[SI\].
+    /// Reads a parameter of `effect` from text \[SI\].
     ///
     /// # Errors
-    /// In a sentence with an example: if the text is no quantity of the number's dimension, or out of its bounds.
+    /// A sentence with an example, if the text is no quantity of the parameter's dimension or lies outside
+    /// its bounds.
     pub fn read(&self, effect: &str, text: &str) -> Result<f64, String> {
         let example = format!("write such as `{effect}.{}={}`", self.key, self.shown(self.usual()));
         let found = units::any(text).map_err(|error| format!("`{effect}`: {error}; {example}"))?;
@@ -27,10 +29,12 @@ impl ParameterCard<'_> {
         })
     }
 
-    /// Both bounds of the number of `effect` that a text states \[SI\], such as "5..20 N": a lower one without a unit has that of the upper.
+    /// Reads both bounds of a parameter of `effect` from text \[SI\], such as "5..20 N". A lower bound
+    /// without a unit takes that of the upper one.
     ///
     /// # Errors
-    /// As [`ParameterCard::read`]; if the text is no range, or the lower bound isn't below the upper.
+    /// As [`ParameterCard::read`]; also if the text is no range, or the lower bound isn't below the upper
+    /// one.
     pub fn read_range(&self, effect: &str, text: &str) -> Result<[f64; 2], String> {
         let no_range = || {
             let (low, high) = (self.shown(self.low), self.shown(self.high));
@@ -47,13 +51,15 @@ impl ParameterCard<'_> {
         if low < high { Ok([low, high]) } else { Err(no_range()) }
     }
 
-    /// A value \[SI\] within the bounds; none if it is out of them. What a fit left on a bound may be off it by rounding.
+    /// The value \[SI\] if it lies within the bounds. A fit may leave a value beyond its bound by rounding;
+    /// such a value is clamped.
     pub(crate) fn within(&self, si: f64) -> Option<f64> {
         let slack = 1e-12 * (self.high - self.low).abs();
         (self.low - slack..=self.high + slack).contains(&si).then(|| si.clamp(self.low, self.high))
     }
 
-    /// A usual value at which the effect does something: that of the card, or one standard deviation of the literature beside it.
+    /// A usual value at which the effect does something: the typical one, or the prior mean plus one standard
+    /// deviation if the typical value is `off`.
     #[must_use]
     pub fn usual(&self) -> f64 {
         let does_nothing = self.typical.total_cmp(&self.off).is_eq();
@@ -61,14 +67,14 @@ impl ParameterCard<'_> {
         beside.filter(|_| does_nothing).unwrap_or(self.typical)
     }
 
-    /// A value \[SI\] in the unit of the card.
+    /// A value \[SI\] as text in the unit of the card.
     #[must_use]
     pub fn shown(&self, si: f64) -> String {
-        // Twelve digits hide the rounding of the change of units.
+        // Twelve digits hide the rounding error of the conversion.
         format!("{} {}", units::rounded(si / self.factor, 12), self.unit).trim_end().to_owned()
     }
 
-    /// The dimension, from the unit. A unit that nobody knows is none.
+    /// The dimension of the unit. An unknown unit has none.
     #[must_use]
     pub fn dimension(&self) -> Dimension {
         self.known_dimension().unwrap_or(Dimension::NONE)

@@ -1,5 +1,6 @@
-//! Physical effects of one's own: a TOML file with a formula and the parameters in it. The formula is a force that is added, or it changes the shape: the
-//! energy of the wall, the area on which the pressure acts, or the turn of the fibres.
+//! User-defined effects: a TOML file with a formula and its parameters. The formula is either an added force
+//! or a change of the shape: the energy of the wall, the area on which the pressure acts, or the turn of the
+//! fibres.
 
 mod act;
 mod quantity;
@@ -19,12 +20,12 @@ use std::path::Path;
 use thiserror::Error;
 use toml::de::DeTable;
 
-/// How many bytes a file of effects may have.
+/// The largest size of a file of effects, in bytes.
 pub const MAX_BYTES: usize = 1 << 20;
-/// How many parameters an effect may have.
+/// The largest number of parameters of an effect.
 pub const MAX_PARAMETERS: usize = 12;
 
-/// A file of effects as short as it can be.
+/// The shortest possible file of effects.
 pub const EXAMPLE: &str = "\
 [effects.hose-stiffness]
 title = \"Hose pulls on the muscle\"
@@ -33,7 +34,8 @@ parameters.k = { unit = \"N\", typical = \"50 N\", low = \"0 N\", high = \"500 N
 parameters.eps_free = { unit = \"1\", typical = 0.1, low = -0.1, high = 0.4 }
 ";
 
-/// A rubber of one's own in the wall of a braid: neo-Hookean, the energy per area at rest by the stretches l1 along the meridian and l2 around it.
+/// A user-defined rubber in the wall of a braid. It is neo-Hookean: energy per area at rest as a function of
+/// the stretches l1 along the meridian and l2 around it.
 pub const SHAPE_EXAMPLE: &str = "\
 [effects.my-rubber]
 title = \"Neo-Hookean rubber\"
@@ -42,12 +44,12 @@ parameters.c10 = { unit = \"MPa\", typical = \"0.3 MPa\", low = \"0 MPa\", high 
 parameters.h = { unit = \"mm\", typical = \"2 mm\", low = \"0.5 mm\", high = \"5 mm\" }
 ";
 
-/// What the formula of such an effect is.
+/// The formula of a user-defined effect.
 #[derive(Debug, Clone, PartialEq)]
 pub enum UserFormula {
-    /// A force that is added to that of the muscle \[N\], over the variables of [`crate::expression::VARIABLES`].
+    /// A force \[N\] added to that of the muscle, as a function of [`crate::expression::VARIABLES`].
     Force(Expression),
-    /// A change of the shape, over the variables of [`crate::expression::SHAPE_VARIABLES`].
+    /// A change of the shape, as a function of [`crate::expression::SHAPE_VARIABLES`].
     Shape(ShapeFormula),
 }
 
@@ -62,41 +64,41 @@ impl UserFormula {
     }
 }
 
-/// A physical effect that a file states by a formula.
+/// A physical effect that a file defines by a formula.
 #[derive(Debug, Clone, PartialEq)]
 pub struct UserEffect {
-    /// Its name: lower-case words with hyphens.
+    /// The name, in lower-case words with hyphens.
     pub name: String,
-    /// What it is called in reports.
+    /// The title in reports.
     pub title: String,
-    /// What happens physically.
+    /// The physical process.
     pub about: Option<String>,
-    /// Where the formula comes from.
+    /// The source of the formula.
     pub source: Option<String>,
-    /// The group of effects that it belongs to.
+    /// The family of effects that it belongs to.
     pub family: Option<String>,
-    /// What happens physically: as stated, else that of the family if the catalogue has it, else [`Mechanism::User`].
+    /// The mechanism: the stated one, or that of the family if the catalogue has it, or [`Mechanism::User`].
     pub mechanism: Mechanism,
-    /// How exact the formula can be: loose if not stated.
+    /// How exact the formula can be; loose if not stated.
     pub form: Form,
-    /// Names of effects that a measurement may confuse with it.
+    /// Names of effects that a measurement may confuse with this one.
     pub twins: Vec<String>,
-    /// What it does, over the parameters in their order.
+    /// The formula, as a function of the parameters in their order.
     pub formula: UserFormula,
-    /// Its parameters, from 1 to [`MAX_PARAMETERS`], in the order of the file.
+    /// The parameters in the order of the file, from 1 to [`MAX_PARAMETERS`].
     pub parameters: Vec<UserParameter>,
 }
 
-/// A parameter of such an effect; numbers are in SI units.
+/// A parameter of a user-defined effect. Numbers are in SI units.
 #[derive(Debug, Clone, PartialEq)]
 pub struct UserParameter {
-    /// Its name in the formula.
+    /// The name in the formula.
     pub name: String,
-    /// The unit in which it is shown, as it was written.
+    /// The unit in which it is shown, as written in the file.
     pub unit: String,
-    /// The size of that unit in SI units.
+    /// The size of that unit in SI.
     pub factor: f64,
-    /// Its dimension.
+    /// The dimension.
     pub dimension: Dimension,
     /// A usual value, `low <= typical <= high`.
     pub typical: f64,
@@ -104,13 +106,13 @@ pub struct UserParameter {
     pub low: f64,
     /// The largest possible value, `low < high`.
     pub high: f64,
-    /// What is known beforehand: mean, within the bounds, and standard deviation, > 0.
+    /// Prior mean (within the bounds) and standard deviation (> 0).
     pub prior: Option<(f64, f64)>,
-    /// What it is.
+    /// A description.
     pub about: Option<String>,
 }
 
-/// What is wrong with a file of effects. Its `Display` is the whole message, with the line and the cure.
+/// An error in a file of effects. Its `Display` is the whole message, with the line and the cure.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error("{message}")]
 pub struct EffectFileError {
@@ -124,13 +126,13 @@ impl From<EffectFileError> for FileError {
 }
 
 impl EffectFileError {
-    /// The file, as it was named.
+    /// The name of the file.
     #[must_use]
     pub fn origin(&self) -> &str {
         self.message.origin()
     }
 
-    /// The line, counted from 1; none if the file could not be read.
+    /// The line, counted from 1; none if the file couldn't be read.
     #[must_use]
     pub fn line(&self) -> Option<usize> {
         self.message.line()
@@ -142,13 +144,13 @@ impl EffectFileError {
         self.message.column()
     }
 
-    /// What is wrong, in one sentence.
+    /// The error in one sentence.
     #[must_use]
     pub fn what(&self) -> &str {
         self.message.what()
     }
 
-    /// What to write, or do, instead.
+    /// The correction to make.
     #[must_use]
     pub fn instead(&self) -> &str {
         self.message.instead()
@@ -158,14 +160,14 @@ impl EffectFileError {
 /// Reads a file of effects.
 ///
 /// # Errors
-/// If the file cannot be read, is larger than [`MAX_BYTES`], is not UTF-8 or states something wrong.
+/// If the file can't be read, is larger than [`MAX_BYTES`], is not UTF-8, or contains an error.
 pub fn read(path: impl AsRef<Path>) -> Result<Vec<UserEffect>, EffectFileError> {
     let path = path.as_ref();
     let origin = path.display().to_string();
     let bytes = read_bytes(path).map_err(|(what, instead)| whole(&origin, what, instead))?;
     let text = String::from_utf8(bytes).map_err(|error| {
         let at = error.utf8_error().valid_up_to();
-        // Up to `at` the bytes are valid, so the replacement character stands exactly there.
+        // The bytes up to `at` are valid, so the replacement character stands exactly there.
         let text = String::from_utf8_lossy(error.as_bytes());
         let instead = "save the file as plain text with the encoding UTF-8";
         located(&origin, &text, at..at + 1, format!("byte {at} is not UTF-8 text"), instead)
@@ -173,7 +175,7 @@ pub fn read(path: impl AsRef<Path>) -> Result<Vec<UserEffect>, EffectFileError> 
     from_toml(&text, &origin)
 }
 
-/// Reads effects from TOML text; `origin` is what messages call the text, usually a file name.
+/// Reads effects from TOML text. Messages call the text by the name `origin`, usually a file name.
 ///
 /// ```
 /// use bulge_effects::user;
@@ -188,8 +190,8 @@ pub fn read(path: impl AsRef<Path>) -> Result<Vec<UserEffect>, EffectFileError> 
 /// ```
 ///
 /// # Errors
-/// With the place and the cure, if the text is larger than [`MAX_BYTES`], is not TOML, states no effect, or states one
-/// that is not complete and consistent.
+/// With the place and the cure, if the text is larger than [`MAX_BYTES`], is not TOML, defines no effect, or
+/// defines one that is incomplete or inconsistent.
 pub fn from_toml(text: &str, origin: &str) -> Result<Vec<UserEffect>, EffectFileError> {
     if text.len() > MAX_BYTES {
         let (what, instead) = too_large();

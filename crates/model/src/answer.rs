@@ -1,9 +1,9 @@
-//! What a base law answers at one pressure and contraction, with derivatives, and how that enters the chain rule.
+//! The answer of a base law at one pressure and contraction, with its derivatives and their chain rule.
 
 use bulge_effects::{Jet, LANES};
 use bulge_numerics::Real;
 
-/// Most shape parameters that can be differentiated by at once.
+/// The largest number of shape parameters that can be differentiated by at once.
 pub(crate) const SHAPE: usize = LANES;
 
 /// A number with its derivatives by pressure, contraction and the shape parameters.
@@ -16,7 +16,8 @@ pub(crate) struct Graded {
 }
 
 impl Graded {
-    /// The chain rule: pressure and contraction carry derivatives, and the shape parameter j is the variable of lane `lanes[j]`.
+    /// Applies the chain rule. Pressure and contraction carry derivatives, and the shape parameter j is the
+    /// variable of lane `lanes[j]`.
     pub(crate) fn carry(&self, pressure: Jet, contraction: Jet, lanes: &[Option<usize>]) -> Jet {
         let [p, e] = [pressure.gradient(), contraction.gradient()];
         let mut gradient: [f64; LANES] =
@@ -49,7 +50,7 @@ impl Answer {
     }
 }
 
-/// The same as numbers that carry the derivatives of one pass.
+/// An [`Answer`] whose numbers carry the derivatives of one pass.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Carried {
     pub(crate) force: Jet,
@@ -61,7 +62,7 @@ pub(crate) struct Carried {
 }
 
 impl Carried {
-    /// All four times a number.
+    /// All four numbers and the slopes times a factor.
     pub(crate) fn scaled(self, factor: f64) -> Self {
         Self {
             force: self.force * factor,
@@ -72,7 +73,7 @@ impl Carried {
         }
     }
 
-    /// The sum of all four.
+    /// The sums of all four numbers and of the slopes.
     pub(crate) fn plus(self, other: Self) -> Self {
         Self {
             force: self.force + other.force,
@@ -83,7 +84,7 @@ impl Carried {
         }
     }
 
-    /// Forces times a factor that carries derivatives.
+    /// Force and tension times a factor that carries derivatives.
     pub(crate) fn stiffened(self, wall: Jet) -> Self {
         Self {
             force: self.force * wall,

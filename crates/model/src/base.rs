@@ -1,20 +1,23 @@
-//! The base law at one pressure and contraction: the equilibrium of the reshaped muscle, with derivatives by what reshaped it.
+//! The base law at one pressure and contraction: the equilibrium of the reshaped muscle, with derivatives by
+//! the parameters that reshape it.
 
 use bulge_fibre::{FibreError, Jet, Linear, Linearised, Parts, Problem, Repeated, Start};
 use bulge_muscles::Pressure;
 
 use crate::answer::{Answer, Graded};
 
-/// The parts of a muscle to solve, with derivatives by the parameters that change its shape, each in its lane.
+/// The parts of a muscle whose equilibrium is to be solved, with derivatives by the parameters that change
+/// the shape, each in its lane.
 #[derive(Debug, Clone)]
 pub(crate) struct Shaped {
     pub(crate) parts: Parts<Jet>,
-    /// Lanes without derivatives here, and the parts a very small part of the parameter's usual size further on, where there are some: at 0 the
-    /// part doesn't exist yet, or the force is even in the parameter.
+    /// Lanes in which `parts` has no derivatives, with the parts at a parameter value slightly further on (a
+    /// very small fraction of the parameter's usual size), if those differ. This happens at 0, where the part
+    /// doesn't exist yet or the force is even in the parameter.
     pub(crate) beside: Vec<(usize, Parts<Jet>)>,
 }
 
-/// A muscle to be solved, with the parameters by which its answers are differentiated.
+/// The equilibrium problem of a muscle, with the parameters by which its answers are differentiated.
 #[derive(Debug, Clone)]
 pub(crate) struct Equilibrium {
     here: Repeated,
@@ -32,12 +35,12 @@ impl Equilibrium {
         std::iter::once(&self.here).chain(self.beside.iter().map(|(_, there)| there))
     }
 
-    /// Whether force/p, shape and volume, and their derivatives, don't depend on the pressure.
+    /// Whether force/p, shape and volume, and their derivatives, are independent of the pressure.
     pub(crate) fn is_scale_free(&self) -> bool {
         self.all().map(Repeated::problem).all(Problem::is_scale_free)
     }
 
-    /// Whether each answer takes a search for the equilibrium, and a lattice is worth its while.
+    /// Whether each answer takes shooting, so that a lattice can pay off.
     pub(crate) fn is_costly(&self) -> bool {
         self.all().map(Repeated::problem).any(Problem::shoots)
     }
@@ -47,7 +50,8 @@ impl Equilibrium {
         self.here.problem().is_singular()
     }
 
-    /// The answer at a pressure \[Pa\] and a contraction, and where a search for a similar one may start.
+    /// The answer at a pressure \[Pa\] and a contraction, and a start for the search for a similar
+    /// equilibrium.
     pub(crate) fn answer(
         &self,
         pressure: f64,

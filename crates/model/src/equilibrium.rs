@@ -1,4 +1,5 @@
-//! One equilibrium of a muscle with its effects, as a value: shape, response, limit, and what the effects changed.
+//! One equilibrium of a muscle with its effects as a value: shape, response, limit, and the change by the
+//! effects.
 
 use bulge_fibre::{Approach, Given, MeridianPoint, PleatedNumbers, Problem, RangeEnd, Response, Shape};
 use bulge_muscles::{Muscle, Pressure, Quantity};
@@ -11,19 +12,19 @@ use crate::muscle_with_effects::{MuscleWithEffects, MuscleWithEffectsError};
 pub struct Equilibrium {
     /// Name of the muscle.
     pub muscle: String,
-    /// Meridian, and what follows from it; force and stiffness with the effects.
+    /// The meridian and the quantities that follow from it. Force and stiffness include the effects.
     pub shape: Shape,
-    /// The contraction at which the muscle pulls no more or its fibres slacken, where it is found.
+    /// The contraction at which the force vanishes or the fibres slacken, if it is found.
     pub contraction_limit: Option<f64>,
-    /// Whether the fibres slacken there, with a force left.
+    /// Whether the fibres slacken at the limit while the muscle still pulls.
     pub ends_slack: bool,
-    /// Tension of a fibre over its section \[Pa\], if the section is given.
+    /// Fibre tension divided by the fibre section \[Pa\], if the section is given.
     pub fibre_stress_pa: Option<f64>,
     /// m, phi_R, f and v of a pleated muscle.
     pub pleated: Option<PleatedNumbers>,
-    /// The force without the effects \[N\], if there are any that add to it.
+    /// The force without the effects \[N\], if any effect adds to it.
     pub equilibrium_force_n: Option<f64>,
-    /// Names of the effects that take part.
+    /// Names of the effects that are included.
     pub effects: Vec<String>,
 }
 
@@ -40,7 +41,7 @@ pub struct EquilibriumDocument<'a> {
     fibre_stress_pa: Option<f64>,
     #[serde(flatten)]
     pleated: Option<PleatedNumbers>,
-    /// Without the effects that the muscle file states.
+    /// The force without the effects that the muscle file states.
     #[serde(skip_serializing_if = "Option::is_none")]
     equilibrium_force_n: Option<f64>,
     #[serde(skip_serializing_if = "<[String]>::is_empty")]
@@ -49,10 +50,10 @@ pub struct EquilibriumDocument<'a> {
 }
 
 impl Equilibrium {
-    /// The equilibrium of a muscle with its effects at a pressure, with `points` points of the meridian.
+    /// The equilibrium of a muscle with its effects at a pressure. The meridian has `points` points.
     ///
     /// # Errors
-    /// What [`Problem::shape`] and [`MuscleWithEffects::solve`] say.
+    /// Those of [`Problem::shape`] and [`MuscleWithEffects::solve`].
     pub fn new(
         extended: &MuscleWithEffects,
         pressure: Pressure,
@@ -73,7 +74,7 @@ impl Equilibrium {
         Ok(Self::of(extended, &problem, shape, Some(alone), approach))
     }
 
-    /// Of a shape that was computed in another way.
+    /// The equilibrium that belongs to a shape computed elsewhere.
     #[must_use]
     pub fn of(
         extended: &MuscleWithEffects,
@@ -114,7 +115,7 @@ impl Equilibrium {
     }
 }
 
-/// Tension over section \[Pa\], if the section is given.
+/// Fibre tension divided by the fibre section \[Pa\], if the section is given.
 fn stress(muscle: &Muscle, response: &Response) -> Option<f64> {
     let section = muscle.fibre()?.section()?;
     Some(response.fibre_tension_n / section.si())

@@ -1,4 +1,4 @@
-//! What can go wrong in a model, with the rows and numbers.
+//! Errors of a model, with the rows and numbers concerned.
 
 use bulge_fibre::FibreError;
 use bulge_muscles::Fault;
@@ -16,7 +16,7 @@ pub enum ModelError {
         pressure_pa: f64,
         /// True contraction there.
         contraction: f64,
-        /// What the solver said of the first.
+        /// The solver's error at the first row.
         source: Box<FibreError>,
     },
     /// A row's prediction is not a number.
@@ -24,7 +24,7 @@ pub enum ModelError {
     NotFinite {
         /// Rows, from 0.
         rows: Vec<usize>,
-        /// What to look at.
+        /// The things to check.
         what: &'static str,
     },
     /// The muscle can't have an effect, or not with these values.
@@ -43,44 +43,45 @@ pub enum ModelError {
         /// Why.
         source: Box<MuscleError>,
     },
-    /// An effect of the other kind of muscle.
+    /// The effect belongs to the other kind of muscle.
     #[error("`{effect}` is an effect of {owner} muscles, and this one is {kind}; leave it out")]
     OtherKind {
         /// The effect.
         effect: String,
-        /// Whose it is.
+        /// The kind of muscle that has the effect.
         owner: &'static str,
-        /// What this is.
+        /// The kind of this muscle.
         kind: &'static str,
     },
-    /// The same effect twice.
+    /// The same effect is listed twice.
     #[error("`{effect}` stands twice in the list of effects; once is enough")]
     Twice {
         /// The effect.
         effect: String,
     },
-    /// Too many shape parameters at once.
+    /// Too many shape parameters are differentiated by at once.
     #[error(
         "{count} parameters that change the shape at once are too many: at most {most}; leave some effects out"
     )]
     TooManyShapes {
-        /// How many.
+        /// Number of parameters.
         count: usize,
-        /// The most.
+        /// Largest number allowed.
         most: usize,
     },
-    /// The number of values is not that of the parameters.
+    /// The number of values differs from the number of parameters.
     #[error("{given} values for a model of {expected} parameters")]
     Values {
-        /// Given.
+        /// Number of values given.
         given: usize,
-        /// Expected.
+        /// Number of values expected.
         expected: usize,
     },
 }
 
 impl ModelError {
-    /// Whose fault it is: data that ask for an equilibrium that doesn't exist are wrong input; a search that failed is not.
+    /// The fault behind the error. Data that ask for an equilibrium that doesn't exist are wrong input; a
+    /// failed search isn't.
     #[must_use]
     pub fn fault(&self) -> Fault {
         match self {

@@ -1,4 +1,4 @@
-//! A model along a history: the force of every row, with exact derivatives.
+//! Evaluation of a model along a history: the force of every row, with exact derivatives.
 
 use bulge_effects::{self as effects, Action, Input, Jet, LANES, Moment, Setting, Stage};
 use bulge_fibre::Parts;
@@ -22,25 +22,25 @@ use crate::solved::Asked;
 use crate::strands::{self, Strands};
 use crate::warm::{Held, Slots, Warm};
 
-/// What is wanted of [`Model::evaluate`] besides the force.
+/// The results that [`Model::evaluate`] returns besides the force.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Wanted {
-    /// Derivatives by these parameters, by their place in [`Model::parameters`].
+    /// Parameters to differentiate by, as indices into [`Model::parameters`].
     pub parameters: Vec<usize>,
-    /// Derivatives by the readings of pressure and contraction.
+    /// Whether to differentiate by the readings of pressure and contraction.
     pub readings: bool,
 }
 
-/// Rows handed to one core at a time, where nothing is remembered from row to row, and where each of them takes a search. Fixed, so that results
-/// don't depend on the number of threads.
+/// Rows per task if nothing is remembered between rows: without and with a search for each row. The sizes are
+/// fixed, so that results don't depend on the number of threads.
 const CHUNK: [usize; 2] = [256, 8];
-/// Evaluations that a lattice serves at least, where it is held.
+/// A held lattice is assumed to serve at least this many evaluations.
 const HELD_FOR: usize = 4;
 
-/// Everything that stays the same for all rows of one evaluation that are of one muscle.
+/// Everything that is the same for all rows of one muscle in one evaluation.
 pub(crate) struct Run<'a> {
     pub(crate) model: &'a Model,
-    /// Whose equilibria it solves, of the model's muscles.
+    /// Index of the muscle among those of the model.
     pub(crate) body: usize,
     pub(crate) theta: &'a [f64],
     pub(crate) setting: Setting,
@@ -49,15 +49,15 @@ pub(crate) struct Run<'a> {
     shapes: Vec<usize>,
     pub(crate) equilibrium: Option<Equilibrium>,
     pub(crate) lattice: Option<Arc<Lattice>>,
-    /// Searches for rows that the lattice doesn't reach.
+    /// Number of searches for rows outside the lattice.
     pub(crate) alone: AtomicUsize,
-    /// Whether equilibria are searched for from those found before, as exactly as a fit needs them.
+    /// Whether searches start from earlier equilibria and are as exact as a fit needs.
     pub(crate) within_fit: bool,
-    /// Whether a segment ends at its first row without a state.
+    /// Whether a segment stops at its first row without a state.
     pub(crate) all_or_none: bool,
 }
 
-/// Which variable each lane carries in one pass.
+/// The variable that each lane carries in one pass.
 pub(crate) struct Pass {
     pub(crate) theta: Vec<Jet>,
     pub(crate) pressure_lane: Option<usize>,
@@ -69,7 +69,7 @@ pub(crate) struct Pass {
 }
 
 impl Model {
-    /// The force of every row with the parameters `theta`, and what else is wanted.
+    /// The force of every row at the parameters `theta`, with the derivatives that `wanted` asks for.
     ///
     /// # Errors
     /// If an effect doesn't fit the muscle, or rows have no equilibrium: the error lists them.
@@ -83,10 +83,10 @@ impl Model {
         if failed.is_empty() { Ok(all) } else { Err(self.explained(record, theta, failure(failed))) }
     }
 
-    /// The same within a fit: searches start where those of the evaluation before ended, and each of the rows that count (see
-    /// [`Warm::of_rows`]) has an answer or there is none: the error then lists the first such row of each segment only.
+    /// Evaluates within a fit: searches start where those of the previous evaluation ended. If a row that
+    /// counts (see [`Warm::of_rows`]) fails, the error lists only the first such row of each segment.
     ///
-    /// The forces are those of [`Model::evaluate`] within the accuracy of the solver, some 1e-10 of them; derivatives within 1e-6.
+    /// Forces agree with [`Model::evaluate`] to about 1e-10 (solver accuracy), derivatives to 1e-6.
     ///
     /// # Errors
     /// Those of [`Model::evaluate`], for the rows that count.
@@ -104,10 +104,11 @@ impl Model {
         if failed.is_empty() { Ok(all) } else { Err(failure(failed)) }
     }
 
-    /// As [`Model::evaluate_warm`], but a row without a state takes nothing from the others: it is listed. Nothing is remembered of single rows.
+    /// As [`Model::evaluate_warm`], but rows without a state are only listed. No row keeps a start.
     ///
     /// # Errors
-    /// If an effect doesn't fit the muscle. That no row has a state is none. See [`Model::explained`] for what to show of [`Partly::error`].
+    /// If an effect doesn't fit the muscle. It is no error if no row has a state. To show [`Partly::error`],
+    /// see [`Model::explained`].
     pub fn evaluate_partly(
         &self,
         record: &Record,
@@ -119,7 +120,7 @@ impl Model {
         let found = self.evaluate_with(record, theta, wanted, Some(warm), false, &mut slots);
         warm.put(slots);
         let (mut prediction, failed) = match found {
-            // The muscle itself has no state.
+            // The muscle itself has no equilibrium.
             Err(error @ ModelError::NoEquilibrium { .. }) => {
                 let without_state: Vec<usize> = (0..record.len()).filter(|row| warm.counts(*row)).collect();
                 let mut prediction = Prediction::zero(record.len(), wanted);
@@ -171,7 +172,7 @@ impl Model {
         Ok((self.folded(all, asked, wanted), failed.into_iter().flatten().collect()))
     }
 
-    /// One run for each of the muscles that the specimens are.
+    /// One run for each distinct muscle among the specimens.
     fn runs<'a>(
         &'a self,
         record: &Record,
@@ -232,7 +233,7 @@ impl Model {
             source: Box::new(source),
         };
         let equilibrium = Equilibrium::new(shaped).map_err(no_problem)?;
-        // Lengths stay those stated: what an effect takes from them would else move without a derivative.
+        // The stated lengths are kept: a change by an effect would move them without a derivative.
         run.setting = run.setting.with(&parts);
         run.strands = Strands::of(&parts);
         if equilibrium.is_costly() && record.len() > FEWEST_NODES {
@@ -277,7 +278,7 @@ impl Model {
         passes
     }
 
-    /// Force at one moment of rest.
+    /// The force at a single moment at rest.
     pub(crate) fn rest(&self, theta: &[f64], moment: &Moment) -> Result<AtRest, ModelError> {
         let record = Record::from_moments(vec![*moment], vec![0.0], std::iter::once(0..1).collect());
         let Some(record) = record else { return Err(ModelError::Values { given: 0, expected: 1 }) };
@@ -305,7 +306,7 @@ impl Model {
 }
 
 impl Run<'_> {
-    /// The lattice for the rows that count, if it is worth its while; held, if it is to be.
+    /// The lattice for the rows that count, if it pays off. It is held if `slots` asks for that.
     fn solved(
         &self,
         record: &Record,
@@ -323,7 +324,7 @@ impl Run<'_> {
         };
         let (even, of_levels) = (around(false), around(true));
         let (lattice, spans) = if of_levels.0.needed() < even.0.needed() { of_levels } else { even };
-        // A node costs what a row costs, in one evaluation; what is held serves many.
+        // A node costs as much as a row. A held lattice serves several evaluations.
         let evaluations = if slots.holds { HELD_FOR } else { 1 };
         if lattice.needed() >= evaluations * counted {
             return None;
@@ -350,8 +351,8 @@ impl Run<'_> {
         Some(lattice)
     }
 
-    /// Widens a held lattice to where rows have moved since it was solved, if they take more searches than it would: a zero error of the length moves all rows
-    /// of an isometric test out of it.
+    /// Widens a held lattice to rows that have left it, if that takes fewer searches than the rows do. A zero
+    /// error of the length, for example, moves all rows of an isometric test out of the lattice.
     fn widen(&self, record: &Record, counts: &dyn Fn(usize) -> bool, slots: &mut Slots) {
         let Some((held, alone)) = slots.missed(self.body) else { return };
         let there = || Equilibrium::new(self.model.shaped(self.body, &held.theta, &held.shapes).ok()?).ok();
@@ -378,7 +379,7 @@ impl Run<'_> {
         self.model.effects.iter().any(|chosen| chosen.effect.memory() > 0)
     }
 
-    /// Rows whose equilibrium matters: those that count, and where something is remembered those before them in their sweep.
+    /// Rows whose equilibrium matters: rows that count and, with memory, all rows before them in their sweep.
     fn matters(&self, record: &Record, counts: &dyn Fn(usize) -> bool) -> Vec<bool> {
         let mut matters: Vec<bool> = (0..record.len()).map(counts).collect();
         if self.remembers() {
@@ -391,7 +392,7 @@ impl Run<'_> {
         matters
     }
 
-    /// All numbers of effects that change the shape.
+    /// All numbers of the effects that change the shape.
     fn shaping(&self) -> impl Iterator<Item = (String, u64)> {
         let is_of_shape = |chosen: &&Chosen| chosen.effect.stage() == Stage::Shape;
         let numbers = |chosen: &Chosen| {
@@ -402,7 +403,7 @@ impl Run<'_> {
         self.model.effects.iter().filter(is_of_shape).flat_map(numbers)
     }
 
-    /// Sweeps where something is remembered along them, else chunks of equal size.
+    /// Sweeps if something is remembered along them, otherwise chunks of equal size.
     fn segments(&self, record: &Record) -> Vec<Range<usize>> {
         if self.remembers() {
             return record.sweeps().to_vec();
@@ -413,13 +414,13 @@ impl Run<'_> {
         (0..record.len()).step_by(chunk).map(|start| start..(start + chunk).min(record.len())).collect()
     }
 
-    /// What is remembered along a sweep: of each effect, and of the strands.
+    /// The memory along a sweep, for each effect and for the strands.
     pub(crate) fn memory(&self) -> Vec<Vec<Jet>> {
         let sizes = self.model.effects.iter().map(|chosen| chosen.effect.memory());
         sizes.chain([strands::MEMORY]).map(|size| vec![Jet::from(0.0); size]).collect()
     }
 
-    /// What each effect does with a row, in their order.
+    /// The action of each effect on a row, in the order of the effects.
     pub(crate) fn actions<'r>(
         &'r self,
         moment: &'r Moment,
@@ -451,8 +452,7 @@ impl Run<'_> {
         input
     }
 
-    /// Nodes of a lattice around the pressures and ranges of contraction at which equilibria will be asked for, by rows that matter; neighbours that ask for the same
-    /// are one.
+    /// Lattice nodes needed for the pressures and contractions of rows that matter, without duplicates.
     fn spans(&self, record: &Record, matters: &[bool], lattice: &Lattice) -> Vec<Span> {
         let pass = Pass {
             theta: self.theta.iter().map(|v| Jet::from(*v)).collect(),
@@ -468,7 +468,7 @@ impl Run<'_> {
             let input = self.input(moment, &pass, memory);
             let pressure = (input.pressure * input.area / input.wall).value();
             let e = input.contraction.value();
-            // The force is not known yet: p pi (3 r0)^2 is more than any muscle has at usable contractions.
+            // The force isn't known yet. No muscle exceeds p pi (3 r0)^2 at usable contractions.
             let most = Jet::from(pressure * std::f64::consts::PI * (3.0 * self.setting.radius).powi(2));
             let give = (input.give_force.under(most) + input.give_tension.under(most)).value();
             let spread = NORMAL[1].0 * input.spread.value().abs();
@@ -489,7 +489,7 @@ impl Run<'_> {
         segments.par_iter().flat_map_iter(of_segment).collect()
     }
 
-    /// Whether rows start from the row before: within a fit where nothing is shot for.
+    /// Whether a row starts from the row before it: within a fit, if nothing takes shooting.
     pub(crate) fn walks(&self) -> bool {
         self.within_fit && self.equilibrium.as_ref().is_some_and(|equilibrium| !equilibrium.is_costly())
     }

@@ -1,4 +1,4 @@
-//! Rows without a force: why, and what to tell of them.
+//! Rows without a force: the reasons and the error that reports them.
 
 use bulge_fibre::{Approach, FibreError, Problem};
 use bulge_muscles::Pressure;
@@ -14,7 +14,8 @@ pub(crate) enum RowError {
 }
 
 impl Model {
-    /// The error with the limit beyond which its first row lies, if that is the reason: a search, which the evaluations of a fit save.
+    /// Adds to the error the limit that its first row exceeds, if that is the reason. This takes a search,
+    /// which the evaluations of a fit skip.
     #[must_use]
     pub fn explained(&self, record: &Record, theta: &[f64], error: ModelError) -> ModelError {
         let ModelError::NoEquilibrium { rows, pressure_pa, contraction, source } = error else {
@@ -31,7 +32,7 @@ impl Model {
     }
 }
 
-/// All of them as one error.
+/// Combines all failed rows into one error.
 pub(crate) fn failure(failed: Vec<(usize, RowError)>) -> ModelError {
     let mut rows = Vec::with_capacity(failed.len());
     let mut first = None;

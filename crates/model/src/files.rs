@@ -1,21 +1,23 @@
-//! What the reader of a muscle's files should know of it.
+//! Properties of a muscle that the reader of its measurement files needs.
 
 use bulge_fibre::{Approach, Problem};
 use bulge_measurements::{ColumnMap, MeasurementError, ReadOptions};
 use bulge_muscles::{Muscle, Pressure, Quantity};
 
-/// The pressure at which a muscle shows how much it pulls \[Pa\]: rubber weighs little there, and most muscles are made for it.
+/// The pressure at which the pull of a muscle is sampled \[Pa\]. Rubber matters little there, and most
+/// muscles are made for it.
 const USUAL: f64 = 2e5;
-/// Contractions at which it does: no muscle contracts by more, and a pleated one has no finite force at 0.
+/// The range of contractions at which the pull is sampled. No muscle contracts by more, and a pleated muscle
+/// has no finite force at 0.
 const FIRST: f64 = 0.005;
 const LAST: f64 = 0.455;
 const STEPS: u32 = 18;
 
-/// How files of a muscle's measurements are read: the columns as stated, the muscle's own `[data.columns]` where these say nothing, its length, and how
-/// much it pulls.
+/// Options for reading the measurement files of a muscle. They contain the given columns, the muscle's own
+/// `[data.columns]` for the quantities that these leave out, the muscle's length and its pull.
 ///
 /// # Errors
-/// If the muscle's columns can't be.
+/// If the muscle's `[data.columns]` are invalid.
 pub fn read_options(muscle: &Muscle, columns: Option<&ColumnMap>) -> Result<ReadOptions, MeasurementError> {
     let mut stated = ColumnMap::default();
     for (quantity, column) in muscle.data_columns() {
@@ -30,7 +32,7 @@ pub fn read_options(muscle: &Muscle, columns: Option<&ColumnMap>) -> Result<Read
     })
 }
 
-/// Force over pressure at several contractions; those that the muscle has.
+/// Force over pressure at the sampled contractions that the muscle can reach.
 fn pull(muscle: &Muscle) -> Vec<[f64; 2]> {
     let step = (LAST - FIRST) / f64::from(STEPS);
     let contractions: Vec<f64> = (0..=STEPS).map(|i| FIRST + step * f64::from(i)).collect();

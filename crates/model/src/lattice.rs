@@ -1,18 +1,21 @@
-//! A lattice of solved equilibria between which many rows are interpolated.
+//! A lattice of solved equilibria, between which many rows are interpolated.
 //!
-//! Shooting takes some 10 to 500 us; a file may have 10^6 rows. Equilibria are therefore solved on a fixed lattice in ln(p) and in a stretched
-//! contraction s, only where rows need them, and interpolated by local Lagrange polynomials of degree 5 in both directions, of degree 2 between the three
-//! nearest lines of a finer lattice where rows are kept at a few levels of pressure and ask for fewer nodes so:
+//! Shooting takes some 10 to 500 us, and a file may have 10^6 rows. Equilibria are therefore solved on a
+//! fixed lattice in ln(p) and in a stretched contraction s, only where rows need them. Rows are interpolated
+//! by local Lagrange polynomials of degree 5 in both directions. If the rows lie at a few levels of pressure,
+//! a finer lattice may need fewer nodes; along the pressure it is interpolated with degree 2 between the
+//! three nearest lines:
 //!
 //! ```text
 //! s = asinh(eps/0.02)    (ln(eps) where the force is infinite at eps = 0)
 //! F/p, N/p, r, V  and their derivatives by the shape parameters  =  sum of w_i(ln p) w_j(s) X_ij
 //! ```
 //!
-//! The lattice doesn't move with the parameters, and interpolation is linear in the solved values: the derivatives by the shape parameters are
-//! exactly those of the interpolated force, and those by pressure and contraction are taken from the same polynomials. Away from the
-//! kink of cloth that comes taut the error is below 1e-6 of the force; in the last two cells before equilibria end, where stencils lie aside, below 1e-4 of full scale (tests).
-//! Further on the row is solved itself.
+//! The lattice doesn't move with the parameters, and interpolation is linear in the solved values. The
+//! derivatives by the shape parameters are therefore exactly those of the interpolated force. The derivatives
+//! by pressure and contraction come from the same polynomials. The error is below 1e-6 of the force, except
+//! near the kink where cloth comes taut. In the last two cells before equilibria end the stencils are
+//! shifted, and the error is below 1e-4 of full scale (tests). Rows further on are solved directly.
 
 use bulge_fibre::{FibreError, Start};
 use rayon::prelude::*;
@@ -24,44 +27,45 @@ use crate::answer::{Answer, Graded, SHAPE};
 use crate::base::Equilibrium;
 use crate::solved::Starts;
 
-/// Nodes of a stencil along the contraction, and along the pressure on an even lattice.
+/// Nodes of a stencil along the contraction, and along the pressure on a lattice that isn't made for levels.
 const WIDTH: usize = 6;
-/// Nodes of a stencil along the pressure where rows are kept at levels.
+/// Nodes of a stencil along the pressure on a lattice for levels of pressure.
 const LEVEL_WIDTH: usize = 3;
-/// Nodes that a lattice has at least: for fewer rows none is worth its while.
+/// The smallest number of nodes of a lattice. For fewer rows none pays off.
 pub(crate) const FEWEST_NODES: usize = WIDTH * WIDTH;
 /// Steps of ln(p) and s at refinement 1.
 const STEP: [f64; 2] = [0.15, 0.115];
-/// Steps of ln(p) at levels in one of those.
+/// A lattice for levels of pressure divides one of these steps of ln(p) into this many.
 const LEVEL_STEPS: i64 = 5;
-/// Contraction below which the lattice is even, above which it is logarithmic.
+/// The contraction at which the lattice turns from even to logarithmic spacing.
 const BEND: f64 = 0.02;
-/// Nodes by which a stencil may lie aside, so that the row stays within it, and the most in both directions together: beyond that a row is solved itself.
+/// Shifts of a stencil, in nodes, that keep the row inside it, and the largest total shift in both
+/// directions. A row that needs more is solved directly.
 const INWARDS: [i64; 5] = [0, -1, 1, -2, 2];
 const MOST_INWARDS: i64 = 3;
 /// Outputs of a node: force, tension, radius, volume.
 const OUTPUTS: usize = 4;
 
-/// Contraction at which the search for the nodes of one pressure begins.
+/// The contraction at which the search for the nodes of one pressure begins. Every muscle pulls there.
 const PULLS: f64 = 0.02;
 
-/// The outputs of an equilibrium, then their derivatives by each of the shape parameters.
+/// The outputs of an equilibrium, followed by their derivatives by each shape parameter.
 type Node = Vec<[f64; OUTPUTS]>;
-/// Column of a node, its numbers, and where its search ended.
+/// Column of a node, its numbers, and the end of its search.
 type Solved = (usize, Node, Option<Start>);
 
-/// Nodes beyond the one at which the force vanishes: rows up to there have whole stencils. Further on equilibria soon end, and finding out where takes long; a row there is solved
-/// itself.
+/// Number of nodes that are solved beyond the zero of the force, so that rows up to the zero have complete
+/// stencils. Equilibria end soon after, and finding the end takes long. A row there is solved directly.
 const BEYOND: usize = 3;
 
 /// The nodes of one pressure.
 struct Line {
     solved: Vec<Solved>,
-    /// Where equilibria end towards larger contractions, and why.
+    /// The column at which equilibria end towards larger contractions, and the reason.
     end: Option<(usize, FibreError)>,
 }
 
-/// Solved equilibria at the nodes that were asked for.
+/// Solved equilibria at the requested nodes.
 #[derive(Debug, Clone)]
 pub(crate) struct Lattice {
     singular: bool,
@@ -70,31 +74,32 @@ pub(crate) struct Lattice {
     steps: [f64; 2],
     /// Nodes of a stencil along the pressure.
     width: usize,
-    /// Lowest index and number of nodes, by direction.
+    /// Lowest index and number of nodes, for each direction.
     low: [i64; 2],
     count: [usize; 2],
     /// Whether a row needs a node.
     needed: Vec<bool>,
     /// Whether a node has an equilibrium.
     is_solved: Vec<bool>,
-    /// One node after the other, `1 + shapes` entries each.
+    /// The nodes one after the other, with `1 + shapes` entries each.
     nodes: Vec<[f64; OUTPUTS]>,
-    /// The first column without an equilibrium towards larger contractions, for each pressure, and why it has none.
+    /// For each pressure, the first column without an equilibrium towards larger contractions, and the
+    /// reason.
     ends: Vec<Option<(usize, FibreError)>>,
 }
 
-/// Where a row lies in the lattice: first node of the stencil and the distance from it in steps.
+/// Position of a row in the lattice: the first node of the stencil, and the distance from it in steps.
 #[derive(Debug, Clone, Copy)]
 struct Place {
     first: i64,
     offset: f64,
 }
 
-/// First and last node that a row needs, along the pressure and along the contraction.
+/// First and last node that a row needs along the pressure and along the contraction.
 pub(crate) type Span = [[i64; 2]; 2];
 
 impl Lattice {
-    /// A lattice without nodes, even in ln(p) or for rows at levels.
+    /// An empty lattice: for rows at levels of pressure, or with the usual steps in ln(p).
     pub(crate) fn unsolved(equilibrium: &Equilibrium, shapes: usize, refinement: f64, levels: bool) -> Self {
         let scale_free = equilibrium.is_scale_free();
         let [by_pressure, by_contraction] = STEP.map(|step| step / refinement);
@@ -119,7 +124,8 @@ impl Lattice {
         }
     }
 
-    /// The same with the nodes that rows need, not yet solved. Zero errors that move a row into the next cell while a lattice is held leave it a stencil that lies aside.
+    /// Marks the nodes that rows need, without solving them. If a zero error moves a row into the next cell
+    /// while the lattice is held, the row is interpolated with a shifted stencil.
     pub(crate) fn around(mut self, spans: &[Span]) -> Self {
         let Some(first) = spans.first() else { return self };
         let mut extent = *first;
@@ -144,17 +150,17 @@ impl Lattice {
         self
     }
 
-    /// Whether it is one for rows at levels of pressure.
+    /// Whether the lattice is made for rows at levels of pressure.
     pub(crate) fn is_of_levels(&self) -> bool {
         self.width == LEVEL_WIDTH
     }
 
-    /// How many nodes there are to solve.
+    /// Number of nodes to solve.
     pub(crate) fn needed(&self) -> usize {
         self.needed.iter().filter(|needed| **needed).count()
     }
 
-    /// Whether both ask for the same nodes with as many derivatives.
+    /// Whether both lattices need the same nodes with the same number of derivatives.
     pub(crate) fn has_nodes_of(&self, other: &Self) -> bool {
         let kind = |lattice: &Self| (lattice.singular, lattice.scale_free, lattice.shapes);
         let steps = |lattice: &Self| lattice.steps.map(f64::to_bits);
@@ -164,8 +170,8 @@ impl Lattice {
             && self.needed == other.needed
     }
 
-    /// The same with its nodes solved, one pressure beside the other, and where the searches ended. They start at what `starts` holds of a node, else at its
-    /// neighbour.
+    /// Solves the nodes, the pressures in parallel. Also returns the ends of the searches. A search starts at
+    /// the entry of `starts` for its node, or else at the neighbouring node.
     pub(crate) fn solved(mut self, equilibrium: &Equilibrium, starts: &Starts) -> (Self, Starts) {
         let lines: Vec<Line> =
             (0..self.count[0]).into_par_iter().map(|row| self.line(equilibrium, row, starts)).collect();
@@ -202,8 +208,8 @@ impl Lattice {
         lattice
     }
 
-    /// Nodes of one pressure: outwards from the contraction where every muscle pulls. A direction ends where equilibria end: nothing beyond is
-    /// searched for in vain.
+    /// Solves the nodes of one pressure, outwards from the contraction at which every muscle pulls. A
+    /// direction stops at the end of equilibria, so that no search beyond it is wasted.
     fn line(&self, equilibrium: &Equilibrium, row: usize, starts: &Starts) -> Line {
         let columns = self.count[1];
         let needed: Vec<usize> = (0..columns).filter(|column| self.needed[row * columns + column]).collect();
@@ -211,6 +217,7 @@ impl Lattice {
         let (below, above) = needed.split_at(middle);
         let mut found = Line { solved: Vec::with_capacity(needed.len()), end: None };
         let mut first = None;
+        // Upwards first: the first equilibrium found also starts the way down.
         let ways: [(bool, &mut dyn Iterator<Item = &usize>); 2] =
             [(true, &mut above.iter()), (false, &mut below.iter().rev())];
         for (is_upwards, way) in ways {
@@ -240,7 +247,8 @@ impl Lattice {
         found
     }
 
-    /// Why there is no equilibrium at a contraction: at both pressures beside it they ended more than a cell before. None if there may be one.
+    /// The reason why there is no equilibrium at a contraction, or none if there may be one. Equilibria must
+    /// have ended more than a cell before at both neighbouring pressures.
     fn beyond(&self, pressure: f64, contraction: f64) -> Option<&FibreError> {
         let cell = |axis: usize, x: f64| Some(index_of((x / self.steps[axis]).floor())? - self.low[axis]);
         let column = cell(1, self.contraction_axis(contraction)?)?;
@@ -253,7 +261,7 @@ impl Lattice {
         (self.scale_free || end(line + 1).is_some()).then_some(error)
     }
 
-    /// Places of a node in the steps of the finer lattice.
+    /// Index of a node in the steps of the finer lattice.
     fn key(&self, row: usize, column: usize) -> [i64; 2] {
         // Indices are below 1e6 (see `place`).
         let unit = if self.is_of_levels() { 1 } else { LEVEL_STEPS };
@@ -268,7 +276,8 @@ impl Lattice {
         if self.singular { s.exp() } else { BEND * s.sinh() }
     }
 
-    /// First and last nodes that a row needs at a pressure and in a range of contraction, by direction; none outside what a lattice can hold.
+    /// First and last nodes that a row needs at a pressure and in a range of contractions, for each
+    /// direction. None outside the range of a lattice.
     pub(crate) fn span(&self, pressure: f64, [low, high]: [f64; 2]) -> Option<Span> {
         let p = self.place(0, self.pressure_axis(pressure)?)?;
         let [a, b] = [self.contraction_axis(low)?, self.contraction_axis(high)?];
@@ -289,13 +298,13 @@ impl Lattice {
         contraction.is_finite().then(|| (contraction / BEND).asinh())
     }
 
-    /// Last node of a stencil, from its first.
+    /// Distance from the first to the last node of a stencil.
     fn last(&self, axis: usize) -> i64 {
         let width = if axis == 0 { self.width } else { WIDTH };
         i64::try_from(width).unwrap_or(1) - 1
     }
 
-    /// The stencil whose middle is nearest.
+    /// The stencil whose middle is nearest to a coordinate.
     fn place(&self, axis: usize, x: f64) -> Option<Place> {
         let steps = x / self.steps[axis];
         let first = index_of((steps - 0.5 * (self.last(axis) - 1) as f64).floor())?;
@@ -329,8 +338,9 @@ impl Lattice {
         Ok((std::iter::once(values).chain(slopes).collect(), start))
     }
 
-    /// The stencil around a pressure and a contraction, moved inwards where equilibria end: a row in the last cells is still between solved nodes. The least moved
-    /// counts, along the contraction first; none if there is no such stencil.
+    /// The stencil around a pressure and a contraction, shifted inwards where equilibria end. Rows in the
+    /// last cells then still lie between solved nodes. The first solved stencil in the order of [`INWARDS`]
+    /// is taken, with shifts along the contraction tried first. None if there is none.
     fn within(&self, around: [Place; 2]) -> Option<[Place; 2]> {
         let moved = |place: Place, shift: i64| Place {
             first: place.first + shift,
@@ -354,7 +364,7 @@ impl Lattice {
             .find(is_solved)
     }
 
-    /// The interpolated answer; none where the lattice has no node.
+    /// The interpolated answer, or none if nodes are missing.
     pub(crate) fn answer(&self, pressure: f64, contraction: f64) -> Option<Answer> {
         let x = self.pressure_axis(pressure)?;
         let s = self.contraction_axis(contraction)?;
@@ -370,13 +380,13 @@ impl Lattice {
         };
         let (first, rows) = (along_p.first, self.width);
         let (ws, ds) = weights(along_s.offset);
-        // Values with their shape derivatives, and the values' slopes in steps.
+        // Values with their derivatives by the shape, and the slopes of the values per step.
         let mut starts = [0; WIDTH];
         for (start, row) in starts.iter_mut().zip(first..).take(rows) {
             *start = self.index(row, along_s.first)?;
         }
         let stride = 1 + self.shapes;
-        // One entry after the other: its sums stay in registers.
+        // Each entry is summed separately, so that its sums stay in registers.
         let summed = |entry: usize, along_p: &[f64; WIDTH], along_s: &[f64; WIDTH]| {
             let mut sum = [0.0; OUTPUTS];
             for (start, along_p) in starts.iter().zip(along_p).take(rows) {
@@ -421,7 +431,8 @@ impl Lattice {
     }
 }
 
-/// Interpolated where the lattice reaches, else solved, and counted as solved alone; but not where equilibria ended before, which would be searched for in vain.
+/// Interpolates if the lattice covers the point. Otherwise solves directly and counts the search in `alone`,
+/// unless equilibria are known to end before this point, where a search would fail.
 pub(crate) fn answer(
     lattice: Option<&Lattice>,
     equilibrium: &Equilibrium,
@@ -443,21 +454,21 @@ pub(crate) fn answer(
     Ok(answer)
 }
 
-/// A single node that counts whole, and no slope.
+/// Weights of a single node, with zero slope.
 fn flat() -> ([f64; WIDTH], [f64; WIDTH]) {
     let mut one = [0.0; WIDTH];
     one[0] = 1.0;
     (one, [0.0; WIDTH])
 }
 
-/// An index, of a number below 1e6.
+/// A whole number below 1e6 as an index.
 fn index_of(whole: f64) -> Option<i64> {
     #[expect(clippy::cast_possible_truncation, reason = "below 1e6")]
     let index = whole as i64;
     (whole.abs() < 1e6).then_some(index)
 }
 
-/// Lagrange's weights of the nodes 0 to 2 at `t`, and their slopes.
+/// Lagrange weights of the nodes 0 to 2 at `t`, and their slopes.
 fn parabola(t: f64) -> ([f64; WIDTH], [f64; WIDTH]) {
     let (mut w, mut d) = ([0.0; WIDTH], [0.0; WIDTH]);
     w[..LEVEL_WIDTH].copy_from_slice(&[0.5 * (t - 1.0) * (t - 2.0), t * (2.0 - t), 0.5 * t * (t - 1.0)]);
@@ -465,7 +476,7 @@ fn parabola(t: f64) -> ([f64; WIDTH], [f64; WIDTH]) {
     (w, d)
 }
 
-/// Lagrange's weights of the nodes 0 to 5 at `t`, and their slopes.
+/// Lagrange weights of the nodes 0 to 5 at `t`, and their slopes.
 fn weights(t: f64) -> ([f64; WIDTH], [f64; WIDTH]) {
     // (-1)^(5 - k) k! (5 - k)!
     const BELOW: [f64; WIDTH] = [-120.0, 24.0, -12.0, 12.0, -24.0, 120.0];

@@ -1,13 +1,16 @@
-//! Force of a pneumatic artificial muscle along a measured history: a base law and chosen effects, with exact derivatives.
+//! Force of a pneumatic artificial muscle along a measured history, computed from a base law and chosen
+//! effects, with exact derivatives.
 //!
 //! ```text
 //! readings p, eps, history -> rig effects -> true p, eps -> equilibrium of the reshaped muscle -> loads -> load cell -> force
 //! ```
 //!
-//! The base law is the equilibrium of the fibre net (default) or one of the papers' force laws. [`Model::evaluate`] runs it along a [`Record`],
-//! sweep by sweep, and returns the force of every row with exact derivatives by any of the parameters and by the readings.
+//! The base law is the equilibrium of the fibre net (default) or one of the force laws of the papers.
+//! [`Model::evaluate`] runs it along a [`Record`], sweep by sweep. It returns the force of every row with
+//! exact derivatives by any of the parameters and by the readings.
 //!
-//! Deliberately absent: fitting and judging. A model says what it predicts, not whether that is right.
+//! Deliberately absent: fitting and judging. A model predicts; it doesn't say whether the prediction is
+//! right.
 
 mod answer;
 mod base;

@@ -1,4 +1,4 @@
-//! A model: a muscle (or a force law) with chosen effects, and the list of its numbers.
+//! A model: a muscle (or a force law) with chosen effects, and the list of its parameters.
 
 use bulge_effects::law::{Coefficient, Law, LawGeometry, Role};
 use bulge_effects::{Effect, Group, Moment, Setting, Stage};
@@ -14,38 +14,39 @@ use crate::parameter::ModelParameter;
 use crate::restriction::Restriction;
 use crate::solved::Solved;
 
-/// Coarsest lattice that follows the force at all.
+/// The coarsest refinement at which the lattice still follows the force.
 const COARSEST: f64 = 0.25;
 
-/// Part of a parameter's usual size at which a part of the muscle exists that doesn't at 0; derivatives change by about as much on the way.
+/// Step away from 0, as a fraction of a parameter's usual size, at which a part exists that is absent at 0.
+/// Derivatives change by about the same fraction.
 const BESIDE: f64 = 1e-7;
 
-/// An effect of a model.
+/// An effect in a model.
 #[derive(Debug, Clone)]
 pub struct Chosen {
     /// The effect.
     pub effect: Arc<dyn Effect>,
-    /// Whether its numbers are taken as known.
+    /// Whether its parameters are known.
     pub fixed: bool,
-    /// Where its numbers start in the model's list, and how many it has for each specimen.
+    /// Index of its first parameter in the model's list, and the number of its parameters per specimen.
     pub(crate) place: usize,
     pub(crate) count: usize,
-    /// Whether each specimen has its own.
+    /// Whether each specimen has its own parameters.
     pub(crate) each_specimen: bool,
 }
 
-/// What gives the force before effects are added.
+/// The law that gives the force before effects are added.
 #[derive(Debug, Clone)]
 pub(crate) enum Base {
     Equilibrium,
     Law { law: &'static Law },
 }
 
-/// One of the muscles that the specimens are.
+/// One of the distinct muscles among the specimens.
 #[derive(Debug, Clone)]
 pub(crate) struct Body {
     pub(crate) muscle: Muscle,
-    /// Its parts before effects.
+    /// The parts of the muscle before effects.
     pub(crate) parts: Parts,
     pub(crate) setting: Setting,
     pub(crate) geometry: LawGeometry,
@@ -63,33 +64,33 @@ impl Body {
 pub struct Model {
     pub(crate) muscle: Muscle,
     pub(crate) base: Base,
-    /// The muscles that the specimens are, each once, and which of them each specimen is.
+    /// The distinct muscles among the specimens, and the index into them for each specimen.
     pub(crate) bodies: Vec<Body>,
     pub(crate) body_of: Vec<usize>,
     pub(crate) effects: Vec<Chosen>,
     pub(crate) specimens: Vec<String>,
     pub(crate) parameters: Vec<ModelParameter>,
-    /// What is stated of numbers, also of those that effects still bring.
+    /// Restrictions on parameters, including those of effects that are not added yet.
     pub(crate) restrictions: Arc<[Restriction]>,
-    /// Steps of the lattice are divided by this.
+    /// The steps of the lattice are divided by this number.
     pub(crate) refinement: f64,
-    /// Lattices that this model and those made from it have solved.
+    /// Lattices that were solved by this model and the models made from it.
     pub(crate) solved: Arc<Solved>,
 }
 
-/// Force of a muscle at rest, part by part.
+/// Force of a muscle at rest at three stages.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct AtRest {
-    /// Of the equilibrium, or the law \[N\].
+    /// Force of the equilibrium, or of the law \[N\].
     pub equilibrium_n: f64,
-    /// With what effects of the load add \[N\].
+    /// Force including the load effects \[N\].
     pub force_n: f64,
-    /// What the load cell reads \[N\].
+    /// Reading of the load cell \[N\].
     pub reading_n: f64,
 }
 
 impl Model {
-    /// The equilibrium of a muscle, without effects beyond what the muscle itself states.
+    /// The equilibrium of a muscle, without effects other than those that the muscle itself contains.
     #[must_use]
     pub fn new(muscle: &Muscle) -> Self {
         Self {
@@ -106,7 +107,7 @@ impl Model {
         }
     }
 
-    /// The same with parts that effects outside the model have changed.
+    /// Replaces the parts by parts that were changed outside the model.
     pub(crate) fn of_parts(mut self, parts: &Parts) -> Self {
         for body in &mut self.bodies {
             body.parts = parts.clone();
@@ -114,8 +115,8 @@ impl Model {
         self
     }
 
-    /// A force law instead of the equilibrium. Its coefficients are numbers of the model, fixed unless `free`; `values` are where they
-    /// start.
+    /// A model with a force law in place of the equilibrium. The coefficients of the law are parameters of
+    /// the model and start at `values`. They are fixed unless `free`.
     #[must_use]
     pub fn from_law(muscle: &Muscle, law: &'static Law, values: &[f64], free: bool) -> Self {
         let mut model = Self::new(muscle);
@@ -125,10 +126,11 @@ impl Model {
         model
     }
 
-    /// The same with an effect more. Its numbers are where a fit starts, or known if `values` are given.
+    /// Adds an effect. Its parameters are known if `values` are given; otherwise they start at their usual
+    /// values.
     ///
     /// # Errors
-    /// If the muscle is of the other kind, or the effect is there already.
+    /// If the effect belongs to the other kind of muscle, or is already in the model.
     pub fn with(&self, effect: &Arc<dyn Effect>, values: Option<&[f64]>) -> Result<Self, ModelError> {
         let card = effect.card();
         if let Some(owner) = card.kind.filter(|kind| *kind != self.muscle.kind()) {
@@ -176,10 +178,11 @@ impl Model {
         Ok(model)
     }
 
-    /// The same for several specimens, by name; to be called before effects are added. Each is the muscle with the numbers that are stated for it.
+    /// The model for several specimens, by name. Call this before effects are added. Each specimen is the
+    /// muscle with the numbers stated for the specimen.
     ///
     /// # Errors
-    /// If the muscle can't have the numbers of a specimen.
+    /// If the numbers of a specimen don't fit the muscle.
     pub fn for_specimens(mut self, specimens: &[String]) -> Result<Self, ModelError> {
         if specimens.is_empty() {
             return Ok(self);
@@ -198,26 +201,26 @@ impl Model {
         Ok(self)
     }
 
-    /// Whether each specimen has its own numbers of an effect: it differs from specimen to specimen, or comes with the mounting of specimens that
-    /// differ.
+    /// Whether each specimen has its own parameters of an effect. This is so if the effect describes
+    /// differences between specimens, or if it comes with the mounting and the specimens differ.
     fn is_of_each_specimen(&self, effect: &dyn Effect) -> bool {
         effect.card().group == Group::Specimen
             || effect.is_of_mounting() && self.specimens.len() > 1 && !self.muscle.specimens().is_empty()
     }
 
-    /// How many times the numbers of an effect are there: once, or for each specimen.
+    /// The number of copies of an effect's parameters: one, or one for each specimen.
     #[must_use]
     pub fn copies(&self, effect: &dyn Effect) -> usize {
         if self.is_of_each_specimen(effect) { self.specimens.len() } else { 1 }
     }
 
-    /// Effect and name of a number.
+    /// The effect and the name of a parameter.
     pub(crate) fn name_of(&self, index: usize) -> (String, String) {
         let parameter = &self.parameters[index];
         (parameter.effect.clone(), parameter.name.clone())
     }
 
-    /// Which of the muscles that the specimens are a specimen is.
+    /// Index of a specimen's muscle among the distinct muscles.
     pub(crate) fn body_of(&self, specimen: u32) -> usize {
         self.body_of[(specimen as usize).min(self.body_of.len() - 1)]
     }
@@ -228,83 +231,87 @@ impl Model {
         &self.specimens
     }
 
-    /// The same on a finer lattice, its steps divided by `refinement`, or on a coarser one: at 0.5 forces are right to about 1e-4.
+    /// The model on a lattice whose steps are divided by `refinement`. At 0.5 forces are accurate to about
+    /// 1e-4.
     #[must_use]
     pub fn refined(mut self, refinement: f64) -> Self {
         self.refinement = refinement.max(COARSEST);
         self
     }
 
-    /// The muscle as stated.
+    /// The muscle as stated, without effects.
     #[must_use]
     pub fn muscle(&self) -> &Muscle {
         &self.muscle
     }
 
-    /// The name of the force law, if that is the base.
+    /// The force law, if the model is based on one.
     #[must_use]
     pub fn law(&self) -> Option<&'static Law> {
         if let Base::Law { law, .. } = self.base { Some(law) } else { None }
     }
 
-    /// The effects in their order.
+    /// The effects in the order in which they were added.
     #[must_use]
     pub fn effects(&self) -> &[Chosen] {
         &self.effects
     }
 
-    /// All numbers, in the order in which [`Model::evaluate`] takes them.
+    /// All parameters, in the order in which [`Model::evaluate`] takes them.
     #[must_use]
     pub fn parameters(&self) -> &[ModelParameter] {
         &self.parameters
     }
 
-    /// Where a fit starts.
+    /// The values at which a fit starts.
     #[must_use]
     pub fn start(&self) -> Vec<f64> {
         self.parameters.iter().map(|parameter| parameter.value).collect()
     }
 
-    /// The numbers at which no effect does anything.
+    /// The values at which no effect changes anything.
     #[must_use]
     pub fn off(&self) -> Vec<f64> {
         let coefficient = |p: &ModelParameter| self.law().is_some_and(|law| law.name == p.effect);
         self.parameters.iter().map(|p| if coefficient(p) { p.value } else { p.off }).collect()
     }
 
-    /// The numbers of an effect for a specimen.
+    /// The indices of an effect's parameters for a specimen.
     pub(crate) fn range(&self, chosen: &Chosen, specimen: u32) -> std::ops::Range<usize> {
         let copy = if chosen.each_specimen { (specimen as usize).min(self.specimens.len() - 1) } else { 0 };
         let start = chosen.place + copy * chosen.count;
         start..start + chosen.count
     }
 
-    /// The parts of the muscle as the effects of the stage [`Stage::Shape`] change them: for drawings and for other solvers.
+    /// The parts of the muscle as changed by the effects of stage [`Stage::Shape`], for drawings and for
+    /// other solvers.
     ///
     /// # Errors
-    /// If the muscle can't have an effect, or not with these values.
+    /// If an effect doesn't fit the muscle, or not with these values.
     pub fn parts(&self, theta: &[f64]) -> Result<Parts, ModelError> {
         let stated = Body::of(self.muscle.clone().without_specimens());
         self.moving(&stated, &self.with_ties(theta), &[]).map(|parts| parts.values())
     }
 
-    /// The same of one of the bodies, ties being applied.
+    /// The parts of one of the distinct muscles. Ties are already applied to `theta`.
     pub(crate) fn parts_of(&self, body: usize, theta: &[f64]) -> Result<Parts, ModelError> {
         self.moving(&self.bodies[body], theta, &[]).map(|parts| parts.values())
     }
 
-    /// Those of some parameters that belong to effects of the shape, in the order of the effects.
+    /// The wanted parameters that belong to shape effects, in the order of the effects.
     pub(crate) fn shapes(&self, wanted: &[usize]) -> Vec<usize> {
         let of_shape = self.effects.iter().filter(|chosen| chosen.effect.stage() == Stage::Shape);
         of_shape.flat_map(|chosen| self.range(chosen, 0)).filter(|index| wanted.contains(index)).collect()
     }
 
-    /// The parts of one of the bodies to solve, with derivatives by the parameters `shapes`, each in its lane.
+    /// The parts of one of the distinct muscles, with derivatives by the parameters `shapes`, each in its
+    /// lane.
     pub(crate) fn shaped(&self, body: usize, theta: &[f64], shapes: &[usize]) -> Result<Shaped, ModelError> {
         let body = &self.bodies[body];
         let parts = self.moving(body, theta, shapes)?;
         let mut beside = Vec::new();
         for (lane, index) in shapes.iter().enumerate() {
+            // A parameter by which any number has a derivative needs no other parts.
             if parts.numbers().iter().any(|(_, number)| number.gradient()[lane] != 0.0) {
                 continue;
             }
@@ -318,13 +325,14 @@ impl Model {
         Ok(Shaped { parts, beside })
     }
 
-    /// The parts of a body as the effects change them, with derivatives by the parameters `shapes`.
+    /// The parts of a muscle as changed by the effects, with derivatives by the parameters `shapes`.
     fn moving(&self, body: &Body, theta: &[f64], shapes: &[usize]) -> Result<Parts<Jet>, ModelError> {
         let seeded = |index: usize| match shapes.iter().position(|shape| *shape == index) {
             Some(lane) => Jet::variable(theta[index], lane),
             None => Jet::from(theta[index]),
         };
         let mut parts = body.parts.still();
+        // A specimen that differs from the muscle also needs the effects on the stated muscle.
         let all = Parts::of(&self.muscle);
         let mut stated = (body.parts != all).then(|| all.still());
         for chosen in self.effects.iter().filter(|chosen| chosen.effect.stage() == Stage::Shape) {
@@ -343,7 +351,7 @@ impl Model {
     /// Whether each row takes an integration of the equilibrium ODE.
     ///
     /// # Errors
-    /// If the muscle can't have an effect, or not with these values.
+    /// If an effect doesn't fit the muscle, or not with these values.
     pub fn is_costly(&self, theta: &[f64]) -> Result<bool, ModelError> {
         if self.law().is_some() {
             return Ok(false);
@@ -358,7 +366,8 @@ impl Model {
         Ok(false)
     }
 
-    /// Force at rest at a true pressure \[Pa\] and contraction: no direction, no rate, the first moment.
+    /// The force at rest at a true pressure \[Pa\] and contraction, with zero direction and rate, at the
+    /// first moment.
     ///
     /// # Errors
     /// If there is no equilibrium.
@@ -368,15 +377,17 @@ impl Model {
 }
 
 impl ModelParameter {
-    /// A change of the usual size.
+    /// The size of a usual change of the parameter.
     fn typical_step(&self) -> f64 {
         let usual = (self.value - self.off).abs();
         if usual > 0.0 { usual } else { 1e-2 * (self.high - self.low) }
     }
 }
 
-/// An effect that says what a number of the muscle is (a radius, not its error) says so of the muscle as stated. A specimen that has another such
-/// number keeps its ratio to that of the muscle: `before` and `found` are the specimen before and after the effect, `stated` and `set` the muscle.
+/// Scales a number that an effect sets (a radius, not its error) for a specimen. Such an effect sets the
+/// number of the muscle as stated. A specimen with another value of that number keeps its ratio to the
+/// muscle. `before` and `found` are the specimen before and after the effect, `stated` and `set` are the
+/// muscle before and after it.
 fn in_proportion(found: &Parts<Jet>, before: &Parts<Jet>, [stated, set]: [&Parts<Jet>; 2]) -> Parts<Jet> {
     let [before, stated, set] = [before, stated, set].map(Parts::numbers);
     let of = |numbers: &[(&str, Jet)], name: &str| {

@@ -1,7 +1,8 @@
-//! A muscle with the effects that its file states: what it pulls at rest when asked for a shape or a characteristic.
+//! A muscle with the effects that its file states, at rest: its shapes and characteristics.
 //!
-//! Effects that change the shape or the input change the muscle that is solved; effects of the load add their force at rest (no direction, no
-//! rate, no time). What belongs to a rig or to one specimen is left out: it is no part of the muscle.
+//! Shape and input effects change the muscle whose equilibrium is solved. Load effects add their force at
+//! rest (no direction, no rate, no time). Effects of the rig or of one specimen are left out, because they
+//! don't belong to the muscle.
 
 use bulge_effects::{Group, Known, Moment};
 use bulge_fibre::{Approach, FibreError, Given, Isobar, Parts, Problem, RangeEnd, Response, isobars};
@@ -13,26 +14,26 @@ use crate::evaluate::Wanted;
 use crate::model::Model;
 use crate::record::Record;
 
-/// Newton steps for a force to be met.
+/// The largest number of Newton steps in the search for a force.
 const MOST_STEPS: usize = 60;
-/// Longest of them, in contraction.
+/// The longest Newton step, in contraction.
 const MOST_STEP: f64 = 0.05;
 
 /// A muscle with the effects that its file states.
 #[derive(Debug, Clone)]
 pub struct MuscleWithEffects {
-    /// As stated, with the effects that change its shape.
+    /// The stated parts as changed by the shape effects.
     parts: Parts,
     model: Model,
-    /// Without effects, of the same parts.
+    /// The model of the same parts without effects.
     bare: Model,
-    /// Whether the force differs from that of the equilibrium of `parts`.
+    /// Whether the force may differ from that of the equilibrium of `parts`.
     adds: bool,
     used: Vec<String>,
     left_out: Vec<String>,
 }
 
-/// Force and its slopes at a point.
+/// Force at a point and its derivatives.
 #[derive(Debug, Clone, Copy)]
 struct Pull {
     force: f64,
@@ -41,10 +42,10 @@ struct Pull {
 }
 
 impl MuscleWithEffects {
-    /// A muscle with effects and their numbers, as [`bulge_effects::known`] reads them from it.
+    /// A muscle with effects and their parameters, as [`bulge_effects::known`] reads them from the muscle.
     ///
     /// # Errors
-    /// If the muscle can't have an effect, or not with these numbers.
+    /// If an effect doesn't fit the muscle, or not with these parameters.
     pub fn new(muscle: &Muscle, known: &[Known]) -> Result<Self, ModelError> {
         let plain = muscle.clone().without_learnt();
         let mut model = Model::new(&plain);
@@ -70,13 +71,13 @@ impl MuscleWithEffects {
         self.model.muscle()
     }
 
-    /// The parts whose equilibrium is solved: as stated, with the effects that change the shape.
+    /// The parts whose equilibrium is solved: the stated parts as changed by the shape effects.
     #[must_use]
     pub fn parts(&self) -> &Parts {
         &self.parts
     }
 
-    /// The stated length \[m\], from which contractions count.
+    /// The stated length \[m\], to which contractions refer.
     fn stated(&self) -> f64 {
         self.model.muscle().length().si()
     }
@@ -86,28 +87,30 @@ impl MuscleWithEffects {
         self.stated().to_bits() != self.parts.length.to_bits()
     }
 
-    /// Whether the force differs from that of the equilibrium of [`MuscleWithEffects::parts`].
+    /// Whether the force may differ from that of the equilibrium of [`MuscleWithEffects::parts`].
     #[must_use]
     pub fn adds_force(&self) -> bool {
         self.adds
     }
 
-    /// Names of the effects that take part.
+    /// Names of the effects that are included.
     #[must_use]
     pub fn used(&self) -> &[String] {
         &self.used
     }
 
-    /// Names of effects of a rig or a specimen, which take no part.
+    /// Names of the effects of rig and specimen, which are left out.
     #[must_use]
     pub fn left_out(&self) -> &[String] {
         &self.left_out
     }
 
-    /// An equilibrium of [`MuscleWithEffects::parts`] with the force and the stiffness that the effects make of it. Its contraction becomes that from
-    /// the stated length, where an effect says that the fibres have another one.
+    /// Completes an equilibrium of [`MuscleWithEffects::parts`] with the effects' changes of force and
+    /// stiffness. If an effect changes the length of the fibres, the contraction is converted to the stated
+    /// length.
     ///
-    /// The gas stiffness follows with the force's derivative by the pressure, F_p:  K_gas = K' + (K_gas0 - K0) F_p'/F_p.
+    /// The gas stiffness scales with the derivative F_p of the force by the pressure: K_gas = K' + (K_gas0 -
+    /// K0) F_p'/F_p.
     ///
     /// # Errors
     /// If an effect gives no finite force there.
@@ -133,8 +136,8 @@ impl MuscleWithEffects {
         })
     }
 
-    /// The force of a completed equilibrium while the muscle shortens (direction 1) or lengthens (-1), which friction tells apart \[N\]. Effects that remember
-    /// what was before act as at the beginning of a motion.
+    /// The force of a completed equilibrium while the muscle shortens (direction 1) or lengthens (-1) \[N\].
+    /// Friction makes the two differ. Effects with memory act as at the beginning of a motion.
     ///
     /// # Errors
     /// If an effect gives no finite force there.
@@ -148,12 +151,13 @@ impl MuscleWithEffects {
         Ok(response.force_n + change)
     }
 
-    /// The contraction of an equilibrium from the stated length.
+    /// The contraction of an equilibrium relative to the stated length.
     fn stated_contraction(&self, response: &Response) -> f64 {
         if self.is_longer() { 1.0 - response.length_m / self.stated() } else { response.contraction }
     }
 
-    /// What to ask of [`MuscleWithEffects::parts`] for what is asked of the muscle with its effects; not for a force.
+    /// Converts a given quantity of the muscle with its effects to one of [`MuscleWithEffects::parts`]. A
+    /// force isn't converted.
     #[must_use]
     pub fn given(&self, given: Given) -> Given {
         match given {
@@ -162,10 +166,11 @@ impl MuscleWithEffects {
         }
     }
 
-    /// The contraction at which the muscle with its effects has a given force, length or volume, and the completed equilibrium there.
+    /// Solves for the contraction at which the muscle with its effects has a given force, length or volume.
+    /// Returns the completed equilibrium there.
     ///
     /// # Errors
-    /// What [`Problem::solve`] says, or if no contraction gives the force.
+    /// Those of [`Problem::solve`]; also if no contraction gives the force.
     pub fn solve(
         &self,
         pressure: Pressure,
@@ -177,7 +182,7 @@ impl MuscleWithEffects {
         let Given::Force(wanted) = given else { return Ok(found) };
         for _ in 0..MOST_STEPS {
             let off = found.force_n - wanted;
-            // As exact as the solver itself.
+            // The tolerance is the accuracy of the solver itself.
             if off.abs() <= 1e-10 * (wanted.abs() + found.force_n.abs()) + 1e-9 || !self.adds {
                 return Ok(found);
             }
@@ -192,11 +197,12 @@ impl MuscleWithEffects {
         Err(MuscleWithEffectsError::Force { wanted, contraction: found.contraction, force: found.force_n })
     }
 
-    /// The characteristics of the muscle with its effects, as [`bulge_fibre::isobars`] of a muscle without: on all cores, the same bytes whatever
-    /// the number of threads. Where the muscle with its effects would push, the point is left out with the reason.
+    /// The characteristics of the muscle with its effects, as [`bulge_fibre::isobars`] gives them without
+    /// effects. They are computed on all cores, with the same bytes for any number of threads. Points at
+    /// which the muscle with its effects would push are left out, with the reason.
     ///
     /// # Errors
-    /// Those of [`bulge_fibre::isobars`], or if an effect gives no finite force.
+    /// Those of [`bulge_fibre::isobars`]; also if an effect gives no finite force.
     pub fn isobars(
         &self,
         pressures: &[Pressure],
@@ -212,6 +218,7 @@ impl MuscleWithEffects {
             return Ok(found);
         }
         for isobar in &mut found {
+            // The effects move the end of the range, and the muscle may push at some of the points.
             let end = self.range_end(Pressure::pa(isobar.pressure_pa), approach).ok();
             isobar.contraction_limit = end.map(RangeEnd::contraction);
             isobar.ends_slack = matches!(end, Some(RangeEnd::FibresSlacken(_)));
@@ -229,7 +236,8 @@ impl MuscleWithEffects {
         Ok(found)
     }
 
-    /// The contraction at which the muscle with its effects pulls no more; none beyond the limit of the equilibrium alone.
+    /// The contraction at which the force of the muscle with its effects vanishes, at most the limit of the
+    /// equilibrium alone.
     ///
     /// # Errors
     /// As [`MuscleWithEffects::solve`].
@@ -244,7 +252,8 @@ impl MuscleWithEffects {
         }
     }
 
-    /// Where the equilibria at which the muscle with its effects pulls end; not beyond where those of the equilibrium alone do.
+    /// The end of the range in which the muscle with its effects pulls, at most the end of the range without
+    /// effects.
     ///
     /// # Errors
     /// As [`MuscleWithEffects::solve`].
@@ -273,10 +282,10 @@ impl MuscleWithEffects {
 /// Why a muscle with effects has no answer.
 #[derive(Debug, thiserror::Error)]
 pub enum MuscleWithEffectsError {
-    /// Of the equilibrium.
+    /// The equilibrium failed.
     #[error("{0}")]
     Equilibrium(Box<FibreError>),
-    /// Of an effect.
+    /// An effect or the model failed.
     #[error("{0}")]
     Model(Box<ModelError>),
     /// No contraction gives the force.
@@ -286,7 +295,7 @@ pub enum MuscleWithEffectsError {
     Force {
         /// The force asked for \[N\].
         wanted: f64,
-        /// The last contraction.
+        /// The last contraction tried.
         contraction: f64,
         /// The force there \[N\].
         force: f64,
@@ -294,7 +303,7 @@ pub enum MuscleWithEffectsError {
 }
 
 impl MuscleWithEffectsError {
-    /// Whose fault it is.
+    /// The fault behind the error.
     #[must_use]
     pub fn fault(&self) -> Fault {
         match self {
@@ -372,7 +381,7 @@ mod tests {
         let h = 1e-5;
         let slope = -(at(0.1 + h).force_n - at(0.1 - h).force_n) / (2.0 * h * 0.25);
         assert!((at(0.1).stiffness_n_per_m / slope - 1.0).abs() < 1e-6);
-        // The gas stiffens by the force per pressure: the same ratio for any exponent.
+        // The effects scale the gas stiffness by the ratio of F_p, which is the same for any exponent.
         let (here, plain) = (at(0.1), Problem::new(muscle.parts(), bar3()).unwrap());
         let plain = plain.solve(Given::Contraction(0.1), Approach::Auto).unwrap();
         let gas = |r: &Response, k: f64| k - r.stiffness_n_per_m;
@@ -401,7 +410,7 @@ mod tests {
         let muscle = braid("[effects.fibre-length]\nexcess = \"1 %\"");
         let found = muscle.solve(bar3(), Given::Contraction(0.1), Approach::Auto).unwrap();
         assert!((found.length_m - 0.225).abs() < 1e-12 && (found.contraction - 0.1).abs() < 1e-12);
-        // A cylinder of 252.5 mm at the same length.
+        // The reference is a cylinder of 252.5 mm at the same length.
         let plain = Problem::new(muscle.parts(), bar3()).unwrap();
         let plain = plain.solve(Given::Length(0.225), Approach::Auto).unwrap();
         assert!((found.force_n / plain.force_n - 1.0).abs() < 1e-9);
@@ -419,7 +428,7 @@ mod tests {
         let plain =
             Problem::new(muscle.parts(), bar3()).unwrap().solve(Given::Contraction(0.1), Approach::Auto);
         let found = muscle.solve(bar3(), Given::Contraction(0.1), Approach::Auto).unwrap();
-        // Friction has no direction at rest.
+        // At rest friction has no direction and adds no force.
         assert_eq!(found.force_n.to_bits(), plain.unwrap().force_n.to_bits());
     }
 }

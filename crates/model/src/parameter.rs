@@ -1,43 +1,43 @@
-//! A number of a model that a fit may change.
+//! A parameter of a model, which a fit may change.
 
 use serde::Serialize;
 
-/// One number of one effect (or coefficient of a law), in SI, for one muscle.
+/// One parameter of one effect (or one coefficient of a law), in SI, for one muscle.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ModelParameter {
-    /// The effect, or the law.
+    /// Name of the effect or the law.
     pub effect: String,
-    /// The name within the effect.
+    /// Name of the parameter within the effect.
     pub name: String,
     /// Its key in a muscle file.
     pub key: String,
-    /// The specimen it belongs to, where each has its own.
+    /// The specimen it belongs to, if each specimen has its own.
     pub specimen: Option<String>,
-    /// Value: where a fit starts, or what a muscle file states.
+    /// The start of a fit, or the value in a muscle file.
     pub value: f64,
-    /// Bounds.
+    /// Lower bound.
     pub low: f64,
-    /// Bounds.
+    /// Upper bound.
     pub high: f64,
     /// The value at which the effect does nothing.
     pub off: f64,
     /// Mean and standard deviation from the literature.
     pub prior: Option<(f64, f64)>,
-    /// Range outside which a value is a symptom, not a cure.
+    /// The plausible range. A fitted value outside it points to another cause.
     pub plausible: (f64, f64),
-    /// Whether a fit runs over the logarithm.
+    /// Whether the logarithm is fitted.
     pub logarithmic: bool,
-    /// Unit in which it is shown, and its size in SI.
+    /// The unit in which it is shown.
     pub unit: String,
     /// Size of the unit in SI.
     pub factor: f64,
-    /// Whether the value is taken as known: stated in the muscle file and not asked for.
+    /// Whether the value is known: stated in the muscle file, and not to be fitted.
     pub fixed: bool,
-    /// Whether it is held at its value by a [`crate::Restriction`]; it is `fixed` then.
+    /// Whether a [`crate::Restriction`] holds it at its value. It is then also `fixed`.
     pub held: bool,
-    /// The place of the number whose value it has, by a [`crate::Restriction`]; it is `fixed` then.
+    /// Index of the parameter to which a [`crate::Restriction`] ties it. It is then also `fixed`.
     pub tied: Option<usize>,
-    /// What it is.
+    /// A description.
     pub about: String,
 }
 

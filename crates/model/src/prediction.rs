@@ -1,4 +1,4 @@
-//! The force of every row with its derivatives, and how it is put together segment by segment.
+//! The force of every row with its derivatives, assembled segment by segment.
 
 use bulge_effects::Jet;
 use bulge_numerics::Real;
@@ -10,7 +10,7 @@ use crate::evaluate::{Pass, Wanted};
 /// The force of every row.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Prediction {
-    /// What the load cell should read \[N\].
+    /// Predicted reading of the load cell \[N\].
     pub force: Vec<f64>,
     /// Derivatives by the wanted parameters, row by row.
     pub jacobian: Vec<f64>,
@@ -20,14 +20,14 @@ pub struct Prediction {
     pub by_contraction: Vec<f64>,
 }
 
-/// The force of the rows that have a state, and which have none.
+/// The force of the rows that have a state, and the list of the rows that have none.
 #[derive(Debug, Clone)]
 pub struct Partly {
-    /// The force is NaN, and derivatives are 0, in rows without a state.
+    /// The prediction. In rows without a state the force is NaN and the derivatives are 0.
     pub prediction: Prediction,
-    /// Rows without a state, in their order.
+    /// Rows without a state, in ascending order.
     pub without_state: Vec<usize>,
-    /// What the model says of them; none if there are none.
+    /// The error of those rows; none if all rows have a state.
     pub error: Option<ModelError>,
 }
 
@@ -40,7 +40,7 @@ pub(crate) struct Part<'a> {
 }
 
 impl Prediction {
-    /// All zero, with room for what is wanted.
+    /// A prediction of zeros, with room for the wanted derivatives.
     pub(crate) fn zero(rows: usize, wanted: &Wanted) -> Self {
         let readings = if wanted.readings { rows } else { 0 };
         Self {
@@ -51,7 +51,7 @@ impl Prediction {
         }
     }
 
-    /// Rows without a state say nothing.
+    /// Sets the force to NaN and the derivatives to 0 in rows without a state.
     pub(crate) fn leave_out(&mut self, rows: &[usize]) {
         let columns = self.jacobian.len().checked_div(self.force.len()).unwrap_or(0);
         for row in rows {
@@ -63,7 +63,7 @@ impl Prediction {
         }
     }
 
-    /// One part for each of the segments, which follow one another.
+    /// Splits the prediction into one part for each of the consecutive segments.
     pub(crate) fn parts(&mut self, segments: &[Range<usize>], columns: usize) -> Vec<Part<'_>> {
         let readings = !self.by_pressure.is_empty();
         let mut rest =
@@ -83,7 +83,7 @@ impl Prediction {
 }
 
 impl Part<'_> {
-    /// What one pass says of row `i`.
+    /// Writes the result of one pass for row `i`.
     pub(crate) fn fill(&mut self, i: usize, number: usize, pass: &Pass, columns: usize, reading: Jet) {
         if number == 0 {
             self.force[i] = reading.value();

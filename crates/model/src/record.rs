@@ -1,25 +1,26 @@
-//! A measured history made ready for a model: one moment per row, sweep by sweep.
+//! A measured history prepared for a model: one moment per row, sweep by sweep.
 
 use bulge_effects::Moment;
 use bulge_measurements::{Columns, Data, History};
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Measured forces: those of the file, which has them anyway, or others.
+/// Measured forces: those of the file, which are in memory anyway, or given ones.
 #[derive(Debug, Clone)]
 enum Forces {
     Read(Arc<Columns>),
     Given(Arc<Vec<f64>>),
 }
 
-/// The rows of a data set as moments, with what was measured.
+/// The rows of a data set as moments, with the measured forces.
 #[derive(Debug, Clone)]
 pub struct Record {
-    /// Shared by the copies that differ in forces or their scatter only: of many rows they are the largest thing there is.
+    /// Shared by copies that differ only in the forces or their standard deviations. For long records this is
+    /// the largest block of memory.
     moments: Arc<Vec<Moment>>,
     sweeps: Vec<Range<usize>>,
     specimens: Vec<String>,
-    /// Length of the muscle over that of each specimen; empty if all are of one length.
+    /// The muscle's length over the length of each specimen; empty if all are of one length.
     shortness: Vec<f64>,
     force: Forces,
     force_sd: Option<Arc<Vec<f64>>>,
@@ -28,7 +29,7 @@ pub struct Record {
 }
 
 impl Record {
-    /// The rows of a data set for a muscle of unpressurised length `l0` \[m\].
+    /// The rows of a data set, for a muscle of unpressurised length `l0` \[m\].
     #[must_use]
     pub fn new(data: &Data, l0: f64) -> Self {
         let path = Moved::of(data, l0);
@@ -51,9 +52,10 @@ impl Record {
         }
     }
 
-    /// From moments that a program made: one sweep after the other, each a range of rows; all rows must be covered, in order.
+    /// A record of computed moments. The sweeps are consecutive ranges of rows and must cover all rows in
+    /// order.
     ///
-    /// Returns none if they are not, or the numbers of moments and forces differ.
+    /// Returns none if they don't, or if the numbers of moments and forces differ.
     #[must_use]
     pub fn from_moments(moments: Vec<Moment>, force: Vec<f64>, sweeps: Vec<Range<usize>>) -> Option<Self> {
         let mut end = 0;
@@ -103,7 +105,7 @@ impl Record {
         }
     }
 
-    /// Standard deviation of each force \[N\], where the file states it.
+    /// Standard deviation of each force \[N\], if the file states it.
     #[must_use]
     pub fn force_sd(&self) -> Option<&[f64]> {
         self.force_sd.as_deref().map(Vec::as_slice)
@@ -121,30 +123,31 @@ impl Record {
         &self.specimens
     }
 
-    /// How much shorter than the muscle the specimen of a row is, unpressurised: an error of length is so many times as much contraction.
+    /// The unpressurised length of the muscle over that of the row's specimen. The contraction due to an
+    /// error of length scales with this factor.
     #[must_use]
     pub fn shortness(&self, row: usize) -> f64 {
         let specimen = self.moments.get(row).map_or(0, |moment| moment.specimen as usize);
         self.shortness.get(specimen).copied().unwrap_or(1.0)
     }
 
-    /// Whether the rows are a path (not a static map).
+    /// Whether the rows form a path rather than a static map.
     #[must_use]
     pub fn is_path(&self) -> bool {
         self.is_path
     }
 
-    /// Whether there is time.
+    /// Whether the rows have times.
     #[must_use]
     pub fn has_time(&self) -> bool {
         self.has_time
     }
 }
 
-/// Part of a loop up to which it is under way: a longer one is not the next.
+/// The largest completed part of a loop, so that a long loop isn't counted as the next one.
 const MOST_OF_LOOP: f64 = 0.999;
 
-/// What moments need of how the muscle moved; the rest of it is gone before they are made.
+/// The parts of the motion's history that moments need. The rest is freed before the moments are made.
 struct Moved {
     direction: Vec<f64>,
     pressure_direction: Vec<f64>,
@@ -171,6 +174,7 @@ fn append(moments: &mut Vec<Moment>, data: &Data, path: &Moved, contraction: &[f
     for row in rows.clone() {
         largest = largest.max(contraction[row]);
         let begins = row == rows.start;
+        // The pressure rate is a central difference within the sweep, one-sided at its ends.
         let before = if begins { row } else { row - 1 };
         let after = if row + 1 == rows.end { row } else { row + 1 };
         let span = time.map_or(0.0, |t| t[after] - t[before]);
@@ -201,7 +205,8 @@ fn append(moments: &mut Vec<Moment>, data: &Data, path: &Moved, contraction: &[f
     }
 }
 
-/// Adds to the number of each loop of a sweep the part of it that is done: the way since it began over that of a whole loop, twice the range of what is driven.
+/// Adds the completed part to the loop number of each moment of a sweep. The part is the distance since the
+/// loop began over that of a whole loop, twice the range of the driven quantity.
 fn under_way(sweep: &mut [Moment]) {
     let is_held = sweep.iter().all(|m| m.direction == 0.0);
     let driven = |m: &Moment| if is_held { m.pressure } else { m.contraction };
@@ -221,7 +226,7 @@ fn under_way(sweep: &mut [Moment]) {
         if moment.cycle.total_cmp(&number).is_ne() {
             (number, done, turned) = (moment.cycle, 0.0, if moment.begins { x } else { last });
         } else if now * direction < 0.0 {
-            // From turn to turn: noise on the way is no way.
+            // The distance is measured between reversals, so that noise doesn't add to it.
             (done, turned) = (done + f64::abs(last - turned), last);
         }
         if now != 0.0 {
@@ -232,8 +237,8 @@ fn under_way(sweep: &mut [Moment]) {
     }
 }
 
-/// Sets what changed since the row before in all moments of one sweep. In a static map the order of the rows means nothing, and a pressure that is held
-/// only scatters.
+/// Sets the changes since the previous row in all moments of one sweep. In a static map the order of the rows
+/// means nothing, so the steps are 0. A held pressure only scatters, so its step is 0 too.
 fn step(sweep: &mut [Moment], is_path: bool) {
     let is_driven = sweep.iter().any(|m| m.pressure_direction != 0.0);
     let mut before: Option<Moment> = None;
@@ -248,7 +253,8 @@ fn step(sweep: &mut [Moment], is_path: bool) {
 }
 
 impl Record {
-    /// The record with about `most` rows: every so-manieth of each sweep, its first and last row included, with the rows that were kept.
+    /// The record thinned to about `most` rows, and the indices of the rows kept. Every n-th row of each
+    /// sweep is kept, including its first and last row.
     #[must_use]
     pub fn thinned(&self, most: usize) -> (Self, Vec<usize>) {
         let stride = self.len().div_ceil(most.max(1)).max(1);
@@ -284,7 +290,7 @@ impl Record {
 }
 
 impl Record {
-    /// The same moments with other forces \[N\], one for each; those that are missing stay.
+    /// Replaces the forces \[N\], one for each moment. Moments without a new force keep their own.
     #[must_use]
     pub fn with_force(mut self, force: Vec<f64>) -> Self {
         let mut forces = force;
@@ -294,7 +300,8 @@ impl Record {
         self
     }
 
-    /// The same with standard deviations of the forces \[N\], one for each; all stay as they are if there are more or fewer.
+    /// Replaces the standard deviations of the forces \[N\], one for each moment. Nothing changes if the
+    /// number differs.
     #[must_use]
     pub fn with_force_sd(mut self, sd: Vec<f64>) -> Self {
         if sd.len() == self.len() {
@@ -303,7 +310,8 @@ impl Record {
         self
     }
 
-    /// The same history at other pressures \[Pa\] and contractions, one for each moment; those that are missing stay.
+    /// Replaces the pressures \[Pa\] and contractions, one for each moment. Moments without new values keep
+    /// their own.
     #[must_use]
     pub fn at(mut self, pressure: &[f64], contraction: &[f64]) -> Self {
         for (moment, (pressure, contraction)) in
@@ -314,12 +322,15 @@ impl Record {
         self
     }
 
-    /// The record with groups of neighbouring rows replaced by their means, with the forces that go with them; `sweeps` are ranges of groups.
+    /// Replaces groups of neighbouring rows by their means, with the forces that belong to them. `sweeps` are
+    /// ranges of groups.
     ///
-    /// Each group is within one sweep and one specimen, and moves in one direction: then the mean moment is one through which the muscle went. Steps and times
-    /// since the moment before are those between the means; a mean remembers the largest contraction of its last row.
+    /// Each group lies within one sweep and one specimen, and moves in one direction. The muscle then passes
+    /// through the mean moment. Steps and times since the previous moment are those between means. A mean
+    /// takes the largest contraction from its last row.
     ///
-    /// Returns none if a group is empty or names a row that isn't there, or the numbers of groups and forces differ.
+    /// Returns none if a group is empty or names a row that doesn't exist, or if the numbers of groups and
+    /// forces differ.
     #[must_use]
     pub fn averaged(
         &self,
@@ -334,7 +345,7 @@ impl Record {
             let mean = |of: &dyn Fn(&Moment) -> f64| {
                 members.iter().map(|m| of(m)).sum::<f64>() / members.len() as f64
             };
-            // A group of one stays what it is, to the bit.
+            // A group of one row stays unchanged, bit for bit.
             let moment = if members.len() == 1 {
                 **first
             } else {
@@ -404,7 +415,7 @@ mod tests {
         assert_eq!(record.moments().as_ptr(), other.moments().as_ptr());
         assert_eq!((record.force()[0].to_bits(), record.force_sd()), (1.0_f64.to_bits(), None));
         assert_eq!(record.force().as_ptr(), record.clone().with_force_sd(vec![0.1; 5]).force().as_ptr());
-        // A million rows in 150 bytes each with their forces.
+        // A million rows take 150 bytes each, including their forces.
         assert!(size_of::<Moment>() <= 120, "{}", size_of::<Moment>());
     }
 }

@@ -1,11 +1,13 @@
-//! What is stated of a model's numbers before they are fitted: held at a value, kept within narrower bounds, or tied to another number.
+//! Restrictions on a model's parameters before a fit: a parameter is held at a value, kept within narrower
+//! bounds, or tied to another parameter.
 //!
 //! ```text
 //! held    x = v                      no longer fitted
 //! within  low <= x <= high           fitted, within these bounds and its own
 //! tied    x = y                      not fitted itself: dF/dy is then dF/dy + dF/dx
 //! ```
-//! Restrictions go by name. A model that doesn't have the number yet is as it was; it has it with its restriction once the effect is added.
+//! Restrictions refer to parameters by name. A restriction has no effect while the model lacks the parameter.
+//! It applies as soon as the parameter's effect is added.
 
 use serde::Serialize;
 use std::borrow::Cow;
@@ -15,40 +17,40 @@ use crate::model::Model;
 use crate::parameter::ModelParameter;
 use crate::prediction::Prediction;
 
-/// Which number of a model is meant.
+/// The name of a parameter of a model.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct NumberName {
-    /// The effect, or the law.
+    /// Name of the effect or the law.
     pub effect: String,
-    /// The name within the effect.
+    /// Name of the parameter within the effect.
     pub name: String,
-    /// One specimen's own; none: of all that have it.
+    /// The specimen it belongs to; if none, the parameters of all specimens are meant.
     pub specimen: Option<String>,
 }
 
-/// What is stated of a number.
+/// The restriction on a parameter.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Says {
-    /// It has this value \[SI\].
+    /// It is held at this value \[SI\].
     Held(f64),
     /// It lies between these bounds \[SI\].
     Within([f64; 2]),
-    /// It has the value of another number.
+    /// It equals another parameter.
     Tied(NumberName),
 }
 
-/// A statement about a number.
+/// A restriction and the parameter it applies to.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Restriction {
-    /// The number.
+    /// The parameter.
     pub number: NumberName,
-    /// What it is.
+    /// The restriction.
     pub says: Says,
 }
 
 impl NumberName {
-    /// Whether a number of a model is meant.
+    /// Whether the name refers to a parameter of a model.
     #[must_use]
     pub fn is_of(&self, parameter: &ModelParameter) -> bool {
         self.effect == parameter.effect
@@ -68,8 +70,8 @@ impl std::fmt::Display for NumberName {
 }
 
 impl Model {
-    /// The same with statements about its numbers, those that it has and those that effects bring: a later statement about the same number stands for the
-    /// earlier. Numbers that are taken as known stay so, with their values.
+    /// Restricts parameters of the model, including those of effects added later. A later restriction on the
+    /// same parameter replaces an earlier one. Known parameters keep their values.
     #[must_use]
     pub fn restricted(mut self, restrictions: &[Restriction]) -> Self {
         self.restrictions = restrictions.into();
@@ -77,13 +79,13 @@ impl Model {
         self
     }
 
-    /// Whether a statement is about one of this model's numbers.
+    /// Whether a restriction refers to one of this model's parameters.
     #[must_use]
     pub fn mentions(&self, restriction: &Restriction) -> bool {
         self.parameters().iter().any(|p| restriction.number.is_of(p))
     }
 
-    /// Whether a statement says something of one of this model's numbers.
+    /// Whether a restriction is in force for one of this model's parameters.
     #[must_use]
     pub fn has(&self, restriction: &Restriction) -> bool {
         let is_meant = |p: &&ModelParameter| restriction.number.is_of(p);
@@ -94,13 +96,14 @@ impl Model {
         }
     }
 
-    /// Applies what is stated of the numbers from a place on, and ties that have both of their ends now.
+    /// Applies the restrictions to the parameters from an index on, and every tie whose two parameters now
+    /// exist.
     pub(crate) fn restrict(&mut self, from: usize) {
         let restrictions = std::sync::Arc::clone(&self.restrictions);
         for Restriction { number, says } in restrictions.iter() {
             for place in from..self.parameters.len() {
                 let p = &mut self.parameters[place];
-                // Coefficients of a law that isn't fitted, and what a file states, are known.
+                // Coefficients of a law that isn't fitted are known, and so are values from a file.
                 if p.fixed && !p.held || !number.is_of(p) {
                     continue;
                 }
@@ -112,6 +115,7 @@ impl Model {
             }
         }
         for Restriction { number, says } in restrictions.iter() {
+            // Ties come last, because a tie copies the value of its source.
             let Says::Tied(to) = says else { continue };
             for place in 0..self.parameters.len() {
                 let p = &self.parameters[place];
@@ -122,23 +126,26 @@ impl Model {
         }
     }
 
-    /// Ties a number to another, if that is there: to the one of the same specimen, where each has its own.
+    /// Ties a parameter to another one, if that exists. If each specimen has its own, it is the one of the
+    /// same specimen.
     fn tie(&mut self, place: usize, to: &NumberName) {
         let own = self.parameters[place].specimen.clone();
         let is_source = |p: &ModelParameter| {
             to.is_of(p) && (to.specimen.is_some() || p.specimen.is_none() || p.specimen == own)
         };
         let Some(mut source) = self.parameters.iter().position(is_source) else { return };
+        // Following ties to their source avoids chains of ties.
         while let Some(next) = self.parameters[source].tied {
             source = next;
         }
+        // A circle of ties is ignored.
         if source == place {
             return;
         }
         let bounds = [self.parameters[place].low, self.parameters[place].high];
         self.parameters[source].narrow(bounds);
         let value = self.parameters[source].value;
-        // What was tied to this one goes along.
+        // Parameters tied to this one are now tied to its source.
         for (at, p) in self.parameters.iter_mut().enumerate() {
             if at == place || p.tied == Some(place) {
                 (p.tied, p.fixed, p.value) = (Some(source), true, value);
@@ -146,12 +153,12 @@ impl Model {
         }
     }
 
-    /// Whether any number is tied to another.
+    /// Whether any parameter is tied to another.
     fn has_ties(&self) -> bool {
         self.parameters().iter().any(|p| p.tied.is_some())
     }
 
-    /// Numbers of the model in which those that are tied have the values of the others.
+    /// The values with those of tied parameters replaced by the values they are tied to.
     #[must_use]
     pub fn with_ties<'t>(&self, theta: &'t [f64]) -> Cow<'t, [f64]> {
         if !self.has_ties() || theta.len() != self.parameters().len() {
@@ -161,7 +168,7 @@ impl Model {
         Cow::Owned(self.parameters().iter().enumerate().map(value).collect())
     }
 
-    /// What must be evaluated for what is wanted: numbers that are tied to a wanted one come last.
+    /// The derivatives that must be evaluated: the wanted parameters, followed by those tied to them.
     pub(crate) fn wanted_with_ties<'w>(&self, wanted: &'w Wanted) -> Cow<'w, Wanted> {
         let is_moved = |p: &ModelParameter| p.tied.is_some_and(|to| wanted.parameters.contains(&to));
         let tied: Vec<usize> =
@@ -173,7 +180,7 @@ impl Model {
         Cow::Owned(Wanted { parameters, readings: wanted.readings })
     }
 
-    /// Derivatives by what was wanted, from those by that and by what is tied to it.
+    /// Adds the derivatives by tied parameters to those by the parameters they are tied to.
     pub(crate) fn folded(&self, mut prediction: Prediction, wanted: &Wanted, found: &Wanted) -> Prediction {
         let (k, all) = (wanted.parameters.len(), found.parameters.len());
         if all == k {
@@ -200,7 +207,7 @@ impl Model {
 }
 
 impl ModelParameter {
-    /// Keeps it within bounds too.
+    /// Also keeps the parameter within these bounds.
     fn narrow(&mut self, [low, high]: [f64; 2]) {
         (self.low, self.high) = (self.low.max(low), self.high.min(high));
         if !self.fixed && self.low <= self.high {
@@ -260,7 +267,7 @@ mod tests {
         assert!((offset.value - 2.0).abs() < 1e-12 && (friction.value - 2.0).abs() < 1e-12);
         assert!(pressure.held && (pressure.value - 1500.0).abs() < 1e-12);
         assert_eq!(whole.with_ties(&[9.0, 3.0, 1500.0]).to_vec(), [3.0, 3.0, 1500.0]);
-        // What isn't there yet is free, what is known stays known, and ties follow ties.
+        // A missing parameter leaves the model free, a known one stays known, and ties follow ties.
         let known =
             model(&[], &says).with(Catalogue::builtin().find("coulomb-friction").unwrap(), Some(&[5.0]));
         assert!((known.unwrap().parameters()[0].value - 5.0).abs() < 1e-12);
@@ -275,7 +282,8 @@ mod tests {
         assert_eq!([chain.parameters()[0].tied, chain.parameters()[1].tied], [Some(root); 2]);
     }
 
-    /// The force moves with a number as with all that are tied to it together, by load effects and by those of the shape.
+    /// The derivative by a parameter is the sum of those by all parameters tied to it, for load effects and
+    /// for shape effects.
     #[test]
     fn derivatives_are_those_of_both_numbers_together() {
         for (effects, tied, to) in [

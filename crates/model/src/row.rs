@@ -1,4 +1,4 @@
-//! One row of a model: the input effects, the equilibrium behind them, the loads and the load cell.
+//! One row of a model: input effects, equilibrium, load effects and load cell.
 
 use bulge_effects::law::LawPoint;
 use bulge_effects::{Action, Balance, Give, Input, Jet, Moment};
@@ -11,7 +11,7 @@ use crate::failure::RowError;
 use crate::lattice;
 use crate::model::Base;
 
-/// Newton steps for a contraction that depends on the force.
+/// The largest number of Newton steps for a contraction that depends on the force.
 const MOST_GIVE_STEPS: usize = 50;
 /// Nodes and weights of the Gauss-Hermite rule of degree 5 for a standard normal number.
 pub(crate) const NORMAL: [(f64, f64); 3] =
@@ -25,7 +25,7 @@ pub(crate) struct Row {
 }
 
 impl Run<'_> {
-    /// The force of one row. `slot` is where its search for the equilibrium starts and ends.
+    /// The force of one row. The search for its equilibrium starts from `slot` and leaves its end there.
     pub(crate) fn row(
         &self,
         moment: &Moment,
@@ -66,7 +66,7 @@ impl Run<'_> {
         }
     }
 
-    /// The equilibrium behind an input, and the contraction at which it is.
+    /// The equilibrium that belongs to an input, and its contraction.
     ///
     /// ```text
     /// e = contraction + give_force(F(e)) + give_tension(N(e))        Newton's method, then one step more that carries the derivatives
@@ -92,7 +92,7 @@ impl Run<'_> {
                     gap = gap - give.under(load);
                     slope -= give.slope(load.value()) * by_contraction;
                 }
-                // With derivatives: those of the gap at fixed e, over the slope.
+                // This carries derivatives: those of the gap at fixed e, divided by the slope.
                 e = Jet::from(at) - gap / slope;
                 let step = e.value() - at;
                 if step.abs() <= 1e-14 + 1e-13 * at.abs() {
@@ -105,7 +105,7 @@ impl Run<'_> {
         Ok((found, e))
     }
 
-    /// Averaged over fibres of unequal length.
+    /// The equilibrium averaged over fibres of unequal length.
     fn averaged(
         &self,
         moment: &Moment,
@@ -127,7 +127,7 @@ impl Run<'_> {
         sum.map(stiffen).ok_or(RowError::NotFinite)
     }
 
-    /// The base law.
+    /// The equilibrium, or the force law, at one pressure and contraction.
     fn base(
         &self,
         moment: &Moment,
@@ -141,7 +141,7 @@ impl Run<'_> {
                 let point = LawPoint { pressure, contraction: e, direction: moment.direction };
                 let count = law.coefficients.len();
                 let force = law.force(point, geometry, &pass.theta[..count]);
-                // Laws know no shape: a cylinder of the muscle's radius stands for it.
+                // Laws have no shape. A cylinder of the muscle's radius stands in for it.
                 let radius = Jet::from(geometry.radius);
                 let area = std::f64::consts::PI * geometry.radius * geometry.radius;
                 let slope = self.law_slope(moment, pressure.value(), e.value());
@@ -155,7 +155,8 @@ impl Run<'_> {
             }
             (Base::Equilibrium, Some(equilibrium)) => {
                 let (p, at) = (pressure.value(), e.value());
-                // Only a fit is content with the derivatives of an equilibrium in closed form that was found from another.
+                // An equilibrium in closed form that starts from another one has derivatives that are good
+                // enough for a fit only.
                 let mut none = None;
                 let slot = if self.within_fit || equilibrium.is_costly() { slot } else { &mut none };
                 let answer =

@@ -1,4 +1,4 @@
-//! Rows one after the other, with what is remembered along them.
+//! Evaluates consecutive rows with the memory that is carried along them.
 
 use bulge_effects::Jet;
 use bulge_fibre::Start;
@@ -9,17 +9,18 @@ use crate::failure::RowError;
 use crate::prediction::Part;
 use crate::record::Record;
 
-/// What is asked of every segment.
+/// The work that is the same for every segment.
 pub(crate) struct Task<'a> {
     pub(crate) record: &'a Record,
     pub(crate) passes: Vec<Pass>,
     pub(crate) columns: usize,
     pub(crate) counts: &'a (dyn Fn(usize) -> bool + Sync),
-    /// Whether each row keeps its equilibrium for the next evaluation, in a slot of its own; else a segment has one slot.
+    /// Whether each row keeps its equilibrium for the next evaluation in its own slot. Otherwise a segment
+    /// has one slot.
     pub(crate) keeps: bool,
 }
 
-/// Fills the part of one segment; the rows that count and have no force, with the reason.
+/// Fills the part of one segment. Returns the rows that count and have no force, with the reasons.
 pub(crate) fn segment(
     runs: &[Run<'_>],
     task: &Task<'_>,
@@ -28,7 +29,7 @@ pub(crate) fn segment(
     slots: &mut [Option<Start>],
 ) -> Vec<(usize, RowError)> {
     let mut failed = Vec::new();
-    // Rows that don't count matter only for what they leave in the memory to those that do.
+    // Rows that don't count matter only through the memory that they pass to rows that do.
     let remembers = runs[0].remembers();
     let Some(last) = rows.clone().rev().find(|row| (task.counts)(*row)) else { return failed };
     let rows = rows.start..last + 1;
@@ -45,6 +46,7 @@ pub(crate) fn segment(
                 continue;
             }
             let slot = if task.keeps { i } else { 0 };
+            // An empty slot may be filled from the previous row of the same muscle.
             let same = before.filter(|(_, body)| *body == run.body && run.walks());
             if !task.keeps && same.is_none() {
                 slots[slot] = None;

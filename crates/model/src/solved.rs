@@ -1,7 +1,9 @@
-//! Lattices that a family of models has solved.
+//! A cache of the lattices that a family of models has solved.
 //!
-//! Most candidates of a search leave the muscle as it is, and start where others start: they ask for the same equilibria. What a lattice holds depends on what was
-//! asked for only if its searches began anew; such a lattice is kept, and whoever asks for the very same gets it, to the bit what he would have solved.
+//! Most candidates of a search leave the muscle unchanged and start from the same values, so they ask for the
+//! same equilibria. The result of a lattice depends only on the request if its searches started from scratch.
+//! Only such lattices are cached. A cached lattice is identical, bit for bit, to the one that would be
+//! solved.
 
 use bulge_fibre::{Parts, Start};
 use std::collections::{HashMap, VecDeque};
@@ -9,19 +11,21 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::lattice::Lattice;
 
-/// Lattices that are kept, some 500 kB each with where their searches ended: what the candidates of one step start from.
+/// The number of lattices that are kept. Each takes some 500 kB with the ends of its searches. The candidates
+/// of one step start from these.
 const KEPT: usize = 12;
 
-/// Where the searches for the nodes of a lattice ended.
+/// The ends of the searches for the nodes of a lattice.
 pub(crate) type Starts = Arc<HashMap<[i64; 2], Start>>;
 
-/// What the nodes of a lattice depend on besides their places.
+/// The request for a lattice: everything its nodes depend on besides their positions.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Asked {
     pub(crate) parts: Parts,
-    /// All numbers of effects that change the shape: a derivative may depend on those that leave the muscle as it is.
+    /// All parameters of the shape effects. Derivatives may depend on a parameter that leaves the muscle
+    /// unchanged.
     pub(crate) numbers: Vec<(String, u64)>,
-    /// Numbers by which derivatives are asked for.
+    /// The parameters to differentiate by.
     pub(crate) shapes: Vec<(String, String)>,
 }
 
@@ -32,12 +36,12 @@ struct Kept {
     starts: Starts,
 }
 
-/// Solved lattices, the oldest first. A model shares them with those that were made from it.
+/// Solved lattices, the oldest first. A model shares them with the models made from it.
 #[derive(Debug, Default)]
 pub(crate) struct Solved(Mutex<VecDeque<Arc<Kept>>>);
 
 impl Solved {
-    /// The lattice with the nodes of `unsolved`, from what is kept, or as `solve` finds it.
+    /// The lattice with the nodes of `unsolved`, from the cache or from `solve`.
     pub(crate) fn lattice(
         &self,
         asked: Asked,
@@ -60,7 +64,7 @@ impl Solved {
     }
 
     fn lock(&self) -> std::sync::MutexGuard<'_, VecDeque<Arc<Kept>>> {
-        // A thread that panicked leaves whole entries.
+        // Entries are added whole, so a thread that panicked leaves none half written.
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
@@ -78,7 +82,8 @@ mod tests {
         }
     }
 
-    /// What is kept is to the bit what would be solved; another muscle, another number or other rows are solved anew.
+    /// A cached lattice equals the solved one, bit for bit. Another muscle, another parameter or other rows
+    /// are solved anew.
     #[test]
     fn a_hit_is_to_the_bit_a_miss() {
         let solved = Solved::default();
@@ -106,7 +111,7 @@ mod tests {
         assert_eq!(ask(&solved, 10.0, 1.0, 0.2), (hit.0, hit.1, 5));
     }
 
-    /// The oldest makes room.
+    /// The oldest lattice is dropped when the cache is full.
     #[test]
     fn no_more_are_kept_than_there_is_room_for() {
         let solved = Solved::default();

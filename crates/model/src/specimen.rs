@@ -7,10 +7,11 @@ use bulge_numerics::Real;
 
 use crate::error::ModelError;
 
-/// The muscle that a specimen is, and the effects of the muscle with their numbers for it.
+/// The muscle of one specimen, and the effects of the muscle with the specimen's parameters.
 ///
-/// An effect that says what a number of the muscle is (`radius-error`: the radius, not its error) says so of the muscle as stated; a specimen with
-/// another such number keeps its ratio to that of the muscle, as in a model of all specimens ([`crate::Model::for_specimens`]).
+/// Some effects set a number of the muscle (`radius-error` sets the radius, not its error). They set the
+/// number of the muscle as stated. A specimen with another value of that number keeps its ratio to the
+/// muscle, as in a model of all specimens ([`crate::Model::for_specimens`]).
 ///
 /// ```
 /// use bulge_effects::{Catalogue, known};
@@ -25,7 +26,7 @@ use crate::error::ModelError;
 /// ```
 ///
 /// # Errors
-/// If the muscle can't have the numbers of the specimen, or not with the effects.
+/// If the numbers of the specimen don't fit the muscle, or not together with the effects.
 pub fn specimen(muscle: &Muscle, name: &str, known: &[Known]) -> Result<(Muscle, Vec<Known>), ModelError> {
     let about = |source| ModelError::Specimen { specimen: name.to_owned(), source: Box::new(source) };
     let mut own = muscle.of_specimen(name).map_err(about)?;
@@ -44,6 +45,7 @@ pub fn specimen(muscle: &Muscle, name: &str, known: &[Known]) -> Result<(Muscle,
         let mut changed = false;
         for ((name, set), (_, found)) in of_muscle.iter().zip(&of_own) {
             let (stated, own) = (value(&muscle.numbers(), name), value(&own_parts.numbers(), name));
+            // Equal values mean that the effect sets the number itself.
             let same = set.value().to_bits() == found.value().to_bits();
             if stated == 0.0 || stated.to_bits() == own.to_bits() || !same {
                 continue;

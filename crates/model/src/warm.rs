@@ -1,9 +1,11 @@
-//! What one evaluation leaves to the next: where its searches for equilibria ended, and which rows count.
+//! The state that one evaluation passes to the next: ends of its searches for equilibria, and the rows that
+//! count.
 //!
-//! A fit asks for nearly the same equilibria thousands of times. Each row and each node of the lattice has a slot with its last equilibrium,
-//! from which the next search starts along the derivatives. A slot is read and written by its own row or node only, but for an empty one,
-//! which may be filled from the row before in the same segment: so results don't depend on the number of threads. And a search that
-//! doesn't get anywhere from there begins anew, so they depend on the slots no further than the accuracy of the solver.
+//! A fit asks for nearly the same equilibria thousands of times. Each row and each lattice node has a slot
+//! with its last equilibrium, from which the next search starts along the derivatives. Only the row or node
+//! itself reads and writes its slot, except that an empty slot may be filled from the previous row of the
+//! same segment. Results therefore don't depend on the number of threads. A search that fails from its slot
+//! starts from scratch, so that results depend on the slots only within the accuracy of the solver.
 
 use bulge_fibre::{Parts, Start};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -11,54 +13,56 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use crate::lattice::{Lattice, Span};
 use crate::solved::Starts;
 
-/// Memory of the equilibria between the evaluations of one fit, for [`crate::Model::evaluate_warm`].
+/// Equilibria remembered between the evaluations of one fit, for [`crate::Model::evaluate_warm`].
 ///
-/// One for each fit: it belongs to one record and one kind of model. Evaluations that share it run one after the other; of two at the same time one
-/// would find nothing remembered.
+/// Use one for each fit: it belongs to one record and one kind of model. Evaluations that share it must run
+/// one after the other; if two run at the same time, one of them finds nothing remembered.
 #[derive(Debug, Default)]
 pub struct Warm {
     counts: Option<Vec<bool>>,
     slots: Mutex<Slots>,
 }
 
-/// Slots of the rows, segment by segment, and of the nodes of the lattice by their indices.
+/// Slots of the rows, segment by segment, and slots of the lattice nodes by their indices.
 #[derive(Debug, Default)]
 pub(crate) struct Slots {
     pub(crate) rows: Vec<Vec<Option<Start>>>,
-    /// Of each of the model's muscles.
+    /// Ends of the node searches, for each of the model's muscles.
     pub(crate) nodes: Vec<Starts>,
-    /// Whether the next lattice that is solved is held.
+    /// Whether to hold the next lattice that is solved.
     pub(crate) holds: bool,
     pub(crate) held: Vec<Option<Arc<Held>>>,
-    /// Searches of the last evaluation for rows that its lattice doesn't reach, for each of the model's muscles.
+    /// Number of searches outside the lattice in the last evaluation, for each of the model's muscles.
     pub(crate) alone: Vec<usize>,
-    /// Whether what is held comes from another model: it then serves for the same muscle only.
+    /// Whether the held lattices come from another model. They then serve only the same muscle.
     is_shared: bool,
 }
 
-/// A solved lattice from which those of neighbouring shapes are found by its derivatives.
+/// A solved lattice whose derivatives give the lattices of neighbouring shapes.
 #[derive(Debug)]
 pub(crate) struct Held {
     /// Parameters that change the shape, in the order of the derivatives.
     pub(crate) shapes: Vec<usize>,
-    /// All parameters where it was solved.
+    /// All parameters at which it was solved.
     pub(crate) theta: Vec<f64>,
-    /// The parts that they make.
+    /// The parts at these parameters.
     pub(crate) parts: Parts,
-    /// Where rows have asked for nodes.
+    /// Nodes that rows have asked for.
     pub(crate) spans: Vec<Span>,
     pub(crate) lattice: Arc<Lattice>,
 }
 
 impl Held {
-    /// The lattice of one of the model's muscles with other parameters, to first order in what changes the shape; none if it lacks the derivatives asked for, or if a
-    /// parameter without derivatives has changed the shape too. `shape` makes the parts of parameters.
+    /// The lattice of one of the model's muscles at other parameters, to first order in the shape parameters.
+    /// `shape` makes the parts from parameters. None if the lattice lacks the requested derivatives, or if a
+    /// parameter without derivatives has changed the shape as well.
     fn near(
         &self,
         theta: &[f64],
         shapes: &[usize],
         shape: impl Fn(&[f64]) -> Option<Parts>,
     ) -> Option<Arc<Lattice>> {
+        // With the shape parameters of the derivatives set back, the parts must be those that were solved.
         let mut back = theta.to_vec();
         for index in &self.shapes {
             back[*index] = self.theta[*index];
@@ -74,7 +78,8 @@ impl Held {
         })
     }
 
-    /// The lattice of this very muscle; none if it is another, or if the lattice lacks the derivatives asked for.
+    /// The lattice of exactly this muscle. None if the muscle differs or the lattice lacks the requested
+    /// derivatives.
     fn of(&self, parts: &Parts, shapes: &[usize]) -> Option<Arc<Lattice>> {
         let serves = (shapes.is_empty() || shapes == self.shapes) && *parts == self.parts;
         serves.then(|| Arc::clone(&self.lattice))
@@ -82,42 +87,43 @@ impl Held {
 }
 
 impl Warm {
-    /// Nothing remembered, all rows count.
+    /// An empty memory in which all rows count.
     #[must_use]
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Nothing remembered; only the rows that are marked count. The others have the force 0 in a prediction, and it doesn't matter whether they have
-    /// an equilibrium.
+    /// An empty memory in which only the marked rows count. The other rows have the force 0 in a prediction
+    /// and need no equilibrium.
     #[must_use]
     pub fn of_rows(counts: &[bool]) -> Self {
         Self { counts: Some(counts.to_vec()), ..Self::default() }
     }
 
-    /// Solves the equilibria of the next evaluation, and those after it by their derivatives, to first order in the parameters of the shape: until this is
-    /// called again, or [`Warm::release`].
+    /// Holds the equilibria of the next evaluation. Later evaluations are computed from their derivatives, to
+    /// first order in the shape parameters, until the next call or [`Warm::release`].
     ///
-    /// Only where equilibria are shot for and interpolated; elsewhere nothing is held, see [`Warm::is_held`].
+    /// This applies only if equilibria are found by shooting and interpolated. Otherwise nothing is held; see
+    /// [`Warm::is_held`].
     pub fn hold(&self) {
         let mut slots = self.lock();
         (slots.holds, slots.held) = (true, Vec::new());
     }
 
-    /// Solves the equilibria of each evaluation again.
+    /// Solves the equilibria anew in each evaluation.
     pub fn release(&self) {
         let mut slots = self.lock();
         (slots.holds, slots.held) = (false, Vec::new());
     }
 
-    /// Whether evaluations are to first order from one that was solved.
+    /// Whether evaluations are computed to first order from held equilibria.
     #[must_use]
     pub fn is_held(&self) -> bool {
         self.lock().held.iter().any(Option::is_some)
     }
 
-    /// A memory of its own that has what is held here: for evaluations at the same time, of this model or
-    /// of others that add effects to it. It serves those that leave the muscle as it was.
+    /// A separate memory with the lattices held here. It allows evaluations at the same time, of this model
+    /// or of models that add effects to it. The lattices serve models that leave the muscle unchanged.
     #[must_use]
     pub fn shared(&self) -> Self {
         let held = self.lock().held.clone();
@@ -125,12 +131,13 @@ impl Warm {
         Self { counts: self.counts.clone(), slots: Mutex::new(slots) }
     }
 
-    /// Whether a row counts; those beyond the list do.
+    /// Whether a row counts. Rows beyond the list count.
     pub(crate) fn counts(&self, row: usize) -> bool {
         self.counts.as_ref().and_then(|counts| counts.get(row)).is_none_or(|counts| *counts)
     }
 
-    /// The slots, to be put back: no lock is held during an evaluation, which waits for other threads.
+    /// Takes the slots, to be put back later. No lock is held during an evaluation, because it waits for
+    /// other threads.
     pub(crate) fn take(&self) -> Slots {
         std::mem::take(&mut *self.lock())
     }
@@ -146,7 +153,7 @@ impl Warm {
 }
 
 impl Slots {
-    /// The lattice of a muscle with the parameters `theta` from what is held.
+    /// The lattice of a muscle at the parameters `theta`, from the held one.
     pub(crate) fn held_at(
         &self,
         body: usize,
@@ -159,21 +166,23 @@ impl Slots {
         if self.is_shared { held.of(parts, shapes) } else { held.near(theta, shapes, shape) }
     }
 
-    /// What is held of one of the model's muscles, if it may be widened: many rows were solved alone.
+    /// The held lattice of one of the model's muscles if it may be widened, and the number of rows that were
+    /// solved outside it.
     pub(crate) fn missed(&self, body: usize) -> Option<(Arc<Held>, usize)> {
         let alone = *self.alone.get(body)?;
         let held = self.held.get(body)?.clone().filter(|_| !self.is_shared)?;
         Some((held, alone))
     }
 
-    /// Slots for so many muscles.
+    /// Makes slots for this number of muscles.
     pub(crate) fn for_bodies(&mut self, count: usize) {
         self.nodes.resize(count, Starts::default());
         self.held.resize(count, None);
         self.alone.resize(count, 0);
     }
 
-    /// One slot for each row of each segment, kept if there are as many as before.
+    /// Makes one slot for each row of each segment. Slots are kept if the segments have the same lengths as
+    /// before.
     pub(crate) fn fit(&mut self, lengths: impl Iterator<Item = usize>) {
         let lengths: Vec<usize> = lengths.collect();
         if !self.rows.iter().map(Vec::len).eq(lengths.iter().copied()) {
@@ -190,7 +199,8 @@ mod tests {
     use bulge_effects::{Catalogue, Moment};
     use bulge_muscles::from_toml;
 
-    /// In an isometric test all rows are of one contraction: a zero error of the length moves them out of what was solved for it.
+    /// In an isometric test all rows have the same contraction, so a zero error of the length moves them out
+    /// of the held lattice.
     #[test]
     fn a_held_lattice_follows_rows_that_leave_it() {
         let file = "name = \"b\"\nkind = \"braided\"\nlength = \"300 mm\"\nradius = \"10 mm\"\nwall = \"1.8 mm\"\n\
@@ -212,14 +222,15 @@ mod tests {
         warm.hold();
         model.evaluate_warm(&record, &[0.0102, 0.0], &wanted, &warm).unwrap();
         assert_eq!(warm.lock().alone, [0]);
-        // By 4 mm, and the radius by a part: the first such evaluation searches for each row, those after it for none.
+        // A shift of 4 mm with a small change of the radius: the first such evaluation searches for each row,
+        // later ones for none.
         let moved = [0.010_21, 4e-3];
         let alone = model.evaluate_warm(&record, &moved, &wanted, &warm).unwrap();
         assert!(warm.lock().alone[0] >= 600);
         let held = model.evaluate_warm(&record, &moved, &wanted, &warm).unwrap();
         assert!(warm.lock().alone == [0] && warm.is_held());
         let gap = alone.force.iter().zip(&held.force).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-        // To first order in the radius.
+        // The held result is of first order in the radius.
         assert!(gap < 0.01 && gap > 0.0, "{gap} N");
     }
 }

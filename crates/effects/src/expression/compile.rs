@@ -1,4 +1,5 @@
-//! Parts into a tape: every part gets its dimension, constants are computed once, and units that do not fit are refused.
+//! Compiles the parts of a formula to a tape. Every part gets its dimension, constants are computed once, and
+//! inconsistent units are refused.
 
 use super::error::{ExpressionError, quoted};
 use super::function;
@@ -9,11 +10,12 @@ use std::ops::Range;
 
 /// The largest magnitude of a constant exponent.
 const MAX_EXPONENT: f64 = 1000.0;
-/// How many numbers may wait for their operator: a formula without shared parts needs as many registers.
+/// The largest number of operands waiting for their operator. A formula without shared parts needs as many
+/// registers.
 const MAX_WAITING: usize = 64;
 
-/// Compiles a formula that must have the dimension `result`: the steps, and the place of its value. Inputs are the variables, `count` of them, then the
-/// parameters.
+/// Compiles a formula that must have the dimension `result`. Returns the steps and the place of the value.
+/// The inputs are the `count` variables, followed by the parameters.
 pub(crate) fn compile(
     text: &str,
     nodes: &[Node],
@@ -47,11 +49,11 @@ pub(crate) fn compile(
     }
 }
 
-/// A part that is complete, and waits for its operator.
+/// A complete part that waits for its operator.
 #[derive(Debug, Clone)]
 struct Operand {
     span: Range<usize>,
-    /// None: a plain 0, which fits any.
+    /// None for a plain 0, which fits any dimension.
     dimension: Option<Dimension>,
     place: Place,
 }
@@ -82,7 +84,7 @@ impl Compiler<'_> {
         self.begin(node, place, Some(dimension(index)))
     }
 
-    /// A part without operands.
+    /// Adds a part without operands.
     fn begin(
         &mut self,
         node: &Node,
@@ -101,7 +103,7 @@ impl Compiler<'_> {
         self.tape.constant_at(operand.place)
     }
 
-    /// A part whose operands are the last ones.
+    /// Adds a part whose operands are the last ones.
     fn combine(&mut self, node: &Node, part: &Part) -> Result<(), ExpressionError> {
         let first = self.operands.len().saturating_sub(part.arity());
         let operands = self.operands.split_off(first);
@@ -115,7 +117,7 @@ impl Compiler<'_> {
         Ok(())
     }
 
-    /// The value of an operator; a constant exponent becomes part of it.
+    /// The value of an operator. A constant exponent becomes part of the operator.
     fn place(&mut self, node: &Node, part: &Part, operands: &[Operand]) -> Result<Place, ExpressionError> {
         let places: Vec<Place> = operands.iter().map(|operand| operand.place).collect();
         let exponent = operands.get(1).and_then(|operand| self.constant(operand));
@@ -253,7 +255,7 @@ impl Compiler<'_> {
         })
     }
 
-    /// The dimension that both have; a plain 0 has that of the other.
+    /// The common dimension of two operands. A plain 0 takes that of the other.
     fn agree(
         &self,
         a: &Operand,

@@ -1,11 +1,11 @@
-//! A formula as text again, with no more parentheses than it needs.
+//! Writes a formula as text, with no more parentheses than it needs.
 
 use super::function;
 use super::node::{Node, Part};
 use super::variable::Variable;
 use bulge_numerics::tape::{Function, Operator};
 
-/// How tightly a text holds together.
+/// The tightness with which a text holds together.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Tightness {
     Comparison,
@@ -16,7 +16,7 @@ enum Tightness {
     Atom,
 }
 
-/// Writes the parts; reading the text gives the same parts.
+/// Writes the parts. Reading the text gives the same parts.
 pub(crate) fn written(text: &str, nodes: &[Node], variables: &[Variable], parameters: &[String]) -> String {
     let mut operands: Vec<(String, Tightness)> = Vec::new();
     for node in nodes {

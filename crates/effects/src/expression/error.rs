@@ -1,10 +1,10 @@
-//! What is wrong with a formula: where it is, what it is, and what to write instead.
+//! Errors in formulas: the place, the error and the correction.
 
 use bulge_muscles::FileError;
 use std::ops::Range;
 use thiserror::Error;
 
-/// What is wrong with a formula. Its `Display` is the whole message:
+/// An error in a formula. Its `Display` is the whole message:
 ///
 /// ```text
 /// formula:1:5: unknown name `epss`
@@ -30,7 +30,7 @@ impl ExpressionError {
         Self { message: FileError::at("formula", text, span.clone(), what, instead), span }
     }
 
-    /// The bytes of the formula that it is about.
+    /// The bytes of the formula that the error refers to.
     #[must_use]
     pub fn span(&self) -> Range<usize> {
         self.span.clone()
@@ -48,20 +48,20 @@ impl ExpressionError {
         self.message.column().unwrap_or(1)
     }
 
-    /// What is wrong, in one sentence.
+    /// The error in one sentence.
     #[must_use]
     pub fn what(&self) -> &str {
         self.message.what()
     }
 
-    /// What to write instead.
+    /// The correction to make.
     #[must_use]
     pub fn instead(&self) -> &str {
         self.message.instead()
     }
 }
 
-/// A quotation for a message: at most 40 characters, on one line, without control characters.
+/// A quotation for a message: at most 40 characters on one line, without control characters.
 pub(crate) fn quoted(text: &str) -> String {
     let text = text.trim();
     let blank = |c: char| if c.is_whitespace() || c.is_control() { ' ' } else { c };
@@ -72,12 +72,12 @@ pub(crate) fn quoted(text: &str) -> String {
     out
 }
 
-/// The name that was probably meant: the same but for case and hyphens, or a slip or two away.
+/// The name that was probably meant. It differs only in case and hyphens, or by one or two slips.
 pub(crate) fn nearest<'n>(word: &str, names: impl IntoIterator<Item = &'n str>) -> Option<&'n str> {
     let plain = |text: &str| text.to_lowercase().replace(['-', ' '], "_");
     let word = plain(word);
     let length = word.chars().count();
-    // A long word is no slip of a short name, and comparing it would take long.
+    // A long word can't be a slip for a short name, and comparing it would take long.
     if length > 64 {
         return None;
     }

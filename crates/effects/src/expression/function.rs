@@ -1,8 +1,8 @@
-//! How the functions and comparisons of formulas are written.
+//! The names and notations of the functions and comparisons in formulas.
 
 use bulge_numerics::tape::{Comparison, Function};
 
-/// Each function with its name and how it is written.
+/// Each function with its name and its notation.
 const ALL: [(Function, &str, &str); 19] = [
     (Function::Sqrt, "sqrt", "sqrt(x)"),
     (Function::Exp, "exp", "exp(x)"),
@@ -25,7 +25,7 @@ const ALL: [(Function, &str, &str); 19] = [
     (Function::If, "if", "if(a < b, x, y)"),
 ];
 
-/// The function of that name.
+/// The function with this name.
 pub(crate) fn named(name: &str) -> Option<Function> {
     ALL.iter().find(|(_, known, _)| *known == name).map(|(function, ..)| *function)
 }
@@ -39,7 +39,7 @@ pub(crate) fn name(function: Function) -> &'static str {
     ALL.iter().find(|(known, ..)| *known == function).map_or("", |(_, name, _)| *name)
 }
 
-/// How it is written, with its arguments.
+/// The notation with arguments.
 pub(crate) fn form(function: Function) -> &'static str {
     ALL.iter().find(|(known, ..)| *known == function).map_or("", |(.., form)| *form)
 }

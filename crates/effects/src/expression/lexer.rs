@@ -1,14 +1,14 @@
-//! The words of a formula: numbers, units in brackets, names and signs.
+//! The lexer: it splits a formula into numbers, units in brackets, names and signs.
 
 use super::error::{ExpressionError, quoted};
 use bulge_numerics::tape::Comparison;
 use std::ops::Range;
 
-/// What a word is.
+/// The kind of a word.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Token {
     Number,
-    /// The text within the brackets behind a number.
+    /// The text within the brackets after a number.
     Unit,
     Name,
     Plus,
@@ -34,7 +34,7 @@ impl<'t> Lexer<'t> {
         Self { text, at: 0 }
     }
 
-    /// The next word and its bytes; at the end, an empty word.
+    /// The next word and its bytes. At the end of the text the word is empty.
     pub(crate) fn next(&mut self) -> Result<(Token, Range<usize>), ExpressionError> {
         self.at = self.text.len() - self.text[self.at..].trim_start().len();
         let start = self.at;
@@ -73,7 +73,7 @@ impl<'t> Lexer<'t> {
         ExpressionError::new(self.text, self.at..end, what, instead)
     }
 
-    /// Length of the number here: digits, point, exponent. Only a name or a sign may follow.
+    /// The length of the number at this place: digits, point, exponent. Only a name or a sign may follow.
     fn number(&self) -> Result<usize, ExpressionError> {
         let bytes = &self.text.as_bytes()[self.at..];
         let digits =
@@ -101,7 +101,7 @@ impl<'t> Lexer<'t> {
         }
     }
 
-    /// Length of the brackets here with the unit in them.
+    /// The length of the brackets at this place, including the unit in them.
     fn unit(&self) -> Result<usize, ExpressionError> {
         let rest = &self.text[self.at + 1..];
         match rest.find([']', '[', '\n']) {

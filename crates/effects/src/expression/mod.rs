@@ -1,16 +1,17 @@
-//! Formulas in text for effects of one's own: `-mu * p * (1 - eps) * direction + k * max(0, eps - eps_c)^2`.
+//! Formulas for user-defined effects: `-mu * p * (1 - eps) * direction + k * max(0, eps - eps_c)^2`.
 //!
-//! A formula is read once, checked for its units, and then computed any number of times with exact derivatives.
+//! A formula is read and checked for its units once. It can then be evaluated any number of times with exact
+//! derivatives.
 //!
 //! - Numbers, with a unit in brackets where they have one: `3 [N]`, `0.1 [N/mm^2]`. The constant `pi`.
 //! - The variables of [`VARIABLES`], and parameters.
 //! - `+ - * / ^` (`a^b^c` is `a^(b^c)`, `-x^2` is `-(x^2)`) and parentheses.
-//! - `sqrt exp ln log10 sin cos tan asin atan tanh sinh cosh abs sign min max step clamp`, and `if(a < b, x, y)` with
-//!   `< <= > >=`.
+//! - `sqrt exp ln log10 sin cos tan asin atan tanh sinh cosh abs sign min max step clamp`, and
+//!   `if(a < b, x, y)` with `< <= > >=`.
 //!
-//! Where a formula has a kink, its derivative is that of the branch that counts: of equal arguments of `min` and `max`
-//! the first; within `clamp` up to and including its limits; `abs`, `sqrt` and powers between 0 and 1 have the
-//! derivative 0 at 0, `asin` at -1 and 1; `sign` and `step` have the derivative 0 everywhere.
+//! At a kink the derivative is that of the active branch. For equal arguments of `min` and `max` this is the
+//! first one. `clamp` is active up to and including its limits. `abs`, `sqrt` and powers between 0 and 1 have
+//! the derivative 0 at 0, and `asin` has it at -1 and 1. The derivative of `sign` and `step` is 0 everywhere.
 
 mod compile;
 mod display;
@@ -31,14 +32,14 @@ use bulge_numerics::tape::{Builder, MOST_REGISTERS, Place, Tape};
 use node::{Node, Part};
 use std::fmt;
 
-/// How deep parentheses, functions, signs and exponents may stand within each other.
+/// The largest nesting depth of parentheses, functions, signs and exponents.
 pub const MAX_DEPTH: usize = 64;
-/// How many numbers, names and operators a formula may have.
+/// The largest number of numbers, names and operators in a formula.
 pub const MAX_NODES: usize = 4096;
-/// How many bytes a formula may have.
+/// The largest size of a formula, in bytes.
 pub const MAX_BYTES: usize = 16 << 10;
 
-/// A formula whose units are right.
+/// A formula with consistent units.
 ///
 /// ```
 /// use bulge_effects::expression::{Expression, VARIABLES, variable_index};
@@ -70,15 +71,15 @@ pub struct Expression {
 }
 
 impl Expression {
-    /// Reads a formula over [`VARIABLES`] and these parameters, each with its dimension; it must have the dimension
-    /// `result`.
+    /// Reads a formula of [`VARIABLES`] and of these parameters, each with its dimension. The formula must
+    /// have the dimension `result`.
     ///
-    /// Numbers are pure unless they have a unit; a plain 0 fits any dimension.
+    /// Numbers without a unit are dimensionless, but a plain 0 fits any dimension.
     ///
     /// # Errors
-    /// With the place and the cure, if the text is larger than [`MAX_BYTES`], deeper than [`MAX_DEPTH`] or longer than
-    /// [`MAX_NODES`], is no formula, uses an unknown name or has units that do not fit; also if a parameter has a name
-    /// that [`check_name`] refuses or that occurs twice.
+    /// With the place and the cure, if the text is larger than [`MAX_BYTES`], deeper than [`MAX_DEPTH`] or
+    /// longer than [`MAX_NODES`], is no formula, uses an unknown name, or has inconsistent units. Also if
+    /// [`check_name`] refuses the name of a parameter, or if a name occurs twice.
     pub fn parse(
         text: &str,
         parameters: &[(&str, Dimension)],
@@ -87,7 +88,7 @@ impl Expression {
         Self::parse_over(text, &VARIABLES, parameters, result)
     }
 
-    /// The same over other variables: [`SHAPE_VARIABLES`].
+    /// As [`Expression::parse`], but with other variables, such as [`SHAPE_VARIABLES`].
     ///
     /// # Errors
     /// As [`Expression::parse`].
@@ -127,7 +128,7 @@ impl Expression {
         Ok(Self { text, nodes, variables, parameters, dimension: result, builder, place, tape })
     }
 
-    /// The text as it was written; `Display` writes it in one form, which reads as an equal formula.
+    /// The text as written. `Display` writes a normal form that reads as an equal formula.
     #[must_use]
     pub fn text(&self) -> &str {
         &self.text
@@ -145,23 +146,23 @@ impl Expression {
         self.dimension
     }
 
-    /// Whether the parameter of this place occurs.
+    /// Whether the parameter at this index occurs.
     #[must_use]
     pub fn uses_parameter(&self, index: usize) -> bool {
         self.nodes.iter().any(|node| node.part == Part::Parameter(index))
     }
 
-    /// Whether the variable of this place in its list occurs.
+    /// Whether the variable at this index of its list occurs.
     #[must_use]
     pub fn uses_variable(&self, index: usize) -> bool {
         self.nodes.iter().any(|node| node.part == Part::Variable(index))
     }
 
-    /// The value in SI, for the values of the variables and of the parameters in SI, each in its order.
+    /// The value in SI. Variables and parameters are given in SI, each in its order.
     ///
-    /// Numbers with derivatives ([`bulge_numerics::Dual`]) give a value with exact derivatives. Nothing is allocated.
-    /// Where the formula has no value, such as the logarithm or a real power of a negative number or a division by 0,
-    /// the answer is not finite, which the caller checks; also where a value is missing.
+    /// Numbers with derivatives ([`bulge_numerics::Dual`]) give a value with exact derivatives. Nothing is
+    /// allocated. The result isn't finite if the formula has no value, such as the logarithm or a real power
+    /// of a negative number or a division by 0, or if an input is missing. The caller checks this.
     pub fn evaluate<D: Real>(&self, variables: &[D], parameters: &[D]) -> D {
         let input = |index: usize| match index.checked_sub(self.variables.len()) {
             Some(parameter) => parameters.get(parameter),
@@ -171,17 +172,18 @@ impl Expression {
         value
     }
 
-    /// Its steps and the place of its value, to be gone on with; inputs are the variables, then the parameters.
+    /// The steps and the place of the value, for further processing. The inputs are the variables, followed
+    /// by the parameters.
     pub(crate) fn steps(&self) -> (Builder, Place) {
         (self.builder.clone(), self.place)
     }
 }
 
-/// Whether a parameter may have this name: letters a to z, digits and `_`, not first a digit, and none of these variables, no function
-/// or constant.
+/// Checks the name of a parameter. It must consist of the letters a to z, digits and `_`, must not begin with
+/// a digit, and must not be one of these variables, a function or a constant.
 ///
 /// # Errors
-/// A sentence that says why not.
+/// A sentence with the reason.
 pub fn check_name(name: &str, variables: &[Variable]) -> Result<(), String> {
     let shown = quoted(name);
     let is_word = name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');

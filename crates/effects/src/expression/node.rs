@@ -1,21 +1,22 @@
-//! A formula as its parts, operands before operators: a tree without pointers, so that nothing is ever recursive.
+//! The parts of a formula, with operands before operators. This is a tree without pointers, so nothing is
+//! recursive.
 
 use bulge_muscles::Dimension;
 use bulge_numerics::tape::{Comparison, Function, Operator};
 use std::ops::Range;
 
-/// One part of a formula. Its operands are the parts just before it.
+/// One part of a formula. Its operands are the parts directly before it.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Node {
     pub(crate) part: Part,
-    /// Its bytes in the text, with its operands.
+    /// The bytes of the part in the text, including its operands.
     pub(crate) span: Range<usize>,
 }
 
-/// What it is.
+/// The kind of a part.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Part {
-    /// A number in SI, the bytes of its digits and of its unit; without a unit it has no dimension.
+    /// A number in SI, with the bytes of its digits and of its unit. Without a unit it has no dimension.
     Number {
         si: f64,
         dimension: Dimension,
@@ -33,7 +34,7 @@ pub(crate) enum Part {
 }
 
 impl Part {
-    /// How many operands it has.
+    /// The number of operands.
     pub(crate) fn arity(&self) -> usize {
         match self {
             Self::Number { .. } | Self::Pi | Self::Variable(_) | Self::Parameter(_) => 0,

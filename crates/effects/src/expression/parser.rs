@@ -1,4 +1,4 @@
-//! Text into parts: recursive descent, at most 64 deep.
+//! Parses text into parts by recursive descent, at most 64 levels deep.
 //!
 //! ```text
 //! sum     = product (("+" | "-") product)*
@@ -20,7 +20,7 @@ use bulge_muscles::units;
 use bulge_numerics::tape::{Function, Operator};
 use std::ops::Range;
 
-/// Reads a formula over the variables and these parameters.
+/// Reads a formula of the variables and these parameters.
 pub(crate) fn parse(
     text: &str,
     variables: &'static [Variable],
@@ -46,7 +46,7 @@ struct Parser<'t> {
     /// The next word.
     token: Token,
     span: Range<usize>,
-    /// Where the last word ended.
+    /// The end of the last word.
     end: usize,
     depth: usize,
     nodes: Vec<Node>,
@@ -80,7 +80,7 @@ impl Parser<'_> {
         Ok(())
     }
 
-    /// One level deeper.
+    /// Reads one level deeper.
     fn within(&mut self, read: impl FnOnce(&mut Self) -> Parsed) -> Parsed {
         if self.depth >= MAX_DEPTH {
             let what = format!("the formula is more than {MAX_DEPTH} levels deep here");
@@ -217,7 +217,7 @@ impl Parser<'_> {
         self.within(|parser| if called == Function::If { parser.condition() } else { parser.sum() })?;
         let mut count = 1;
         while self.token == Token::Comma {
-            // min(a, b, c) is min(min(a, b), c).
+            // min(a, b, c) is read as min(min(a, b), c).
             if count > 1 && matches!(called, Function::Min | Function::Max) {
                 self.push(Part::Call(called), start)?;
             }
@@ -273,7 +273,7 @@ impl Parser<'_> {
         self.error(span, format!("unknown function `{}`", quoted(name)), format!("{guess}functions: {list}"))
     }
 
-    /// The next word cannot stand here.
+    /// The error for a word that can't stand here.
     fn unexpected(&self, wanted: &str) -> ExpressionError {
         let word = quoted(&self.text[self.span.clone()]);
         let is_operand = matches!(self.token, Token::Number | Token::Name | Token::Open);
@@ -312,7 +312,7 @@ impl Parser<'_> {
 mod tests {
     use super::*;
 
-    /// Reverse Polish, to see the order of operations.
+    /// The formula in reverse Polish notation, which shows the order of operations.
     fn polish(text: &str) -> String {
         let nodes = parse(text, &super::super::VARIABLES, &["a", "b", "c"]).unwrap();
         let word = |node: &Node| match &node.part {

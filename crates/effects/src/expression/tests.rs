@@ -1,4 +1,4 @@
-//! Formulas as a whole: values, derivatives, units, messages, limits.
+//! Formulas as a whole: values, derivatives, units, messages and limits.
 
 use super::*;
 use bulge_numerics::Dual;
@@ -12,7 +12,7 @@ fn pure(text: &str) -> Expression {
     Expression::parse(text, &[("a", NONE), ("b", NONE), ("c", NONE)], NONE).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// A value for each variable that differs from all others.
+/// A different value for each variable.
 fn state() -> [f64; VARIABLES.len()] {
     std::array::from_fn(|index| 0.3 + 0.17 * index as f64)
 }
@@ -89,7 +89,7 @@ fn the_formula_of_the_manual() {
         assert!((found - expected).abs() <= 1e-13 * expected.abs(), "{found} is not {expected}");
     }
     assert_eq!(formula.to_string(), "-mu*p*(1 - eps)*direction + k*max(0, eps - eps_c)^2");
-    // Below the kink, and exactly at it, nothing depends on k or eps_c.
+    // Below the kink and exactly at it, nothing depends on k or eps_c.
     for below in [0.05, at] {
         state[1] = Dual::variable(below, 1);
         let found = formula.evaluate(&state, &[Dual::from(mu), Dual::variable(k, 3), Dual::variable(at, 4)]);
@@ -276,7 +276,7 @@ fn limits_are_messages() {
     assert!((long.evaluate(&[], &[0.5]) - 1024.0).abs() < 1e-9);
     assert!(long.tape.registers() <= 3);
     assert_eq!(pure(&long.to_string()), long);
-    // With blanks it would be too long to be read again.
+    // With blanks the text would be too long to be read again.
     let name = "n".repeat(6);
     let text = format!("{name}{}", format!("+{name}").repeat(2047));
     let long = Expression::parse(&text, &[(&name, NONE)], NONE).unwrap();
@@ -322,7 +322,7 @@ fn runner(cases: u32) -> TestRunner {
 #[test]
 fn random_formulas_are_written_and_read_back() {
     let check = |text: String| {
-        // Random constants may have no finite value.
+        // Random constants may give no finite value.
         let Ok(formula) = Expression::parse(&text, &[("a", NONE), ("b", NONE), ("c", NONE)], NONE) else {
             return Ok(());
         };
@@ -335,7 +335,7 @@ fn random_formulas_are_written_and_read_back() {
     runner(3000).run(&formulas(), check).unwrap();
 }
 
-/// Difference quotient of step h, then h/2, extrapolated: errors h^4.
+/// A difference quotient with the steps h and h/2, extrapolated to an error of order h^4.
 fn extrapolated(f: &impl Fn(f64) -> f64, h: f64) -> f64 {
     let central = |h: f64| (f(h) - f(-h)) / (2.0 * h);
     (4.0 * central(h / 2.0) - central(h)) / 3.0
@@ -370,7 +370,7 @@ fn derivatives_agree_with_differences() {
             };
             let differences = [1e-3, 5e-4, 2.5e-4].map(|h| extrapolated(&along, h));
             let scale = gradient.abs().max(1.0) + value.abs();
-            // Where the differences have not converged, a kink or a pole is near.
+            // If the differences haven't converged, a kink or a pole is near.
             let spread = (differences[0] - differences[2]).abs().max((differences[1] - differences[2]).abs());
             if !spread.is_finite() || spread > 2e-8 * scale {
                 kinks.set(kinks.get() + 1);

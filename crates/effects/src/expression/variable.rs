@@ -1,17 +1,17 @@
-//! What a formula may speak about: the state of a muscle at one moment of a measured history.
+//! The variables of formulas: the state of a muscle at one moment of a measured history.
 
 use bulge_muscles::Dimension;
 
-/// A quantity that every formula may use.
+/// A variable that formulas may use.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Variable {
-    /// Its name in formulas.
+    /// The name in formulas.
     pub name: &'static str,
-    /// Another name for it, if it has one.
+    /// An alternative name, if there is one.
     pub alias: Option<&'static str>,
-    /// Its dimension; the value is in SI units.
+    /// The dimension. The value is in SI units.
     pub dimension: Dimension,
-    /// What it is.
+    /// A description.
     pub meaning: &'static str,
 }
 
@@ -23,7 +23,8 @@ const fn also(alias: &'static str, variable: Variable) -> Variable {
     Variable { alias: Some(alias), ..variable }
 }
 
-/// All of them, in the order in which [`Expression::evaluate`](super::Expression::evaluate) takes their values.
+/// All variables, in the order in which [`Expression::evaluate`](super::Expression::evaluate) takes their
+/// values.
 pub const VARIABLES: [Variable; 16] = [
     also("pressure", variable("p", Dimension::PRESSURE, "gauge pressure of the gas")),
     also("contraction", variable("eps", Dimension::NONE, "contraction 1 - length/l0")),
@@ -47,7 +48,7 @@ pub const VARIABLES: [Variable; 16] = [
     variable("braid_angle", Dimension::NONE, "angle between fibre and axis at rest, in rad"),
 ];
 
-/// What a formula of the shape may speak about: the wall of the net at one radius of the meridian.
+/// The variables of a formula for the shape: the wall of the net at one radius of the meridian.
 pub const SHAPE_VARIABLES: [Variable; 7] = [
     variable("l1", Dimension::NONE, "stretch along the meridian"),
     variable("l2", Dimension::NONE, "stretch around the axis, r/r0"),
@@ -62,13 +63,13 @@ pub const SHAPE_VARIABLES: [Variable; 7] = [
     variable("l0", Dimension::LENGTH, "length at rest"),
 ];
 
-/// The place of a variable in a list, by its name or alias.
+/// The index of a variable in a list, by name or alias.
 #[must_use]
 pub(crate) fn place(variables: &[Variable], name: &str) -> Option<usize> {
     variables.iter().position(|variable| variable.name == name || variable.alias == Some(name))
 }
 
-/// The place of a variable in [`VARIABLES`], by its name or alias.
+/// The index of a variable in [`VARIABLES`], by name or alias.
 #[must_use]
 pub fn variable_index(name: &str) -> Option<usize> {
     place(&VARIABLES, name)

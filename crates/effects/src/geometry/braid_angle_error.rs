@@ -1,4 +1,4 @@
-//! Braid angle error: the fibres run at another angle at rest than stated (catalogue G14).
+//! Braid angle error: the braid angle differs from the stated one (catalogue G14).
 
 use bulge_fibre::{Jet, Parts};
 use bulge_muscles::MuscleError;
@@ -49,7 +49,7 @@ impl Effect for BraidAngleError {
     }
 
     fn parameters(&self) -> Vec<ParameterCard<'_>> {
-        // Angles of 23 to 25 deg were found in muscles that are sold as one type (S2, S5).
+        // Muscles sold as one type were found to have angles of 23 to 25 deg (S2, S5).
         let about = "true angle at rest minus the stated one";
         vec![
             ParameterCard::new("error", DEGREE, (-12.0, 12.0), 0.0, about)

@@ -1,4 +1,5 @@
-//! End factor: the taper of the ends as a factor on the contraction (Tondu and Lopez 2000; catalogue G10).
+//! End factor: a factor on the contraction that represents the taper of the ends (Tondu and Lopez 2000;
+//! catalogue G10).
 
 use crate::card::{BRAIDED, Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
 use crate::effect::{Action, Effect, Input, InputEffect, Row};
@@ -72,7 +73,8 @@ mod tests {
         assert_eq!(changed.pressure.value().to_bits(), 2e5_f64.to_bits());
     }
 
-    /// Calibrated on the exact taper at one contraction, the factor misses it at another: it is a stand-in.
+    /// A factor calibrated on the exact taper at one contraction is wrong at another, because it only stands
+    /// in for the taper.
     #[test]
     fn the_exact_taper_asks_for_a_factor_that_falls() {
         let braid = Braided::new(Length::mm(10.0), Angle::deg(25.0)).unwrap();

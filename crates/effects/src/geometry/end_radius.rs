@@ -1,4 +1,5 @@
-//! End radius: the fibres leave the fittings at another radius than stated (S1, section 3.1).
+//! End radius: the radius at which the fibres leave the fittings differs from the stated one (S1, section
+//! 3.1).
 
 use bulge_fibre::{Jet, Parts};
 use bulge_muscles::{Length, MuscleError, Parameter, Quantity, check};

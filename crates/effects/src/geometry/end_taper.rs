@@ -1,4 +1,5 @@
-//! End taper: the ends of the braid are clamped, not cylindrical (catalogue G11; theory of Adkins and Rivlin, Liu and Rahn).
+//! End taper: the ends of the braid are clamped rather than cylindrical (catalogue G11; theory of Adkins and
+//! Rivlin, Liu and Rahn).
 
 use bulge_fibre::{Jet, Parts};
 use bulge_muscles::{Ends, MuscleError};
@@ -7,7 +8,7 @@ use crate::card::{BRAIDED, Card, Evidence, Group, Needs, ParameterCard, Parity, 
 use crate::effect::{Action, Effect, ShapeEffect};
 use crate::mechanism::{Form, Mechanism};
 
-/// `ends = "cylinder"` becomes `ends = "clamped"`: the exact shape of the net; no parameter.
+/// `ends = "cylinder"` becomes `ends = "clamped"`, with the exact shape of the net. There is no parameter.
 #[derive(Debug)]
 pub(crate) struct EndTaper;
 

@@ -1,4 +1,5 @@
-//! Fibre count: a pleated muscle has another number of fibres than stated (S1, eqs. 5 and 29; catalogue G1).
+//! Fibre count: a pleated muscle has a different number of fibres than stated (S1, eqs. 5 and 29; catalogue
+//! G1).
 
 use bulge_muscles::Parameter;
 use bulge_numerics::Real;
@@ -9,14 +10,14 @@ use crate::effect::{Action, Effect, Input, InputEffect, Jet, Row};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::NUMBER;
 
-/// Fewer fibres than this enclose nothing.
+/// The smallest number of fibres that enclose an area.
 const LEAST: f64 = 3.0;
 
-/// `area -> area n' sin(2 pi/n')/(n sin(2 pi/n))`: a polygon of n' corners instead of n.
+/// `area -> area n' sin(2 pi/n')/(n sin(2 pi/n))`: the polygon has n' corners instead of n.
 #[derive(Debug)]
 pub(crate) struct FibreCount;
 
-/// n sin(2 pi/n), the area of the polygon over half the square of its radius.
+/// n sin(2 pi/n), the area of the polygon divided by half the square of its radius.
 fn polygon(n: Jet) -> Jet {
     n * (Jet::from(TAU) / n).sin_cos().0
 }
@@ -69,7 +70,7 @@ impl InputEffect for FibreCount {
             && let Some(stated) = setting.fibres
         {
             let count = if theta[0].value() < LEAST { Jet::from(LEAST) } else { theta[0] };
-            // The same function for both, so that equal numbers give a quotient of exactly 1.
+            // The same function is used for both, so that equal numbers give a quotient of exactly 1.
             let area = polygon(count) / polygon(Jet::from(f64::from(stated))).value();
             input.area = input.area * area;
         }
@@ -96,7 +97,7 @@ mod tests {
 
     #[test]
     fn a_polygon_loses_what_s1_says() {
-        // S1: 0.41 % with 40 fibres, 2.9 % with 15; many fibres are a circle.
+        // S1: 0.41 % with 40 fibres, 2.9 % with 15. Many fibres approach a circle.
         assert!((area(Some(40), 1e6) - 1.0 / 0.995_893).abs() < 1e-6);
         assert!((area(Some(15), 1e6) - 1.0 / 0.971_012).abs() < 1e-6);
         // 20 sin 18 deg/(40 sin 9 deg)

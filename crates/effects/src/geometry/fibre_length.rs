@@ -9,7 +9,7 @@ use crate::effect::{Action, Effect, Input, Row, ShapeEffect};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::PERCENT;
 
-/// `l0 -> l0 (1 + delta)` at the same distance of the fittings: `eps -> (eps + delta)/(1 + delta)`.
+/// `l0 -> l0 (1 + delta)` at the same distance between the fittings: `eps -> (eps + delta)/(1 + delta)`.
 #[derive(Debug)]
 pub(crate) struct FibreLength;
 
@@ -86,7 +86,7 @@ mod tests {
         assert!((length * (1.0 - contraction) - 0.11 * 0.9).abs() < 1e-15);
     }
 
-    /// The force of a cylinder depends on contraction alone: (1 - eps)^2 over (1 + delta)^2.
+    /// The force of a cylinder depends only on the contraction: (1 - eps)^2 over (1 + delta)^2.
     #[test]
     fn a_cylinder_only_sees_the_contraction() {
         let muscle = with(&FibreLength, &[-0.02], &cylinder()).unwrap();

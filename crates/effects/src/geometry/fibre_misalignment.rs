@@ -1,4 +1,4 @@
-//! Fibre misalignment: the fibres of a pleated muscle run as a slight helix (catalogue G7).
+//! Fibre misalignment: the fibres of a pleated muscle form a slight helix (catalogue G7).
 
 use bulge_fibre::{Jet, Parts};
 use bulge_muscles::MuscleError;
@@ -60,7 +60,7 @@ impl Effect for FibreMisalignment {
 impl ShapeEffect for FibreMisalignment {
     fn reshape(&self, theta: &[Jet], parts: &mut Parts<Jet>) -> Result<(), MuscleError> {
         let angle = theta[0];
-        // The force is even in the angle: its derivative at 0 says nothing, so nothing is there yet.
+        // The force is even in the angle, so its derivative at 0 vanishes. At 0 the parts stay unchanged.
         if angle.value() == 0.0 {
             return Ok(());
         }

@@ -9,7 +9,7 @@ use crate::effect::{Action, Effect, ShapeEffect};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::MILLIMETRE;
 
-/// Cloth of circumference `C_f` stands in n circular lobes outside the polygon of the fibres.
+/// Cloth of circumference `C_f` forms n circular lobes outside the polygon of the fibres.
 #[derive(Debug)]
 pub(crate) struct Lobes;
 
@@ -84,7 +84,8 @@ mod tests {
     #[test]
     fn cloth_holds_the_muscle_back() {
         let muscle = pleated();
-        // The equator of the muscle without lobes is at 44.8 mm at 20 % and at 53.6 mm at 40 %: 2 pi 47 mm stops it between.
+        // Without lobes the equator of the muscle is at 44.8 mm at 20 % and at 53.6 mm at 40 %. A cloth of 2
+        // pi 47 mm stops it in between.
         let lobed = with(&Lobes, &[2.0 * std::f64::consts::PI * 0.047], &muscle).unwrap();
         let gain = |contraction| force(&lobed, 1.0, contraction) / force(&muscle, 1.0, contraction);
         let gains = [0.02, 0.1, 0.2, 0.3].map(gain);

@@ -1,4 +1,4 @@
-//! Geometry: dimensions and directions of the muscle that are other than stated.
+//! Geometry: dimensions and directions of the muscle that differ from the stated ones.
 
 #[cfg(test)]
 pub(crate) mod bench;
@@ -18,7 +18,7 @@ mod wall_thickness;
 use crate::effect::Effect;
 use std::sync::Arc;
 
-/// All of them.
+/// All geometry effects.
 pub(crate) fn all() -> Vec<Arc<dyn Effect>> {
     vec![
         Arc::new(end_radius::EndRadius),

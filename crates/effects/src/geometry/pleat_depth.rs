@@ -9,7 +9,7 @@ use crate::effect::{Action, Effect, ShapeEffect};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::MILLIMETRE;
 
-/// `A = (n/2) sin(2 pi/n) (r + h)^2` instead of `r^2`.
+/// `A = (n/2) sin(2 pi/n) (r + h)^2` with `r + h` in place of `r`.
 #[derive(Debug)]
 pub(crate) struct PleatDepth;
 
@@ -58,7 +58,7 @@ impl ShapeEffect for PleatDepth {
     fn reshape(&self, theta: &[Jet], parts: &mut Parts<Jet>) -> Result<(), MuscleError> {
         let depth = theta[0];
         check::not_negative("effects.pleat-depth.depth", Length::from_si(depth.value()))?;
-        // At 0 the muscle keeps the depth that it states.
+        // At 0 the muscle keeps its stated depth.
         if depth.value() != 0.0 || parts.depth.value() == 0.0 {
             parts.depth = depth;
         }

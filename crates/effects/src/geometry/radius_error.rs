@@ -1,4 +1,5 @@
-//! Radius error: the braid has another radius at rest than stated (S5, table 2: three candidates for one muscle).
+//! Radius error: the braid radius at rest differs from the stated one (S5, table 2: three candidates for one
+//! muscle).
 
 use bulge_fibre::{Jet, Parts};
 use bulge_muscles::{Length, MuscleError, Parameter, Quantity, check};
@@ -9,7 +10,7 @@ use crate::effect::{Action, Effect, ShapeEffect};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::MILLIMETRE;
 
-/// `r0 -> radius` in the equilibrium of the net; fittings that are not stated separately follow.
+/// `r0 -> radius` in the equilibrium of the net. Fittings without a radius of their own follow.
 #[derive(Debug)]
 pub(crate) struct RadiusError;
 
@@ -48,7 +49,8 @@ impl Effect for RadiusError {
     }
 
     fn parameters(&self) -> Vec<ParameterCard<'_>> {
-        // A hose of 20 mm has a bore of 9.75 to 10 mm and an outside of 11.75 to 11.8 mm: the braid lies in between.
+        // A hose of 20 mm has a bore of 9.75 to 10 mm and an outside of 11.75 to 11.8 mm. The braid lies in
+        // between.
         let about = "radius of the braid at rest";
         vec![
             ParameterCard::multiple("radius", MILLIMETRE, Parameter::Radius, (0.5, 2.0), about)
@@ -81,7 +83,7 @@ mod tests {
         let muscle = cylinder();
         let wide = with(&RadiusError, &[0.01 * 1.07], &muscle).unwrap();
         assert!((force(&wide, 3.0, 0.2) / force(&muscle, 3.0, 0.2) - 1.1449).abs() < 1e-9);
-        // S5's muscle against its nominal radius: 296.2 and 257.5 N per bar.
+        // S5's muscle compared with its nominal radius: 296.2 and 257.5 N per bar.
         let found = with(&RadiusError, &[0.010_725], &muscle).unwrap();
         assert!((force(&found, 1.0, 0.0) - 296.2).abs() < 0.1);
     }

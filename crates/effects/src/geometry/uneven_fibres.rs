@@ -1,11 +1,11 @@
-//! Uneven fibres: the fibres of a pleated muscle are not all of the same length (catalogue G8).
+//! Uneven fibres: the fibres of a pleated muscle differ in length (catalogue G8).
 
 use crate::card::{Card, Evidence, Group, Needs, PLEATED, ParameterCard, Parity, Signature, Twin};
 use crate::effect::{Action, Effect, Input, InputEffect, Row};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::PERCENT;
 
-/// The force is averaged over contractions `eps + sigma z`, z a standard normal number.
+/// The force is averaged over contractions `eps + sigma z`, where z is a standard normal number.
 #[derive(Debug)]
 pub(crate) struct UnevenFibres;
 

@@ -1,4 +1,5 @@
-//! Wall thickness: the gas acts inside a wall of constant thickness, not at the braid (Chou and Hannaford 1996; catalogue G9).
+//! Wall thickness: the gas acts on the inside of a wall of constant thickness rather than at the braid (Chou
+//! and Hannaford 1996; catalogue G9).
 
 use bulge_fibre::{Jet, Parts};
 use bulge_muscles::{Length, MuscleError, Parameter, Quantity, check};
@@ -59,7 +60,7 @@ impl ShapeEffect for WallThickness {
     fn reshape(&self, theta: &[Jet], parts: &mut Parts<Jet>) -> Result<(), MuscleError> {
         let thickness = theta[0];
         check::not_negative("effects.wall-thickness.thickness", Length::from_si(thickness.value()))?;
-        // At 0 the gas stays where the muscle states it.
+        // At 0 the gas stays at the radius that the muscle states.
         if thickness.value() != 0.0 || parts.depth.value() == 0.0 {
             parts.depth = -thickness;
         }

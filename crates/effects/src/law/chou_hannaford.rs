@@ -1,4 +1,5 @@
-//! The braid by fibre length and turns (S5 eqs. 9, 11, 12, Table 2), and its efficiency (S5 eq. 13).
+//! The braid described by fibre length and turns (S5 eqs. 9, 11, 12, Table 2), and its efficiency (S5 eq.
+//! 13).
 
 use super::coefficient::{Coefficient, CoefficientTable, Measure};
 use super::definition::{Form, Law};
@@ -30,7 +31,7 @@ pub(super) const LAW: Law = Law {
     ],
     tables: &[CoefficientTable {
         name: "DMSP-20-250",
-        // b belongs to l0 = 250 mm: for no other length.
+        // b belongs to l0 = 250 mm, so the table fits no other length.
         muscle: None,
         source: "S5 Table 2",
         evidence: Evidence::Paper,
@@ -47,7 +48,7 @@ pub(super) const LAW: Law = Law {
     form: Form::ChouHannaford,
 };
 
-/// S5 eq. 11; F \[N\] of a muscle of length l0 \[m\].
+/// S5 eq. 11: F \[N\] of a muscle of length l0 \[m\].
 ///
 /// ```text
 /// F = p (3 l0^2 (1 - kappa)^2 - b^2)/(4 pi N^2)
@@ -58,9 +59,11 @@ pub(super) fn force<D: Real, const N: usize>(at: LawPoint<D>, length: f64, c: [D
     at.pressure * (l.squared() * 3.0 - b.squared()) / (turns.squared() * (4.0 * PI))
 }
 
-/// Efficiency eta = F/F_t of a muscle, S5 eq. 13: measured force F over the force F_t of the ideal braid, both in N.
+/// Efficiency eta = F/F_t of a muscle (S5 eq. 13): the measured force F over the force F_t of the ideal
+/// braid, both in N.
 ///
-/// None where the ideal braid does not pull (F_t below 1 uN, which is rounding): at its largest contraction the ratio is 0/0.
+/// None if the ideal braid doesn't pull (F_t below 1 uN, which is rounding error). At its largest contraction
+/// the ratio is 0/0.
 ///
 /// ```
 /// use bulge_effects::law::efficiency;
@@ -97,7 +100,7 @@ mod tests {
         for (radius, turns) in [(9.75, 1.903), (10.0, 1.855), (11.75, 1.579)] {
             assert!((turns_of(radius) - turns).abs() < 5e-4);
         }
-        // Half a unit of the last printed digit of N.
+        // The change of the force by half a unit of the last printed digit of N.
         let other: f64 = LAW.force(LawPoint::mean(1e5, 0.0), &braid(0.01), &[B, N + 0.005]);
         assert!((1.0 - other / at_rest - 0.0058).abs() < 1e-4);
     }
@@ -107,7 +110,7 @@ mod tests {
         let largest_diameter = B / (PI * N);
         assert!((largest_diameter - 50.75).abs() < 5e-3, "{largest_diameter}");
         let radius = B * ALPHA0.sin() / (2.0 * PI * N) / 1e3;
-        // Exactly the braid angle of b and l0, which is 25 deg to 1e-5.
+        // The exact braid angle from b and l0. It is 25 deg to 1e-5.
         let braid_angle = (250.0 / B).acos();
         let geometry =
             LawGeometry { radius: radius * braid_angle.sin() / ALPHA0.sin(), braid_angle, ..braid(0.0) };
@@ -119,14 +122,15 @@ mod tests {
             assert!((force - eq_12).abs() < 1e-9);
             let cylinder: f64 = cylinder::CYLINDER.force(at, &geometry, &[]);
             assert!((force - cylinder).abs() < 1e-9);
-            // b and N from the muscle.
+            // Without coefficients b and N come from the muscle.
             assert!((LAW.force(at, &geometry, &[]) - force).abs() < 1e-9);
         }
     }
 
     #[test]
     fn efficiency_falls_from_one_with_contraction() {
-        // Fig. 10 holds measurements that are not printed; S2 Table 1 is the nearest function of the same type.
+        // The measurements in Fig. 10 aren't printed. S2 Table 1 is the nearest function of a muscle of the
+        // same type.
         let measured = sarosi::SIX.table("DMSP-20-200N").unwrap().values;
         let eta = |kappa: f64| {
             let at = LawPoint::mean(3e5, kappa);

@@ -1,11 +1,11 @@
-//! Coefficients of force laws, as printed, with what a fit needs: a start, a scale, bounds, and whether they are linear.
+//! Coefficients of force laws as printed, with the data that a fit needs: start, scale, bounds and linearity.
 
 use super::point::LawGeometry;
 use crate::Evidence;
 use serde::Serialize;
 use std::f64::consts::TAU;
 
-/// A measure that a law takes from the muscle unless a coefficient says otherwise.
+/// A measure that a law takes from the muscle unless a coefficient replaces it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Measure {
@@ -20,7 +20,7 @@ pub enum Measure {
 }
 
 impl Measure {
-    /// Its number for a muscle, in its own unit.
+    /// The value for a muscle, in the unit of the measure.
     #[must_use]
     pub fn of(self, geometry: &LawGeometry) -> f64 {
         let fibre_length = geometry.length / geometry.braid_angle.cos();
@@ -33,15 +33,16 @@ impl Measure {
     }
 }
 
-/// What a fit does with a coefficient.
+/// The role of a coefficient in a fit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Role {
-    /// It is fitted, from its typical value or a table.
+    /// It is fitted, starting from its typical value or a table.
     Fitted,
-    /// It is measured on the muscle; a fit moves it only on request.
+    /// It is measured on the muscle. A fit changes it only on request.
     Measured(Measure),
-    /// It stays at its typical value: the other coefficients do the same, and a fit of all has no unique answer.
+    /// It stays at its typical value. The other coefficients have the same effect, so that a fit of all has
+    /// no unique solution.
     Redundant,
 }
 
@@ -50,19 +51,20 @@ pub enum Role {
 pub struct Coefficient {
     /// The symbol, such as `a`.
     pub name: &'static str,
-    /// The unit of its numbers, as the paper means it, such as "N/bar"; "1" for a pure number.
+    /// The unit of its values, as the paper means it, such as "N/bar"; "1" for a pure number.
     pub unit: &'static str,
-    /// What it does, in a few words.
+    /// A short description.
     pub meaning: &'static str,
-    /// A usual value, to start a fit from.
+    /// A usual value, from which a fit starts.
     pub typical: f64,
-    /// A change that moves the force by tens of newtons somewhere at 3 bar; never 0.
+    /// A change that moves the force by tens of newtons somewhere at 3 bar. It is never 0.
     pub scale: f64,
-    /// Lowest and highest value that make sense; infinite where nothing is known.
+    /// The lowest and highest meaningful value; infinite if unknown.
     pub bounds: [f64; 2],
-    /// Whether the force is linear in all coefficients so marked together, the others held.
+    /// Whether the coefficient is linear: the force is linear in all marked coefficients together, with the
+    /// others held.
     pub linear: bool,
-    /// What a fit does with it.
+    /// The role in a fit.
     pub role: Role,
 }
 
@@ -90,22 +92,22 @@ impl Coefficient {
         Self { linear: false, ..Self::linear(name, unit, meaning, typical, scale) }
     }
 
-    /// The same within bounds.
+    /// Sets bounds.
     pub(super) const fn within(self, lowest: f64, highest: f64) -> Self {
         Self { bounds: [lowest, highest], ..self }
     }
 
-    /// The same, measured on the muscle.
+    /// Marks the coefficient as measured on the muscle.
     pub(super) const fn measured(self, measure: Measure) -> Self {
         Self { role: Role::Measured(measure), ..self }
     }
 
-    /// The same, kept where it is.
+    /// Marks the coefficient as redundant.
     pub(super) const fn redundant(self) -> Self {
         Self { role: Role::Redundant, ..self }
     }
 
-    /// Where a fit starts without a table: the muscle's own measure, else the typical value.
+    /// The start of a fit without a table: the muscle's own measure, or else the typical value.
     #[must_use]
     pub fn start(&self, geometry: &LawGeometry) -> f64 {
         match self.role {
@@ -118,15 +120,17 @@ impl Coefficient {
 /// A set of coefficients for one muscle.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct CoefficientTable {
-    /// The name to ask for, such as "DMSP-20-200N".
+    /// The name, such as "DMSP-20-200N".
     pub name: &'static str,
-    /// Type of the muscle, as in "DMSP-20-200"; none if the table is for one state of it and has to be asked for.
+    /// The type of muscle, as in "DMSP-20-200". None if the table is for one state of it and has to be asked
+    /// for by name.
     pub muscle: Option<&'static str>,
     /// Paper and table.
     pub source: &'static str,
-    /// [`Evidence::Paper`] if the numbers are printed, [`Evidence::Derived`] if they are evaluated or fitted from printed functions.
+    /// [`Evidence::Paper`] if the numbers are printed, [`Evidence::Derived`] if they are evaluated or fitted
+    /// from printed functions.
     pub evidence: Evidence,
-    /// Values in the order and the units of the coefficients; measures of the muscle at the end may be left out.
+    /// Values in the order and units of the coefficients. Trailing measures of the muscle may be left out.
     pub values: &'static [f64],
 }
 

@@ -1,4 +1,5 @@
-//! The braid as a cylinder (S2 eq. 12, S3 eq. 1) and its two empirical corrections: end factor k, Kerscher's factors (S2 eq. 15, S3 eq. 2).
+//! The braid as a cylinder (S2 eq. 12, S3 eq. 1), and its two empirical corrections: the end factor k and
+//! Kerscher's factors (S2 eq. 15, S3 eq. 2).
 
 use super::coefficient::{Coefficient, CoefficientTable, Measure};
 use super::definition::{Form, Law};
@@ -127,7 +128,7 @@ pub(super) const KERSCHER: Law = Law {
     form: Form::Kerscher,
 };
 
-/// S2 eq. 12 with a stretched contraction; r0 \[m\], alpha0 \[rad\].
+/// S2 eq. 12 with a factor on the contraction; r0 \[m\], alpha0 \[rad\].
 ///
 /// ```text
 /// F = pi r0^2 p (a (1 - kappa)^2 - b)      a = 3/tan^2(alpha0), b = 1/sin^2(alpha0)
@@ -145,7 +146,7 @@ pub(super) fn force<D: Real, const N: usize>(at: LawPoint<D>, c: [D; N]) -> D {
     ideal(at.pressure, at.contraction, c[0], c[1])
 }
 
-/// S2 eq. 12 with 1 - k kappa for 1 - kappa.
+/// S2 eq. 12 with 1 - k kappa in place of 1 - kappa.
 pub(super) fn tondu_lopez<D: Real, const N: usize>(at: LawPoint<D>, c: [D; N]) -> D {
     ideal(at.pressure, c[0] * at.contraction, c[1], c[2])
 }
@@ -172,15 +173,15 @@ mod tests {
 
     #[test]
     fn three_radii_of_one_muscle() {
-        // S5 Table 2: inner, nominal, and from b and N.
+        // S5 Table 2: the inner radius, the nominal one, and the one from b and N.
         for (radius, force) in [(0.00975, 244.8), (0.010, 257.5), (0.010_725, 296.2)] {
             assert!((per_bar_at_rest(radius) - force).abs() < 0.06, "{}", per_bar_at_rest(radius));
         }
-        // No force at 1 - sqrt(b/a) = 1 - 1/(sqrt(3) cos(alpha0)) = 36.3 % (S2 eq. 14).
+        // The force vanishes at 1 - sqrt(b/a) = 1 - 1/(sqrt(3) cos(alpha0)) = 36.3 % (S2 eq. 14).
         let largest = 1.0 - 1.0 / (3_f64.sqrt() * ALPHA0.cos());
         let force: f64 = CYLINDER.force(LawPoint::mean(3e5, largest), &BRAID, &[]);
         assert!((largest - 0.36296).abs() < 1e-5 && force.abs() < 1e-10);
-        // A coefficient replaces the measure of the muscle.
+        // A given coefficient replaces the measure of the muscle.
         let other = LawGeometry { radius: 0.005, ..BRAID };
         let force: f64 = CYLINDER.force(LawPoint::mean(1e5, 0.0), &other, &[10.0, 25.0]);
         assert!((force - per_bar_at_rest(0.010)).abs() < 1e-10);
@@ -193,18 +194,19 @@ mod tests {
         assert!((ideal - 525.6).abs() < 0.05, "{ideal}");
         assert!((TONDU_LOPEZ.force(at, &BRAID, &[1.0]) - ideal).abs() < 1e-10);
         assert!((KERSCHER.force(at, &BRAID, &[0.0, -1.0, 0.0, -1.0]) - ideal).abs() < 1e-10);
-        // k kappa for kappa.
+        // k kappa replaces kappa.
         let twice: f64 = CYLINDER.force(LawPoint::mean(3e5, 0.2), &BRAID, &[]);
         assert!(
             (twice - 304.5).abs() < 0.05 && (TONDU_LOPEZ.force(at, &BRAID, &[2.0]) - twice).abs() < 1e-10
         );
-        // e = 5 e^-3 + 0.7, mu = 0.4 e^-4 + 0.9, written out.
+        // e = 5 e^-3 + 0.7 and mu = 0.4 e^-4 + 0.9, computed directly.
         let (e, mu) = (5.0 * (-3_f64).exp() + 0.7, 0.4 * (-4_f64).exp() + 0.9);
         let by_hand = mu * TONDU_LOPEZ.force(at, &BRAID, &[e]);
         assert!((KERSCHER.force(at, &BRAID, &[5.0, -0.7, 0.4, -0.9]) - by_hand).abs() < 1e-10);
     }
 
-    /// Root mean square from S2 eq. 16 at 1 to 5 bar and 0 to 25 %, where it pulls, and its largest force.
+    /// Root mean square deviation from S2 eq. 16 at 1 to 5 bar and 0 to 25 %, where it pulls, and the largest
+    /// force.
     fn misfit(law: &Law, coefficients: &[f64], target: &[f64]) -> (f64, f64) {
         let (mut sum, mut count, mut largest) = (0.0, 0.0, 0_f64);
         for bar in 1..=5 {
@@ -221,7 +223,8 @@ mod tests {
         (f64::sqrt(sum / count), largest)
     }
 
-    /// The tables that are not printed are the best fit of what is, and leave what the notes say.
+    /// The tables that aren't printed are best fits to the printed functions, with the residuals stated in
+    /// the notes.
     #[test]
     fn derived_tables_are_best_fits() {
         let left = [(&KERSCHER, [0.0151, 0.0152]), (&TONDU_LOPEZ, [0.0547, 0.0546])];
@@ -241,7 +244,7 @@ mod tests {
         }
     }
 
-    /// S3's steps to eq. 1 as printed, against the right ones: 3 bar, 10 %, r0 = 10 mm, l0 = 1 m.
+    /// S3's steps to eq. 1 as printed, compared with the correct ones: 3 bar, 10 %, r0 = 10 mm, l0 = 1 m.
     #[test]
     fn misprints_of_s3_are_wrong() {
         let (p, r0, l0, kappa) = (3e5, 0.010, 1.0, 0.1);
@@ -263,7 +266,8 @@ mod tests {
         assert!((without_bracket - 1047.7).abs() < 0.1, "{without_bracket}");
     }
 
-    /// S3's exponents as printed: the derivatives by a and by b are parallel everywhere, and e vanishes at 6 bar.
+    /// With S3's exponents as printed, the derivatives by a and by b are parallel everywhere, and e vanishes
+    /// at 6 bar.
     #[test]
     fn misprinted_factors_have_half_the_coefficients() {
         let factor = |a: f64, b: f64, x: f64| {
@@ -275,7 +279,7 @@ mod tests {
             assert!((by_b + 9.08 * by_a).abs() < 1e-12);
         }
         assert!(factor(9.08, -1.297, 6.0).value() < 0.1);
-        // The right form keeps a contraction factor of 1.3 there.
+        // The correct form keeps a contraction factor of 1.3 there.
         assert!(9.08 * (-6_f64).exp() + 1.297 > 1.3);
     }
 }

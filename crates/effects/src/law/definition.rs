@@ -1,4 +1,4 @@
-//! A force law: its equation, coefficients, range and source, and its value with exact derivatives.
+//! A force law: its equation, coefficients, range and source, and its force with exact derivatives.
 
 use super::coefficient::{Coefficient, CoefficientTable, Role};
 use super::point::{LawGeometry, LawPoint};
@@ -9,7 +9,7 @@ use bulge_muscles::Kind;
 use bulge_numerics::Real;
 use serde::Serialize;
 
-/// The closed family of equations; each is a function of its module.
+/// The closed set of equations. Each is a function of its module.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Form {
     PleatedPolynomial,
@@ -25,29 +25,30 @@ pub(super) enum Form {
     Hildebrandt,
 }
 
-/// A force law F(p, kappa) of the papers: a rival of the equilibrium model.
+/// A force law F(p, kappa) of the papers, an alternative to the equilibrium model.
 ///
-/// Forces are in N, tension positive. Coefficients keep the units in which they are printed; pressure and contraction
-/// are SI. [`LAWS`] holds all of them, `Display` describes one for a reader.
+/// Forces are in N, with tension positive. Coefficients keep the units in which they are printed; pressure
+/// and contraction are in SI. [`LAWS`] holds all laws, and `Display` describes one for a reader.
 #[derive(Debug, Clone, Copy, Serialize)]
 pub struct Law {
-    /// The name to ask for, such as `sarosi-6`.
+    /// The name, such as `sarosi-6`.
     pub name: &'static str,
     /// Other names of the same law.
     pub aliases: &'static [&'static str],
-    /// What it is, in a few words.
+    /// A short description.
     pub title: &'static str,
-    /// Paper and equation; the titles of the papers are in [`PAPERS`](super::PAPERS).
+    /// Paper and equation. The titles of the papers are in [`PAPERS`](super::PAPERS).
     pub source: &'static str,
-    /// How far the equation can be relied on; [`Evidence::Paper`] with its errata corrected, see the notes.
+    /// The reliability of the equation. [`Evidence::Paper`] means printed, with the errata corrected; see the
+    /// notes.
     pub evidence: Evidence,
-    /// The equation in plain text, one line for each.
+    /// The equations in plain text, one per line.
     pub equation: &'static str,
-    /// The muscles it is for; none for both.
+    /// The kind of muscle it is for; none if for both.
     pub kind: Option<Kind>,
-    /// Whether it tells shortening from lengthening.
+    /// Whether it distinguishes shortening from lengthening.
     pub directional: bool,
-    /// Where it is valid.
+    /// The range of validity.
     pub range: &'static str,
     /// Coefficients, in order.
     pub coefficients: &'static [Coefficient],
@@ -63,7 +64,7 @@ impl Law {
     /// The largest number of coefficients of a law.
     pub const MOST_COEFFICIENTS: usize = 10;
 
-    /// The law of a name or another name; case does not matter.
+    /// The law with this name or alias; case doesn't matter.
     ///
     /// ```
     /// use bulge_effects::law::Law;
@@ -77,9 +78,10 @@ impl Law {
 
     /// Force F \[N\] at a point, with the derivatives that `D` carries.
     ///
-    /// Coefficients are in the order and the units of [`Law::coefficients`]. Those left out at the end are
-    /// [`Coefficient::start`], so that `&[]` is the typical law with the muscle's own measures; those that are too many
-    /// are not read. Finite where [`Law::is_defined_at`], for muscles that the law [`suits`](Law::suits).
+    /// Coefficients are in the order and the units of [`Law::coefficients`]. Trailing ones that are left out
+    /// take [`Coefficient::start`], so that `&[]` gives the typical law with the muscle's own measures.
+    /// Surplus ones are ignored. The force is finite where [`Law::is_defined_at`] holds, for muscles that the
+    /// law [`suits`](Law::suits).
     ///
     /// ```
     /// use bulge_effects::law::{Law, LawGeometry, LawPoint};
@@ -110,20 +112,21 @@ impl Law {
         }
     }
 
-    /// Whether the force is finite at a point: everywhere, but for the pleated polynomial only at contractions above 0.
+    /// Whether the force is finite at a point. This holds everywhere, except that the pleated polynomial
+    /// needs a contraction above 0.
     #[must_use]
     pub fn is_defined_at(&self, at: LawPoint<f64>) -> bool {
         let is_finite = at.pressure.is_finite() && at.contraction.is_finite() && at.direction.is_finite();
         is_finite && (self.form != Form::PleatedPolynomial || at.contraction > 0.0)
     }
 
-    /// Whether its coefficients hold at a single pressure.
+    /// Whether its coefficients apply to a single pressure only.
     #[must_use]
     pub fn is_isobaric(&self) -> bool {
         self.form == Form::Isobaric
     }
 
-    /// Whether the law is for such muscles.
+    /// Whether the law is for muscles of this kind.
     #[must_use]
     pub fn suits(&self, kind: Kind) -> bool {
         self.kind.is_none_or(|own| own == kind)
@@ -135,13 +138,14 @@ impl Law {
         self.coefficients.iter().all(|coefficient| coefficient.linear)
     }
 
-    /// The table of a name; case does not matter.
+    /// The table with this name; case doesn't matter.
     #[must_use]
     pub fn table(&self, name: &str) -> Option<&'static CoefficientTable> {
         self.tables.iter().find(|table| table.name.eq_ignore_ascii_case(name))
     }
 
-    /// The table for a muscle's name such as "DMSP-20-300": same type and diameter, nearest length, the first of equals.
+    /// The table for a muscle's name such as "DMSP-20-300": same type and diameter, nearest length, and the
+    /// first of equally near ones.
     ///
     /// None if there is no table for that type and diameter.
     #[must_use]
@@ -152,7 +156,7 @@ impl Law {
         nearest.map(|(_, table)| table)
     }
 
-    /// A value for every coefficient, to start a fit from: of the table, else [`Coefficient::start`].
+    /// A start of a fit for every coefficient: the table's value, or else [`Coefficient::start`].
     #[must_use]
     pub fn start(&self, geometry: &LawGeometry, table: Option<&CoefficientTable>) -> Vec<f64> {
         let values = table.map_or(&[][..], |table| table.values);
@@ -162,7 +166,7 @@ impl Law {
         self.coefficients.iter().enumerate().map(own).collect()
     }
 
-    /// Numbers of the coefficients that a fit moves.
+    /// Indices of the coefficients that a fit changes.
     pub fn fitted(&self) -> impl Iterator<Item = usize> + use<> {
         let coefficients = self.coefficients;
         (0..coefficients.len()).filter(move |i| coefficients[*i].role == Role::Fitted)

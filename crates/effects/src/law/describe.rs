@@ -1,4 +1,5 @@
-//! Force laws as a text to read: equation, coefficients with values and units, range, source, errata.
+//! Descriptions of force laws for a reader: equation, coefficients with values and units, range, source,
+//! errata.
 
 use super::coefficient::{Coefficient, CoefficientTable, Role};
 use super::definition::Law;
@@ -8,10 +9,10 @@ use crate::Evidence;
 use bulge_muscles::Kind;
 use std::fmt::{self, Write};
 
-/// Widest line of running text.
+/// The largest width of running text.
 const WIDTH: usize = 100;
 
-/// What a law and a volume formula have to say.
+/// The contents that force laws and volume formulas have in common.
 struct Sheet<'a> {
     name: &'a str,
     aliases: &'a [&'a str],
@@ -154,7 +155,7 @@ impl Sheet<'_> {
     }
 }
 
-/// A source, and how far it can be relied on where it is not simply printed.
+/// A source, with its reliability unless it is simply printed.
 fn cited(source: &str, evidence: Evidence) -> String {
     if evidence == Evidence::Paper { source.to_owned() } else { format!("{source} ({})", evidence.says()) }
 }
@@ -168,7 +169,7 @@ fn digits(value: f64) -> String {
     format!("{value:.9e}").parse::<f64>().unwrap_or(value).to_string()
 }
 
-/// A paragraph with a heading in the margin.
+/// Writes a paragraph with a heading in the margin.
 fn write_item(out: &mut dyn Write, heading: &str, text: &str) -> fmt::Result {
     const MARGIN: usize = 10;
     let mut column = MARGIN;
@@ -188,7 +189,7 @@ fn write_item(out: &mut dyn Write, heading: &str, text: &str) -> fmt::Result {
     writeln!(out)
 }
 
-/// Every law, and what the papers are: a text to read.
+/// All laws and the papers, as a text for a reader.
 ///
 /// ```
 /// let text = bulge_effects::law::reference();
@@ -201,7 +202,7 @@ pub fn reference() -> String {
          p is the gauge pressure, kappa = (l0 - l)/l0 the contraction, F the force (tension positive), l0 the length at rest.\n\n",
     );
     for paper in &PAPERS {
-        // Writing into a String does not fail.
+        // Writing into a String can't fail.
         let _ = writeln!(text, "  {}  \"{}\"", paper.key, paper.title);
     }
     let sheets = LAWS.iter().map(ToString::to_string).chain([S1_VOLUME.to_string()]);

@@ -1,4 +1,4 @@
-//! What the name of a muscle says: family, size, length, as in "DMSP-20-200N-RM-RM".
+//! Reads the name of a muscle, such as "DMSP-20-200N-RM-RM": family, size, length.
 
 /// A word or a number in a name.
 #[derive(Debug, Clone, PartialEq)]
@@ -7,7 +7,7 @@ enum Part {
     Number(f64),
 }
 
-/// Words (lower case) and numbers, in order.
+/// The words (in lower case) and numbers of a name, in order.
 fn parts(name: &str) -> Vec<Part> {
     let is_number = |c: char| c.is_ascii_digit() || c == '.';
     let mut runs: Vec<String> = Vec::new();
@@ -22,29 +22,30 @@ fn parts(name: &str) -> Vec<Part> {
         last = sort;
     }
     let part = |run: String| match run.parse() {
-        // "nan" and "inf" are words here.
+        // "nan" and "inf" count as words.
         Ok(number) if run.starts_with(is_number) => Part::Number(number),
         _ => Part::Word(run),
     };
     runs.into_iter().map(part).collect()
 }
 
-/// Numbers that follow a word.
+/// The numbers that follow a word.
 fn numbers_after(parts: &[Part], word: &Part) -> Option<Vec<f64>> {
     let place = parts.iter().position(|part| part == word)?;
     let number = |part: &Part| if let Part::Number(number) = part { Some(*number) } else { None };
     Some(parts[place + 1..].iter().filter_map(number).collect())
 }
 
-/// How far a muscle is from a type such as "DMSP-20-200": the difference of their second number (the length).
+/// The distance of a muscle from a type such as "DMSP-20-200": the difference of their second numbers (the
+/// lengths).
 ///
-/// None if the family (the type's first word) or its first number (the diameter, or the generation) is another or missing.
-/// A muscle that says no length is infinitely far, which still is some distance.
+/// None if the family (the type's first word) or its first number (the diameter, or the generation) differs
+/// or is missing. A muscle without a length is at an infinite distance, which still counts as one.
 pub(super) fn distance(muscle: &str, type_name: &str) -> Option<f64> {
     let wanted = parts(type_name);
     let family = wanted.first()?;
     let (wanted, found) = (numbers_after(&wanted, family)?, numbers_after(&parts(muscle), family)?);
-    // Written numbers: equal or not.
+    // Numbers as written are either equal or not, so no tolerance is needed.
     if wanted.first()?.to_bits() != found.first()?.to_bits() {
         return None;
     }

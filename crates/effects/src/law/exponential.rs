@@ -94,7 +94,7 @@ const fn at_pressure(name: &'static str, values: &'static [f64; 5]) -> Coefficie
     }
 }
 
-/// S2 eq. 16 at a pressure \[bar\], as coefficients of S3 eq. 3.
+/// S2 eq. 16 at one pressure \[bar\], as coefficients of S3 eq. 3.
 const fn isobar([a, b, c, d, e, f]: [f64; 6], p: f64) -> [f64; 5] {
     [a * p + b, c, 0.0, d * p, e * p + f]
 }
@@ -143,7 +143,7 @@ mod tests {
         assert!(ISOBARIC.table_for("DMSP-20-200N").is_none(), "an isobar is asked for by name");
     }
 
-    /// The terms that the tables leave at 0: c and d multiply the take-up by e^.., f is a stiffness in N/%.
+    /// The terms that are 0 in the tables: c and d multiply the take-up by e^.., and f is a stiffness in N/%.
     #[test]
     fn terms_of_s3_alone() {
         let at = LawPoint::mean(3e5, 0.1);
@@ -153,7 +153,7 @@ mod tests {
         assert!((force - (230.0 * (-2.5_f64).exp() - 290.0 + 900.0 - 250.0)).abs() < 1e-10);
     }
 
-    /// dF/dc = a dF/da and dF/dd = a dF/da + b dF/db everywhere: no data can tell them apart.
+    /// dF/dc = a dF/da and dF/dd = a dF/da + b dF/db everywhere, so no data can distinguish them.
     #[test]
     fn one_coefficient_is_redundant() {
         for (p, kappa) in [(1e5, 0.0), (2e5, 0.07), (5e5, 0.2)] {

@@ -1,4 +1,4 @@
-//! Polynomials of the contraction, one that pressure multiplies and one that it does not (from the literature by memory).
+//! Polynomials in the contraction, one multiplied by the pressure and one not (recalled from the literature).
 
 use super::coefficient::{Coefficient, CoefficientTable};
 use super::definition::{Form, Law};
@@ -6,10 +6,10 @@ use super::point::LawPoint;
 use crate::Evidence;
 use bulge_numerics::Real;
 
-/// Least squares on S2 eq. 16 with Table 1 at 1, 2, .. 5 bar and 0, 1, .. 25 %, where F > 0; 4.1 N rms.
+/// Least-squares fit to S2 eq. 16 with Table 1 at 1, 2, .. 5 bar and 0, 1, .. 25 %, where F > 0; 4.1 N rms.
 const DMSP_20_200: [f64; 9] =
     [291.062, -899.350, 179.648, -1587.93, -0.948_318, 7555.918, -76_667.45, 343_937.4, -573_892.1];
-/// The same with Table 2; 4.0 N rms.
+/// The same fit with Table 2; 4.0 N rms.
 const DMSP_20_400: [f64; 9] =
     [298.669, -868.770, -206.072, -21.463, -6.741_757, 7196.758, -72_077.58, 315_031.2, -502_879.1];
 
@@ -66,7 +66,7 @@ pub(super) fn force<D: Real, const N: usize>(at: LawPoint<D>, coefficients: [D; 
         - polynomial(&coefficients[4..9], at.contraction)
 }
 
-/// A polynomial, lowest power first.
+/// A polynomial with the lowest power first.
 fn polynomial<D: Real>(coefficients: &[D], x: D) -> D {
     coefficients.iter().rev().fold(D::from(0.0), |sum, coefficient| sum * x + *coefficient)
 }
@@ -87,7 +87,7 @@ mod tests {
         assert!((force - 274.0).abs() < 1e-10, "{force}");
     }
 
-    /// The tables are least squares: the residual is at right angles to every coefficient.
+    /// The tables are least-squares fits: the residual is orthogonal to every coefficient's derivative.
     #[test]
     fn tables_are_best_fits() {
         for (table, rms) in LAW.tables.iter().zip([4.106, 4.019]) {
@@ -111,7 +111,7 @@ mod tests {
             }
             let found = f64::sqrt(squares / count);
             assert!((found - rms).abs() < 2e-3, "{found}");
-            // N^2 in all, against residuals times scales of some 1e5.
+            // The slopes are in N^2, from residuals times scales of some 1e5.
             assert!(slopes.iter().all(|slope| slope.abs() < 100.0), "{slopes:?}");
         }
     }

@@ -1,10 +1,10 @@
-//! The one list of force laws, and the papers they are from.
+//! The list of force laws, and the papers they come from.
 
 use super::definition::Law;
 use super::{chou_hannaford, cylinder, exponential, hildebrandt, pleated_polynomial, sarosi};
 use serde::Serialize;
 
-/// Every force law, geometric ones of the braid first, then empirical ones, then those of pleated muscles.
+/// All force laws: geometric ones of the braid, then empirical ones, then those of pleated muscles.
 pub static LAWS: &[Law] = &[
     cylinder::CYLINDER,
     chou_hannaford::LAW,
@@ -22,7 +22,7 @@ pub static LAWS: &[Law] = &[
 /// A source paper.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct Paper {
-    /// The short name under which it is cited.
+    /// The short name used in citations.
     pub key: &'static str,
     /// Its title.
     pub title: &'static str,

@@ -1,4 +1,4 @@
-//! Force laws of the source papers, as rivals of the equilibrium model ("base laws").
+//! Force laws of the source papers ("base laws"), as alternatives to the equilibrium model.
 //!
 //! | paper | title |
 //! |---|---|
@@ -8,8 +8,8 @@
 //! | S4 | "Sizing Fluidic Muscle Using Static Force Model" |
 //! | S5 | "Experimental Analysis of Fluidic Muscles" |
 //!
-//! [`LAWS`] is the list. A law is a function of pressure, contraction and, where it says so, direction; its coefficients
-//! keep the units in which they are printed, so that a table can be read beside the paper.
+//! [`LAWS`] is the list. A law is a function of pressure, contraction and, if it is directional, direction.
+//! Its coefficients keep the units in which they are printed, so that a table can be compared with the paper.
 //!
 //! ```
 //! use bulge_effects::law::{Law, LawGeometry, LawPoint};
@@ -24,8 +24,9 @@
 //! assert_eq!((force.gradient()[0] / 100.0).round(), -70.0); // N for each 1 % of contraction
 //! ```
 //!
-//! Deliberately absent: laws whose formula the sources do not state completely (stretched-length stiffness, whose
-//! unstretched length is left open; normalised exponentials without their normalising force; laws for p(F, kappa)).
+//! Deliberately absent: laws that the sources don't state completely (a stiffness in terms of the stretched
+//! length, which leaves the unstretched length open; normalised exponentials without their normalising force;
+//! laws for p(F, kappa)).
 
 mod chou_hannaford;
 mod coefficient;
@@ -50,14 +51,14 @@ pub use point::{LawGeometry, LawPoint};
 
 #[cfg(test)]
 mod tests {
-    //! What holds for every force law: exact derivatives, linear flags, scales, tables, names.
+    //! Properties of every force law: exact derivatives, linear flags, scales, tables, names.
 
     use super::*;
     use bulge_muscles::{Kind, preset};
     use bulge_numerics::{Dual, Real};
     use std::collections::HashSet;
 
-    /// Pressure, contraction and every coefficient.
+    /// The number of variables: pressure, contraction and every coefficient.
     const VARIABLES: usize = 2 + Law::MOST_COEFFICIENTS;
 
     fn geometry(law: &Law) -> LawGeometry {
@@ -65,7 +66,7 @@ mod tests {
         LawGeometry::from(&preset(name).unwrap())
     }
 
-    /// Numbers between 0 and 1 that look random (splitmix64).
+    /// Pseudo-random numbers between 0 and 1 (splitmix64).
     struct Numbers(u64);
 
     impl Numbers {
@@ -77,7 +78,7 @@ mod tests {
             low + (high - low) * ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
         }
 
-        /// Pressure, contraction, and coefficients some scales around a start.
+        /// Pressure, contraction, and coefficients within some scales of a start.
         fn variables(&mut self, law: &Law) -> Vec<f64> {
             let mut variables = vec![self.between(0.3e5, 6e5), self.between(0.01, 0.35)];
             for (start, coefficient) in law.start(&geometry(law), None).into_iter().zip(law.coefficients) {
@@ -93,7 +94,7 @@ mod tests {
         law.force(at, &geometry(law), &variables[2..])
     }
 
-    /// A change of each variable that matters: 1 bar, 5 %, and the scales of the coefficients.
+    /// A relevant change of each variable: 1 bar, 5 %, and the scales of the coefficients.
     fn scales(law: &Law) -> Vec<f64> {
         [1e5, 0.05].into_iter().chain(law.coefficients.iter().map(|coefficient| coefficient.scale)).collect()
     }
@@ -112,7 +113,7 @@ mod tests {
                 let value: f64 = force(law, &variables, direction);
                 assert!((exact.value() - value).abs() < 1e-12 * value.abs().max(100.0), "{}", law.name);
                 for (i, scale) in scales(law).into_iter().enumerate() {
-                    // Fourth order: the error is h^4 of the fifth derivative and 1e-13 N/h.
+                    // Fourth order: the error is h^4 times the fifth derivative, plus rounding of 1e-13 N/h.
                     let h = 1e-3 * scale;
                     let moved = |steps: f64| {
                         let mut moved = variables.clone();
@@ -122,7 +123,7 @@ mod tests {
                     let difference =
                         (8.0 * (moved(1.0) - moved(-1.0)) - (moved(2.0) - moved(-2.0))) / (12.0 * h);
                     let derivative = exact.gradient()[i];
-                    // Relative, above 1 mN per scale.
+                    // The tolerance is relative, above 1 mN per scale.
                     let allowed = 1e-6 * derivative.abs().max(1e-3 / scale);
                     assert!(
                         (derivative - difference).abs() <= allowed,
@@ -134,7 +135,7 @@ mod tests {
         }
     }
 
-    /// F(c + d) + F(c - d) - 2 F(c), of coefficients moved by their scales.
+    /// F(c + d) + F(c - d) - 2 F(c), with coefficients changed by their scales.
     fn curvature(law: &Law, variables: &[f64], moves: impl Fn(usize) -> bool) -> f64 {
         let at = |sign: f64| {
             let mut moved = variables.to_vec();
@@ -234,7 +235,7 @@ mod tests {
             for table in law.tables {
                 let from_table = law.start(&geometry, Some(table));
                 assert_eq!((from_table.len(), &from_table[..table.values.len()]), (count, table.values));
-                // Only measures of the muscle may be missing.
+                // Only measures of the muscle may be left out.
                 let rest = &law.coefficients[table.values.len()..];
                 assert!(rest.iter().all(|coefficient| matches!(coefficient.role, Role::Measured(_))));
                 for (value, coefficient) in table.values.iter().zip(law.coefficients) {
@@ -244,14 +245,14 @@ mod tests {
                     assert!(law.table_for(muscle).is_some(), "{muscle}");
                 }
             }
-            // Left out at the end: the start; too many: not read.
+            // Trailing coefficients that are left out take the start, and surplus ones are ignored.
             let at = LawPoint { pressure: 3e5, contraction: 0.1, direction: 0.3 };
             let full: f64 = law.force(at, &geometry, &start);
             let more: Vec<f64> = start.iter().copied().chain([1e9; 20]).collect();
             for coefficients in [&[][..], &start[..1], &more] {
                 assert_eq!(law.force(at, &geometry, coefficients).to_bits(), full.to_bits(), "{}", law.name);
             }
-            // The force of a muscle of this size.
+            // The force is plausible for a muscle of this size.
             assert!((150.0..3500.0).contains(&full), "{}: {full} N", law.name);
             assert_eq!(
                 law.fitted().map(|i| law.coefficients[i].name).collect::<Vec<_>>(),

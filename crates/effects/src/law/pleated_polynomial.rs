@@ -1,4 +1,4 @@
-//! Polynomials of a pleated muscle: force (S1 eq. 31, Table 1) and enclosed volume (S1 eq. 32, Table 2).
+//! Polynomials for a pleated muscle: force (S1 eq. 31, Table 1) and enclosed volume (S1 eq. 32, Table 2).
 
 use super::coefficient::{Coefficient, CoefficientTable};
 use super::definition::{Form, Law};
@@ -47,7 +47,7 @@ pub(super) const LAW: Law = Law {
     form: Form::PleatedPolynomial,
 };
 
-/// S1 eq. 31; F \[N\] of a muscle of length l0 \[m\].
+/// S1 eq. 31: F \[N\] of a muscle of length l0 \[m\].
 ///
 /// ```text
 /// F = p l0^2 (f4 kappa^3 + f3 kappa^2 + f2 kappa + f1 + f0/kappa)
@@ -58,7 +58,7 @@ pub(super) fn force<D: Real, const N: usize>(at: LawPoint<D>, length: f64, coeff
     at.bar() * (length * length) * polynomial
 }
 
-/// A polynomial, highest power first.
+/// A polynomial with the highest power first.
 fn horner<D: Real>(coefficients: &[D], x: D) -> D {
     coefficients.iter().fold(D::from(0.0), |sum, coefficient| sum * x + *coefficient)
 }
@@ -66,21 +66,21 @@ fn horner<D: Real>(coefficients: &[D], x: D) -> D {
 /// A formula for the volume of a muscle. It is not a force law.
 #[derive(Debug, Clone, Copy, Serialize)]
 pub struct VolumeLaw {
-    /// The name to ask for.
+    /// The name.
     pub name: &'static str,
-    /// What it is, in a few words.
+    /// A short description.
     pub title: &'static str,
     /// Paper and equation.
     pub source: &'static str,
-    /// How far the equation can be relied on.
+    /// The reliability of the equation.
     pub evidence: Evidence,
     /// The equation in plain text.
     pub equation: &'static str,
-    /// The muscles it is for; none for both.
+    /// The kind of muscle it is for; none if for both.
     pub kind: Option<Kind>,
-    /// Where it is valid.
+    /// The range of validity.
     pub range: &'static str,
-    /// Coefficients, in order; all linear.
+    /// Coefficients, in order. All are linear.
     pub coefficients: &'static [Coefficient],
     /// Sets of coefficients.
     pub tables: &'static [CoefficientTable],
@@ -90,7 +90,8 @@ pub struct VolumeLaw {
 
 /// Enclosed volume of the second-generation pleated muscle, S1 eq. 32 with Table 2.
 ///
-/// Never derive a force from it: -p dV/dl is 860 N at 1 bar and 10 %, where the muscle pulls 1047 N, and changes its sign at 33 %.
+/// Never derive a force from it. At 1 bar and 10 %, -p dV/dl is 860 N, but the muscle pulls 1047 N. At 33 %
+/// the derivative changes sign.
 pub static S1_VOLUME: VolumeLaw = VolumeLaw {
     name: "s1-volume",
     title: "volume polynomial of the second-generation pleated muscle",
@@ -123,12 +124,13 @@ pub static S1_VOLUME: VolumeLaw = VolumeLaw {
 };
 
 impl VolumeLaw {
-    /// Enclosed volume V \[m^3\] of a muscle of length l0 \[m\] at a contraction (a fraction), end fittings and tubing apart.
+    /// Enclosed volume V \[m^3\] of a muscle of length l0 \[m\] at a contraction (a fraction), without end
+    /// fittings and tubing.
     ///
     /// ```text
     /// V = l0^3 (v5 kappa^5 + v4 kappa^4 + v3 kappa^3 + v2 kappa^2 + v1 kappa + v0)
     /// ```
-    /// Coefficients that are left out at the end are those of S1 Table 2.
+    /// Trailing coefficients that are left out are those of S1 Table 2.
     #[must_use]
     pub fn volume<D: Real>(&self, contraction: D, length: f64, coefficients: &[D]) -> D {
         let own = |(i, coefficient): (usize, &Coefficient)| {
@@ -164,7 +166,7 @@ mod tests {
         }
         assert!(force_at_1_bar(36.48) > 0.0 && force_at_1_bar(36.50) < 0.0);
         assert!(force_at_1_bar(1e-6) > 1e8 && force_at_1_bar(40.0) < -100.0);
-        // Proportional to pressure and to l0^2.
+        // The force is proportional to the pressure and to l0^2.
         let longer = LawGeometry { length: 0.22, ..MUSCLE };
         let force: f64 = LAW.force(LawPoint::mean(3e5, 0.1), &longer, &[]);
         assert!((force / force_at_1_bar(10.0) - 12.0).abs() < 1e-12);
@@ -188,7 +190,7 @@ mod tests {
         assert!(ml(35.0) > ml(37.0) && ml(37.0) > ml(38.8) && ml(38.9) < ml(40.0));
     }
 
-    /// Why the volume is no force law: S1 erratum, -p dV/dl at 1 bar.
+    /// The volume gives no force law: S1 erratum, -p dV/dl at 1 bar.
     #[test]
     fn no_force_comes_of_the_volume() {
         let from_volume = |contraction: f64| {

@@ -1,10 +1,10 @@
-//! Where a force law is asked, and the few measures of the muscle that it may read.
+//! The point at which a force law is evaluated, and the few measures of the muscle that it may use.
 
 use bulge_muscles::{Muscle, Parameter, Quantity};
 use bulge_numerics::Real;
 use serde::Serialize;
 
-/// The state of a muscle, as a force law sees it.
+/// The state of a muscle for a force law.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LawPoint<D> {
     /// Gauge pressure p \[Pa\].
@@ -13,12 +13,13 @@ pub struct LawPoint<D> {
     pub contraction: D,
     /// +1 while the muscle shortens, -1 while it lengthens, 0 for the mean of both.
     ///
-    /// Values between blend the branches linearly. Only laws that are [`directional`](super::Law::directional) read it.
+    /// Values in between blend the branches linearly. Only [`directional`](super::Law::directional) laws use
+    /// it.
     pub direction: f64,
 }
 
 impl<D: Real> LawPoint<D> {
-    /// A point on the mean line.
+    /// A point on the mean of both branches.
     pub const fn mean(pressure: D, contraction: D) -> Self {
         Self { pressure, contraction, direction: 0.0 }
     }

@@ -1,4 +1,5 @@
-//! Empirical functions of Festo muscles: six parameters (S2 eq. 16, Tables 1 and 2; S4 eq. 1, Table 1), five (S2 eq. 17, Tables 3 to 6).
+//! Empirical functions of Festo muscles, with six parameters (S2 eq. 16, Tables 1 and 2; S4 eq. 1, Table 1)
+//! and with five (S2 eq. 17, Tables 3 to 6).
 
 use super::coefficient::{Coefficient, CoefficientTable};
 use super::definition::{Form, Law};
@@ -195,7 +196,7 @@ pub(super) const FIVE: Law = Law {
     form: Form::Sarosi5,
 };
 
-/// Coefficients of the shortening branch, then of the lengthening one.
+/// Coefficients of the shortening branch, followed by those of the lengthening branch.
 const fn both(shortening: [f64; 5], lengthening: [f64; 5]) -> [f64; 10] {
     let ([a, b, c, d, e], [f, g, h, i, j]) = (shortening, lengthening);
     [a, b, c, d, e, f, g, h, i, j]
@@ -215,7 +216,7 @@ pub(super) fn branch<D: Real, const N: usize>(at: LawPoint<D>, coefficients: [D;
     (p + a) * (b * kappa).exp() + c * p * kappa + d * p + e
 }
 
-/// S2 eq. 17 on both branches of the loop, blended by the direction s: `F = F_s (1 + s)/2 + F_l (1 - s)/2`.
+/// S2 eq. 17 for both branches of the loop, blended by the direction s: `F = F_s (1 + s)/2 + F_l (1 - s)/2`.
 pub(super) fn five<D: Real, const N: usize>(at: LawPoint<D>, coefficients: [D; N]) -> D {
     let shortening: [D; 5] = std::array::from_fn(|i| coefficients[i]);
     let lengthening: [D; 5] = std::array::from_fn(|i| coefficients[5 + i]);
@@ -227,7 +228,7 @@ pub(super) fn five<D: Real, const N: usize>(at: LawPoint<D>, coefficients: [D; N
 
 #[cfg(test)]
 mod tests {
-    //! The tables of S2 and S4 against the numbers and figures that the papers draw from them.
+    //! The tables of S2 and S4, compared with the numbers and figures that the papers derive from them.
 
     use super::super::{Law, LawGeometry};
     use super::*;
@@ -243,7 +244,7 @@ mod tests {
         force(&SIX, values, bar, percent, 0.0)
     }
 
-    /// Mean and root mean square of a function over contractions of 0 to 25 % where a muscle of S2 pulls.
+    /// Mean and root mean square of a function over contractions of 0 to 25 % at which a muscle of S2 pulls.
     fn mean_and_rms(
         pulls: &[f64; 6],
         pressures: std::ops::RangeInclusive<u8>,
@@ -258,7 +259,7 @@ mod tests {
         (mean(|x| x), mean(|x| x * x).sqrt())
     }
 
-    /// S4's examples of sizing: 500 N is its 50 kg.
+    /// S4's sizing examples, in which 500 N is the force of 50 kg.
     #[test]
     fn worked_examples_of_s4() {
         for (bar, percent, newtons) in [
@@ -276,7 +277,7 @@ mod tests {
         }
     }
 
-    /// The same muscle type in two papers, 0 to 25 % and forces above 0.
+    /// The same muscle type in two papers, for 0 to 25 % and positive forces.
     #[test]
     fn two_specimens_of_one_type() {
         for (bar, rms) in (1..=6).zip([8.23, 4.07, 1.41, 3.17, 6.48, 9.94]) {
@@ -299,7 +300,8 @@ mod tests {
         assert!((six(&TABLE_1, 5.0, 0.2) - 1435.5).abs() < 0.05);
     }
 
-    /// Which table is which branch: a muscle that is pulled out resists with more force than one that shortens.
+    /// Assignment of tables to branches: a muscle that is pulled out resists with more force than one that
+    /// shortens.
     #[test]
     fn lengthening_takes_more_force() {
         for (lengthening, shortening, widths) in
@@ -334,7 +336,7 @@ mod tests {
         assert!((force(&BRANCH, &TABLE_5, 3.0, 10.0, 0.0) - 293.53).abs() < 0.01);
     }
 
-    /// Half the loop as h0 + h1 p + h2 e^(-kappa/3), over 0 to 25 % where the muscle pulls, 1 to 5 bar.
+    /// Half the loop as h0 + h1 p + h2 e^(-kappa/3), over 0 to 25 % where the muscle pulls, at 1 to 5 bar.
     #[test]
     fn half_width_of_the_loop() {
         struct Loop {
@@ -380,7 +382,8 @@ mod tests {
                 let found = mean_and_rms(&pulls, 1..=5, missed).1;
                 assert!((found - rms).abs() < 0.02, "{name}: {found}");
                 if is_rounded {
-                    // Right at both ends, and off by a quarter of itself where the take-up decays.
+                    // The fit is right at both ends, and off by a quarter of its value where the take-up
+                    // decays.
                     assert!(
                         [0.0, 16.0, 20.0, 25.0].into_iter().all(|percent| missed(3.0, percent).abs() < 0.5)
                     );
@@ -390,7 +393,7 @@ mod tests {
         }
     }
 
-    /// Tables 1 and 2 are not the middle of the loop: over 0 to 25 % where the muscle pulls, 1 to 5 bar.
+    /// Tables 1 and 2 aren't the middle of the loop, over 0 to 25 % where the muscle pulls, at 1 to 5 bar.
     #[test]
     fn the_static_model_is_the_lengthening_branch() {
         for (name, table, rms, bias) in

@@ -1,4 +1,5 @@
-//! All effects of load and rig along random paths: derivatives, what they do when off, and that a sweep starts anew.
+//! Tests of all load and rig effects along random paths: derivatives, no change when off, and a fresh start
+//! of every sweep.
 
 #![expect(clippy::float_cmp, reason = "off means the same number, to the bit")]
 
@@ -13,10 +14,10 @@ const PRESSURE_LANE: usize = 6;
 const CONTRACTION_LANE: usize = 7;
 const ROWS: usize = 50;
 
-/// What an effect may change in a row: the seven numbers of the input, the load, the reading.
+/// The outputs of an effect in a row: the seven numbers of the input, the load, the reading.
 type Row = [Jet; 9];
 
-/// Two sweeps that go up and down, with rests, between 0.5 and 30 %.
+/// Two sweeps up and down, with rests, between 0.5 and 30 %.
 fn walk(random: &mut Random) -> Vec<Moment> {
     let (mut moments, mut contraction, mut s) = (Vec::new(), 0.1, 1.0);
     let (mut time, mut cycle, mut largest) = (0.0, 0.0, 0.0_f64);
@@ -53,7 +54,8 @@ fn walk(random: &mut Random) -> Vec<Moment> {
     moments
 }
 
-/// What the effect, or none, makes of every row; the equilibria are made up, and negative at large contractions.
+/// Every row with the effect, or without any. The equilibria are made up, and their force is negative at
+/// large contractions.
 fn run(
     effect: Option<&dyn Effect>,
     setting: &Setting,
@@ -85,7 +87,7 @@ fn run(
             turn: Jet::from(moment.step) + pressure * (moment.pressure_step * 1e-13),
         };
         let (mut added, mut reading) = (Jet::from(0.0), force);
-        // Of a joint without load a difference tells no derivative.
+        // Without a load the give is 0 and shows no derivative, so a load is applied.
         let load = Jet::from(700.0);
         let row = effect::Row { moment, setting, theta, memory: &mut memory };
         match action {
@@ -151,7 +153,7 @@ fn check_derivatives(effect: &dyn Effect, setting: &Setting, moments: &[Moment],
     let rows = run(Some(effect), setting, moments, &seeded, offsets);
     let own =
         cards.iter().zip(theta).map(|(card, value)| 1e-5 * value.abs().max(1e-2 * (card.high - card.low)));
-    // A parameter that is fitted over its logarithm is never near 0.
+    // A parameter whose logarithm is fitted is never near 0.
     let own =
         own.zip(&cards).zip(theta).map(|((h, card), value)| if card.logarithmic { 1e-5 * value } else { h });
     let lanes = own.enumerate().chain([(PRESSURE_LANE, 1.0), (CONTRACTION_LANE, 1e-6)]);

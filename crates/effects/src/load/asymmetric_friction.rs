@@ -1,4 +1,4 @@
-//! Asymmetric friction: another constant friction in each direction (catalogue F12).
+//! Asymmetric friction: constant friction that differs between the directions (catalogue F12).
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
 use crate::effect::{Action, Balance, Effect, Jet, LoadEffect, Row};

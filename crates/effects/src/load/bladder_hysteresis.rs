@@ -1,4 +1,5 @@
-//! Bladder hysteresis: the rubber of the bladder loses work when the gas fills it out and when the muscle stretches it.
+//! Bladder hysteresis: the rubber of the bladder dissipates work when the gas fills it out and when the
+//! muscle stretches it.
 
 use crate::card::{BRAIDED, Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
 use crate::effect::{Action, Balance, Effect, Jet, LoadEffect, Row};
@@ -7,7 +8,8 @@ use crate::load::filled_bladder::filled;
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::{NEWTON, PERCENT};
 
-/// `z -> s + (z - s) exp(-|db|/delta)`, `dF = -w b z`, b the force of the filled bladder over its largest ([`filled`]).
+/// `z -> s + (z - s) exp(-|db|/delta)`, `dF = -w b z`, where b is the force of the filled bladder relative to
+/// its largest value ([`filled`]).
 #[derive(Debug)]
 pub(crate) struct BladderHysteresis;
 
@@ -93,7 +95,8 @@ mod tests {
 
     #[test]
     fn the_loop_is_there_in_filling_from_zero_and_gone_above() {
-        // At 10 % from 0 to 6 bar and back: b grows to B, z to 1 - exp(-B/delta); venting to 2 bar hardly moves b.
+        // At 10 %, from 0 to 6 bar and back: b grows to B and z to 1 - exp(-B/delta). Venting to 2 bar hardly
+        // changes b.
         let bars = [0.0, 1.0, 2.0, 4.0, 6.0, 4.0, 2.0, 1.0, 0.0];
         let rows: Vec<[f64; 2]> = bars.iter().map(|bar| [1e5 * bar, 0.1]).collect();
         let out = driven(&BladderHysteresis, &[10.0, 0.1], &rows);

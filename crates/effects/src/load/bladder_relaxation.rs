@@ -1,4 +1,4 @@
-//! Bladder relaxation: rubber that was stretched by filling or shortening yields within a time.
+//! Bladder relaxation: rubber that was stretched by filling or shortening relaxes with a time constant.
 
 use crate::card::{BRAIDED, Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
 use crate::effect::{Action, Balance, Effect, Jet, LoadEffect, Row};
@@ -7,7 +7,8 @@ use crate::load::relaxed::relaxed;
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::{NEWTON, SECOND};
 
-/// `dQ/dt = g db/dt - Q/tau`, `dF = -Q`, b the force of the filled bladder over its largest ([`filled`]).
+/// `dQ/dt = g db/dt - Q/tau`, `dF = -Q`, where b is the force of the filled bladder relative to its largest
+/// value ([`filled`]).
 #[derive(Debug)]
 pub(crate) struct BladderRelaxation;
 
@@ -80,7 +81,8 @@ mod tests {
 
     #[test]
     fn a_quick_filling_is_forgotten_in_a_hold() {
-        // From 0 to 2 bar in 1 s with tau = 2 s: g b 2 (1 - exp(-1/2)); then exp(-1/2) per second.
+        // From 0 to 2 bar in 1 s with tau = 2 s: g b 2 (1 - exp(-1/2)), followed by a factor of exp(-1/2) per
+        // second.
         let rows = [[0.0, 0.1], [2e5, 0.1], [2e5, 0.1], [2e5, 0.1]];
         let out = driven(&BladderRelaxation, &[15.0, 2.0], &rows);
         let first =

@@ -1,4 +1,5 @@
-//! Bouc-Wen: a smooth transition after each reversal, in closed form for n = 2, beta = gamma (Bouc 1967, Wen 1976; catalogue F8).
+//! Bouc-Wen: a smooth transition after each reversal, in closed form for n = 2 and beta = gamma (Bouc 1967,
+//! Wen 1976; catalogue F8).
 
 use bulge_numerics::Real;
 
@@ -9,10 +10,11 @@ use crate::unit::{NEWTON, PERCENT};
 
 /// `dz/d eps = (1 - z^2 (1 + sign(z d eps))/2)/delta`, `dF = -w z`.
 ///
-/// Of the family dz = A d eps - beta |d eps| |z|^(n-1) z - gamma d eps |z|^n this is n = 2, beta = gamma = A/2, A = 1/delta: the common choice,
-/// unloading in a straight line. n isn't a number of the fit: data with ordinary noise don't tell it. With u = z s, s the direction, u grows
-/// at the rate 1 while negative and at 1 - u^2 while positive, so a step of x = |d eps|/delta has the exact solution used here, and the force
-/// doesn't depend on how finely the rows are spaced:
+/// In the family dz = A d eps - beta |d eps| |z|^(n-1) z - gamma d eps |z|^n this is n = 2 and beta = gamma =
+/// A/2, with A = 1/delta. It is the common choice, with unloading in a straight line. n isn't fitted, because
+/// data with ordinary noise don't determine it. Let u = z s with the direction s. While u is negative it
+/// grows at the rate 1, and while it is positive at the rate 1 - u^2. A step of x = |d eps|/delta then has
+/// the exact solution used here, and the force doesn't depend on the spacing of the rows:
 ///
 /// ```text
 /// u < 0:   u + x  up to 0, the rest of x from there
@@ -81,7 +83,7 @@ impl LoadEffect for BoucWen {
     }
 }
 
-/// The state u after a way x >= 0 in the direction in which u grows.
+/// The state u after a distance x >= 0 in the direction in which u grows.
 fn moved(u: Jet, x: Jet) -> Jet {
     let straight = u + x;
     if straight.value() <= 0.0 {
@@ -101,7 +103,8 @@ mod tests {
 
     #[test]
     fn loading_bends_over_and_unloading_is_straight() {
-        // tanh 1 = 0.761594 after one distance; far away 1; back by half a distance from +1: 1 - 0.5; by two distances: 0 at one, then -tanh 1.
+        // tanh 1 = 0.761594 after one distance, and 1 far away. Back from +1 by half a distance: 1 - 0.5.
+        // Back by two distances: 0 after one, then -tanh 1.
         let out = path(&BoucWen, &[10.0, 0.01], &[0.0, 0.01, 0.5, 0.495, 0.48]);
         for (found, expected) in out.iter().zip([0.0, -7.615_941_56, -10.0, -5.0, 7.615_941_56]) {
             assert!((found - expected).abs() < 1e-7, "{found} {expected}");

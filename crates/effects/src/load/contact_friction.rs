@@ -1,4 +1,5 @@
-//! Contact friction: friction on the area between braid and bladder (Tondu and Lopez 2000; catalogue F4).
+//! Contact friction: friction on the contact area between braid and bladder (Tondu and Lopez 2000; catalogue
+//! F4).
 
 use bulge_numerics::Real;
 use std::f64::consts::PI;
@@ -8,12 +9,13 @@ use crate::effect::{Action, Balance, Effect, Jet, LoadEffect, Row};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::NUMBER;
 
-/// Least sin^2 of the braid angle: a braid drawn straight has no radius left to rub on.
+/// Lower limit of sin^2 of the braid angle. A braid drawn straight has no radius left.
 const LEAST_SINE_SQUARED: f64 = 1e-3;
 
 /// `dF = -s f S p`, `S = 2 pi r0 l0 sin a0/((1 - eps) sqrt(1 - cos^2 a0 (1 - eps)^2))`.
 ///
-/// The factor that lets f fall with speed (from sticking to sliding) is left out: at the speeds of force maps it is constant.
+/// The factor by which f decreases with speed (from sticking to sliding) is left out. At the speeds of force
+/// maps it is constant.
 #[derive(Debug)]
 pub(crate) struct ContactFriction;
 
@@ -81,7 +83,8 @@ mod tests {
 
     #[test]
     fn the_area_of_a_braid() {
-        // S(0) = 2 pi r0 l0 = 157.080 cm^2; S(10 %) = 66.3847 cm^2/(0.9 * 0.578508) = 127.502 cm^2; f = 0.001, 2 bar.
+        // S(0) = 2 pi r0 l0 = 157.080 cm^2 and S(10 %) = 66.3847 cm^2/(0.9 * 0.578508) = 127.502 cm^2, with
+        // f = 0.001 at 2 bar.
         let up = load(&ContactFriction, &[1e-3], |moment| moment.direction = 1.0);
         assert!((up + 2.550_04).abs() < 1e-4, "{up}");
     }

@@ -4,7 +4,7 @@ use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature
 use crate::effect::{Action, Balance, Effect, Jet, LoadEffect, Row};
 use crate::mechanism::{Form, Mechanism};
 
-/// `dF = -A log10(1 + t/1 s)`, t since the sweep began.
+/// `dF = -A log10(1 + t/1 s)`, where t is the time since the sweep began.
 #[derive(Debug)]
 pub(crate) struct Creep;
 

@@ -1,4 +1,5 @@
-//! Crossing friction: crossing strands turn against each other under the gas pressure (catalogue F3; virtual work derived).
+//! Crossing friction: crossing strands rotate against each other under the gas pressure (catalogue F3;
+//! virtual work derived).
 
 use std::f64::consts::PI;
 
@@ -9,9 +10,10 @@ use crate::unit::MILLIMETRE;
 
 /// `dF = -s 4 pi (mu rho_e) (r0/sin a0) cos a0 p (1 - eps)`.
 ///
-/// The angle between the families changes by 2 dtheta with dtheta/deps = cos(a0)/sin(theta). A contact of force N_c resists with the moment
-/// mu rho_e N_c; all contacts together carry p 2 pi r l, with r = r0 sin(theta)/sin(a0) and l = l0 (1 - eps). Dividing the work by l0 deps
-/// cancels theta. If the inner family bears half of the pressure itself, the contacts carry half, and mu rho_e is twice as large.
+/// The angle between the two families changes by 2 dtheta, with dtheta/deps = cos(a0)/sin(theta). A contact
+/// of force N_c resists with the moment mu rho_e N_c. All contacts together carry p 2 pi r l, with r = r0
+/// sin(theta)/sin(a0) and l = l0 (1 - eps). Dividing the work by l0 deps cancels theta. If the inner family
+/// bears half of the pressure itself, the contacts carry only half, and mu rho_e is twice as large.
 #[derive(Debug)]
 pub(crate) struct CrossingFriction;
 
@@ -70,7 +72,8 @@ mod tests {
 
     #[test]
     fn a_braid_of_20_mm_loses_two_newtons_per_bar() {
-        // 4 pi 0.075 mm 10 mm cot(25 deg) = 2.02115 N/bar at eps = 0 (catalogue: 2.0); 2 bar, 10 %: 3.63807 N.
+        // 4 pi 0.075 mm 10 mm cot(25 deg) = 2.02115 N/bar at eps = 0 (catalogue: 2.0). At 2 bar and 10 % this
+        // is 3.63807 N.
         let up = load(&CrossingFriction, &[7.5e-5], |moment| moment.direction = 1.0);
         let down = load(&CrossingFriction, &[7.5e-5], |moment| moment.direction = -1.0);
         assert!((up + 3.638_07).abs() < 1e-5 && (down + up).abs() < 1e-15, "{up}");

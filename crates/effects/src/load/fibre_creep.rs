@@ -1,14 +1,16 @@
-//! Fibre creep: fibres under tension get longer with the logarithm of time (catalogue R6).
+//! Fibre creep: fibres under tension elongate with the logarithm of time (catalogue R6).
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
 use crate::effect::{Action, Effect, Input, InputEffect, Row};
 use crate::mechanism::{Form, Mechanism};
 
-/// `e_f = c T log10(1 + t/1 s)`, T the tension of all fibres together; the contraction seen from the longer fibre grows by `e_f (1 - eps)`.
+/// `e_f = c T log10(1 + t/1 s)`, where T is the total tension of all fibres. Relative to the longer fibre the
+/// contraction grows by `e_f (1 - eps)`.
 ///
-/// A muscle of longer fibres, l0 (1 + e_f), held at the same length has the contraction 1 - l/(l0 (1 + e_f)) = (eps + e_f)/(1 + e_f), to first
-/// order eps + e_f (1 - eps); the muscle being larger by e_f in all directions is left out (its force changes by the part 2 e_f, under 0.2 %).
-/// In a pleated muscle T is the meridional force N. In a braid T = N/cos(theta), and (1 - eps) T = N/cos(a0).
+/// A muscle with longer fibres, l0 (1 + e_f), held at the same length has the contraction 1 - l/(l0 (1 +
+/// e_f)) = (eps + e_f)/(1 + e_f), to first order eps + e_f (1 - eps). The muscle is also larger by e_f in all
+/// directions. This is neglected; it changes the force by a fraction of 2 e_f, which is below 0.2 %. In a
+/// pleated muscle T is the meridional force N. In a braid T = N/cos(theta), and (1 - eps) T = N/cos(a0).
 #[derive(Debug)]
 pub(crate) struct FibreCreep;
 
@@ -77,7 +79,7 @@ mod tests {
 
     #[test]
     fn a_braid_gives_by_its_fibre_tension() {
-        // 0.006 %/(kN decade) over two decades, over cos(25 deg) = 0.906308.
+        // 0.006 %/(kN decade) over two decades, divided by cos(25 deg) = 0.906308.
         let found = input(&FibreCreep, &[6e-8], |moment| moment.time = 99.0).give_tension.linear.value();
         assert!((found / (1.2e-7 / 0.906_307_787) - 1.0).abs() < 1e-9);
     }
@@ -96,7 +98,7 @@ mod tests {
 
     #[test]
     fn it_is_the_contraction_of_a_longer_fibre() {
-        // 800 N and a strain of 1e-6: (eps + e)/(1 + e) up to e^2.
+        // 800 N and a strain of 1e-6: (eps + e)/(1 + e), up to e^2.
         let (e, eps) = (1e-6, 0.1);
         let setting = Setting { kind: Kind::Pleated, ..SETTING };
         let mut input = Input::of(Jet::from(2e5), Jet::from(eps));

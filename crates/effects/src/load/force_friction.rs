@@ -1,4 +1,4 @@
-//! Force friction: losses in proportion to the force, as of a rope over a pulley (catalogue F5).
+//! Force friction: losses in proportion to the force, like those of a rope over a pulley (catalogue F5).
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
 use crate::effect::{Action, Balance, Effect, Jet, LoadEffect, Row};

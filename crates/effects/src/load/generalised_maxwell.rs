@@ -1,4 +1,5 @@
-//! Generalised Maxwell solid: rubber with two relaxation times (Wiechert 1893; the relaxing part of Burgers' solid).
+//! Generalised Maxwell solid: rubber with two relaxation times (Wiechert 1893; the relaxing part of Burgers'
+//! solid).
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
 use crate::effect::{Action, Balance, Effect, Jet, LoadEffect, Row};
@@ -6,10 +7,10 @@ use crate::load::relaxed::relaxed;
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::{NEWTON, NUMBER, PERCENT, SECOND};
 
-/// `q_i' = k_i eps' - q_i/tau_i`, `dF = -q_1 - q_2`, k_1 = (1 - w) k, k_2 = w k, tau_2 = m tau_1.
+/// `q_i' = k_i eps' - q_i/tau_i`, `dF = -q_1 - q_2`, with k_1 = (1 - w) k, k_2 = w k and tau_2 = m tau_1.
 ///
-/// Exact between two rows if the contraction runs straight ([`relaxed`]). The slow time is a multiple of the quick one, so that the two can't
-/// change places.
+/// This is exact between two rows if the contraction is linear in time ([`relaxed`]). The slow time is a
+/// multiple of the fast one, so that the two can't be exchanged.
 #[derive(Debug)]
 pub(crate) struct GeneralisedMaxwell;
 
@@ -78,7 +79,7 @@ impl Effect for GeneralisedMaxwell {
 impl LoadEffect for GeneralisedMaxwell {
     fn act(&self, Row { moment, theta, memory, .. }: Row<'_>, balance: &Balance, force: &mut Jet) {
         let [stiffness, share, time, ratio] = [theta[0], theta[1], theta[2], theta[3]];
-        // Without the factor k, so that the derivative by k is there where k is 0.
+        // The memory omits the factor k, so that the derivative by k exists at k = 0.
         memory[0] = relaxed(memory[0], balance.turn, moment.since, time);
         memory[1] = relaxed(memory[1], balance.turn, moment.since, time * ratio);
         *force = *force - stiffness * (memory[0] * (-share + 1.0) + memory[1] * share);
@@ -96,7 +97,7 @@ mod tests {
 
     #[test]
     fn a_ramp_and_the_hold_after_it() {
-        // 1 %/s for 3 s, then at rest: k_i tau_i v (1 - exp(-t/tau_i)), fading with each time of its own.
+        // 1 %/s for 3 s, then rest: k_i tau_i v (1 - exp(-t/tau_i)), which decays with each time constant.
         let rows: Vec<f64> = (0..60).map(|i| 0.01 * f64::from(i.min(3))).collect();
         for (t, found) in path(&GeneralisedMaxwell, &NUMBERS, &rows).into_iter().enumerate() {
             let t = t as f64;

@@ -1,4 +1,5 @@
-//! Low-load slack: a muscle that is pushed goes slack or buckles, and the load cell reads about zero (catalogue E13).
+//! Low-load slack: a muscle under compression goes slack or buckles, and the load cell reads about zero
+//! (catalogue E13).
 
 use bulge_numerics::Real;
 
@@ -9,8 +10,8 @@ use crate::unit::{NEWTON, PERCENT};
 
 /// `reading = F + a F_c ln(1 + exp(-F/F_c))`.
 ///
-/// Both forms of the catalogue in one: for a pulling muscle the excess is a F_c exp(-F/F_c); a pushing one reads (1 - a) F, and with a = 1 the
-/// reading is a rounded max(F, 0).
+/// This combines both forms of the catalogue. For a pulling muscle the excess is a F_c exp(-F/F_c). A pushing
+/// one reads (1 - a) F, and with a = 1 the reading is a rounded max(F, 0).
 #[derive(Debug)]
 pub(crate) struct LowLoadSlack;
 

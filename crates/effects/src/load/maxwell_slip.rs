@@ -1,4 +1,4 @@
-//! Maxwell slip: springs in parallel, each of which slips at its own limit (Vo-Minh et al. 2011; catalogue F7).
+//! Maxwell slip: parallel springs, each of which slips at its own limit (Vo-Minh et al. 2011; catalogue F7).
 
 use bulge_numerics::Real;
 
@@ -7,13 +7,14 @@ use crate::effect::{Action, Balance, Effect, Jet, LoadEffect, Row};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::{NEWTON, PERCENT};
 
-/// Where each of the four elements begins to slip, over the distance of the last.
+/// The distances at which the four elements begin to slip, relative to the last one.
 const SLIPS_AT: [f64; 4] = [0.1, 0.25, 0.5, 1.0];
 
-/// `z_i -> clamp(z_i + d eps/delta_i, -1, 1)`, `dF = -(w/4) (z_1 + z_2 + z_3 + z_4)`, delta_i = delta (0.1, 0.25, 0.5, 1).
+/// `z_i -> clamp(z_i + d eps/delta_i, -1, 1)`, `dF = -(w/4) (z_1 + z_2 + z_3 + z_4)`, with delta_i = delta
+/// (0.1, 0.25, 0.5, 1).
 ///
-/// The clamp is the stop operator of Prandtl and Ishlinskii: exact for a step between two rows, however long, because the contraction moves
-/// one way between them.
+/// The clamp is the stop operator of Prandtl and Ishlinskii. It is exact for a step of any length between two
+/// rows, because the contraction moves in one direction between them.
 #[derive(Debug)]
 pub(crate) struct MaxwellSlip;
 
@@ -93,8 +94,8 @@ mod tests {
 
     #[test]
     fn elements_slip_one_after_the_other() {
-        // Reach 2 %: the elements slip at 0.2, 0.5, 1 and 2 %. At 0.5 %: (1 + 1 + 0.5 + 0.25)/4 of the force. Back by 0.4 % from full slip:
-        // (-1 + 0.2 + 0.6 + 0.8)/4.
+        // With a reach of 2 % the elements slip at 0.2, 0.5, 1 and 2 %. At 0.5 % the force is (1 + 1 + 0.5 +
+        // 0.25)/4 of the full one. Back by 0.4 % from full slip it is (-1 + 0.2 + 0.6 + 0.8)/4.
         let out = path(&MaxwellSlip, &[10.0, 0.02], &[0.0, 0.005, 0.05, 0.046]);
         for (found, expected) in out.iter().zip([0.0, -6.875, -10.0, -1.5]) {
             assert!((found - expected).abs() < 1e-12, "{found} {expected}");

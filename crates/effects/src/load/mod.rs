@@ -35,7 +35,7 @@ mod viscous_damping;
 use crate::effect::Effect;
 use std::sync::Arc;
 
-/// All of them.
+/// All load effects.
 pub(crate) fn all() -> Vec<Arc<dyn Effect>> {
     vec![
         Arc::new(coulomb_friction::CoulombFriction),

@@ -1,4 +1,5 @@
-//! Presliding hysteresis: friction that builds up over a distance after each reversal (Dahl 1968; catalogue F11).
+//! Presliding hysteresis: friction that builds up over a distance after each reversal (Dahl 1968; catalogue
+//! F11).
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
 use crate::effect::{Action, Balance, Effect, Jet, LoadEffect, Row};
@@ -6,7 +7,7 @@ use crate::load::dragged::dragged;
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::{NEWTON, PERCENT};
 
-/// Dahl's law of exponent 1, exact between two rows: `z -> s + (z - s) exp(-|d eps|/delta)`, `dF = -w z`.
+/// Dahl's law with exponent 1, exact between two rows: `z -> s + (z - s) exp(-|d eps|/delta)`, `dF = -w z`.
 #[derive(Debug)]
 pub(crate) struct PreslidingHysteresis;
 
@@ -73,7 +74,8 @@ mod tests {
 
     #[test]
     fn it_builds_up_over_the_distance() {
-        // One distance after the start 1 - 1/e of the force; far away all of it; the same way back from +1: s + (1 - s) exp(-2) = 2/e^2 - 1.
+        // One distance after the start the force is 1 - 1/e of the full one, and far away it is the full one.
+        // Back by two distances from +1: s + (1 - s) exp(-2) = 2/e^2 - 1.
         let out = path(&PreslidingHysteresis, &[10.0, 0.01], &[0.0, 0.01, 0.5, 0.48]);
         let expected = [0.0, -10.0 * (1.0 - (-1.0_f64).exp()), -10.0, 10.0 - 20.0 * (-2.0_f64).exp()];
         for (found, expected) in out.iter().zip(expected) {

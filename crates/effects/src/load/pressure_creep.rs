@@ -1,10 +1,10 @@
-//! Pressure creep: creep in proportion to the pressure (catalogue R5 with A in proportion to p).
+//! Pressure creep: creep in proportion to the pressure (catalogue R5 with A proportional to p).
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
 use crate::effect::{Action, Balance, Effect, Jet, LoadEffect, Row};
 use crate::mechanism::{Form, Mechanism};
 
-/// `dF = -a p log10(1 + t/1 s)`, t since the sweep began.
+/// `dF = -a p log10(1 + t/1 s)`, where t is the time since the sweep began.
 #[derive(Debug)]
 pub(crate) struct PressureCreep;
 

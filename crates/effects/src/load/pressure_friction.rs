@@ -1,4 +1,5 @@
-//! Pressure friction: strands pressed together by the gas rub on each other (S2, tables 3 to 6; catalogue F2).
+//! Pressure friction: strands that the gas presses together rub on each other (S2, tables 3 to 6; catalogue
+//! F2).
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
 use crate::effect::{Action, Balance, Effect, Jet, LoadEffect, Row};

@@ -1,4 +1,5 @@
-//! Pressure presliding: strands stick and give before they slide, and the gas presses them on (Tondu and Lopez 2000 for the limit, Dahl 1968 for the way there).
+//! Pressure presliding: strands stick and give before they slide, pressed together by the gas (the limit is
+//! from Tondu and Lopez 2000, the transition from Dahl 1968).
 
 use bulge_numerics::Real;
 
@@ -8,10 +9,11 @@ use crate::load::dragged::dragged;
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::{NEWTON_PER_BAR, PERCENT};
 
-/// `h -> clamp(s w + (h - s w) exp(-|dx|/delta), -w, w)`, `w = mu p`, `dF = -h`, x the turn of the strands.
+/// `h -> clamp(s w + (h - s w) exp(-|dx|/delta), -w, w)`, `w = mu p`, `dF = -h`, where x is the turn of the
+/// strands.
 ///
-/// What is remembered is the traction h itself and not its part of the limit: contacts that stick keep their traction while the pressure rises,
-/// and lose what the limit no longer bears while it falls.
+/// The memory holds the traction h itself, not its ratio to the limit. Contacts that stick keep their
+/// traction while the pressure rises. While it falls they lose the traction that exceeds the limit.
 #[derive(Debug)]
 pub(crate) struct PressurePresliding;
 
@@ -60,7 +62,8 @@ impl Effect for PressurePresliding {
             )
             .prior(0.0, 3.0)
             .plausible(0.0, 30.0),
-            // At held length a clamped braid's strands turn by some 0.06 %/bar: 0.2 bar of presliding is 0.012 %.
+            // At held length the strands of a clamped braid turn by some 0.06 %/bar, so that 0.2 bar of
+            // presliding is 0.012 %.
             ParameterCard::new("distance", PERCENT, (0.01, 10.0), 0.3, "contraction over which it builds up")
                 .plausible(0.01, 3.0)
                 .off_at(0.3)
@@ -79,7 +82,8 @@ impl Effect for PressurePresliding {
 
 impl LoadEffect for PressurePresliding {
     fn act(&self, Row { theta, memory, .. }: Row<'_>, balance: &Balance, force: &mut Jet) {
-        // Traction and limit per coefficient \[Pa\], so that the derivative by the coefficient is there where that is 0.
+        // Traction and limit are stored per coefficient \[Pa\], so that the derivative by the coefficient
+        // exists where it is 0.
         let limit = balance.pressure;
         memory[0] = dragged(memory[0], balance.turn, theta[1], limit);
         if memory[0].value().abs() > limit.value() {
@@ -97,7 +101,8 @@ mod tests {
 
     #[test]
     fn it_builds_up_to_a_limit_in_proportion_to_the_pressure() {
-        // 1.5 N/bar at 2 bar over one distance: 3 N (1 - 1/e); far away 3 N; back by two distances: 3 - 6 exp(-2)... with the other sign.
+        // 1.5 N/bar at 2 bar over one distance gives 3 N (1 - 1/e), and far away 3 N. Back by two distances:
+        // 3 - 6 exp(-2)... with the other sign.
         let out = path(&PressurePresliding, &[1.5e-5, 0.01], &[0.0, 0.01, 0.5, 0.48]);
         let expected = [0.0, -3.0 * (1.0 - (-1.0_f64).exp()), -3.0, 3.0 - 6.0 * (-2.0_f64).exp()];
         for (found, expected) in out.iter().zip(expected) {
@@ -107,7 +112,8 @@ mod tests {
 
     #[test]
     fn stuck_contacts_keep_their_traction_up_to_the_limit() {
-        // Slid at 6 bar, vented to 1 bar without a turn and filled again: the traction follows the limit down and does not come back.
+        // The strands slide at 6 bar, are vented to 1 bar without a turn and filled again. The traction
+        // follows the limit down and doesn't come back.
         let mut memory = [Jet::from(0.0)];
         let mut run = |bar: f64, turn: f64| {
             let balance = Balance { pressure: Jet::from(bar * 1e5), turn: Jet::from(turn), ..balance(0.1) };

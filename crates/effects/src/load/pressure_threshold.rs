@@ -1,4 +1,4 @@
-//! Pressure threshold: part of the pressure is spent before the muscle does anything (catalogue E10 and E11).
+//! Pressure threshold: a part of the pressure is spent before the muscle responds (catalogue E10 and E11).
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
 use crate::effect::{Action, Effect, Input, InputEffect, Row};
@@ -6,7 +6,7 @@ use crate::mechanism::{Form, Mechanism};
 use crate::rig::lowered_pressure::lowered;
 use crate::unit::KILOPASCAL;
 
-/// `p -> p - p_th`, and almost nothing below the threshold.
+/// `p -> p - p_th`, and almost no pressure below the threshold.
 #[derive(Debug)]
 pub(crate) struct PressureThreshold;
 

@@ -1,18 +1,18 @@
-//! What a first-order memory holds at the end of a step: rubber that relaxes, a filter that follows.
+//! The value of a first-order memory at the end of a step, such as relaxing rubber or a filter.
 
 use bulge_numerics::Real;
 
 use crate::effect::Jet;
 
-/// Steps of more than this many time constants leave nothing of what was held: exp(-750) is 0.
+/// After more than this many time constants nothing of the held value remains: exp(-750) is 0.
 const FORGOTTEN: f64 = 750.0;
 
-/// `q' = x' - q/tau` over a step of `since` in which x changes by `change` along a straight line.
+/// `q' = x' - q/tau` over a step of duration `since`, in which x changes linearly by `change`.
 ///
 /// ```text
 /// q -> q exp(-h) + change (1 - exp(-h))/h,   h = since/tau
 /// ```
-/// Exact. At tau = 0 nothing is held, and the derivative by tau is that of the limit, `change/since`.
+/// This is exact. At tau = 0 nothing is held, and the derivative by tau is that of the limit, `change/since`.
 pub(crate) fn relaxed(held: Jet, change: Jet, since: f64, tau: Jet) -> Jet {
     if since >= FORGOTTEN * tau.value() {
         return if since > 0.0 { change * (tau / since) } else { Jet::from(0.0) };
@@ -21,12 +21,12 @@ pub(crate) fn relaxed(held: Jet, change: Jet, since: f64, tau: Jet) -> Jet {
     held * (-over).exp() + mean_decay(over) * change
 }
 
-/// The mean of exp(-x) over 0 ..= h: (1 - exp(-h))/h, 1 at h = 0.
+/// The mean of exp(-x) over 0 ..= h: (1 - exp(-h))/h, or 1 at h = 0.
 fn mean_decay(over: Jet) -> Jet {
     let h = over.value();
     let decay = (-h).exp();
     if h < 0.01 {
-        // The series: the quotients lose digits here. The first term left out is below 1e-15.
+        // The series is used where the quotients lose digits. The first omitted term is below 1e-15.
         let mean = 1.0 - h / 2.0 * (1.0 - h / 3.0 * (1.0 - h / 4.0 * (1.0 - h / 5.0 * (1.0 - h / 6.0))));
         let slope = -0.5 + h / 3.0 * (1.0 - h * 3.0 / 8.0 * (1.0 - h * 4.0 / 15.0 * (1.0 - h * 5.0 / 24.0)));
         return over.chain(mean, slope);
@@ -52,7 +52,8 @@ mod tests {
             let derivative = 3.0 * (1.0 - fades) - 6.0 / tau * fades;
             assert!((found.gradient()[0] - derivative).abs() < 1e-10, "{tau}: {found:?}");
         }
-        // Without a time nothing is held; a little time holds its part of the slope.
+        // Without a time constant nothing is held. The derivative shows that a small one holds its part of
+        // the slope.
         assert_eq!((run(0.0).value(), run(0.0).gradient()[0]), (0.0, 3.0));
         let nothing = relaxed(Jet::from(1.0), Jet::from(1.0), 0.0, Jet::from(0.0));
         assert_eq!(nothing, Jet::from(0.0));

@@ -1,4 +1,4 @@
-//! Self-heating: the muscle warms up by its own work (S3, section 4; catalogue T2).
+//! Self-heating: the muscle is warmed by its own work (S3, section 4; catalogue T2).
 
 use bulge_numerics::Real;
 
@@ -7,9 +7,11 @@ use crate::effect::{Action, Effect, Input, InputEffect, Jet, Row};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::{PERCENT, SECOND};
 
-/// `modulus -> modulus (1 + a w)`, `F -> F (1 + b w)`, w = 1 - exp(-t/tau), t since the first row; without a bladder a is of the whole force too.
+/// `modulus -> modulus (1 + a w)`, `F -> F (1 + b w)`, with w = 1 - exp(-t/tau) and t the time since the
+/// first row. Without a bladder a also applies to the whole force.
 ///
-/// a = alpha_b dT, b = alpha dT of the effect `temperature`: rise and coefficient show in the force only as their product.
+/// a = alpha_b dT and b = alpha dT in terms of the effect `temperature`. The force determines only the
+/// product of temperature rise and coefficient.
 #[derive(Debug)]
 pub(crate) struct SelfHeating;
 
@@ -104,7 +106,7 @@ mod tests {
 
     #[test]
     fn a_column_that_goes_up_and_down_is_another_hypothesis() {
-        // The change of the bladder's modulus by the size of each, along an hour.
+        // The derivative of the modulus factor by the size of each effect, over an hour.
         let setting = Setting { has_bladder: true, ..SETTING };
         let column = |effect: &dyn InputEffect, theta: &[f64], size: usize, kelvin: &dyn Fn(f64) -> f64| {
             let theta: Vec<Jet> = theta.iter().map(|value| Jet::variable(*value, 0)).collect();
@@ -133,7 +135,7 @@ mod tests {
         };
         let room = likeness(&|clock| 5.0 * (std::f64::consts::TAU * 1.3 * clock / 3600.0).sin());
         assert!(room < 0.25, "{room}");
-        // A thermometer in the closed end sees what heats it: one of the two is enough.
+        // A thermometer in the closed end measures the heating itself, so one of the two effects is enough.
         let closed_end = likeness(&|clock| 10.0 * (1.0 - (-clock / 600.0).exp()));
         assert!((closed_end - 1.0).abs() < 1e-12, "{closed_end}");
     }
@@ -148,7 +150,7 @@ mod tests {
             .act(Row { moment: &moment, setting: &setting, theta: &theta, memory: &mut [] }, &mut input);
         assert!((input.wall.value() - 1.021_492_099).abs() < 1e-9);
         assert_eq!(input.area, Jet::from(1.0));
-        // Of the force it is both.
+        // A factor on the force changes both wall and area.
         let mut input = Input::of(Jet::from(2e5), Jet::from(0.1));
         let theta = [0.0, 600.0, 0.034].map(Jet::from);
         SelfHeating

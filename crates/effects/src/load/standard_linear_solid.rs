@@ -6,9 +6,9 @@ use crate::load::relaxed::relaxed;
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::{NEWTON, SECOND};
 
-/// `q' = k eps' - q/tau`, `dF = -q`, q = 0 when a sweep begins.
+/// `q' = k eps' - q/tau`, `dF = -q`, with q = 0 at the beginning of a sweep.
 ///
-/// Exact between two rows if the contraction runs straight ([`relaxed`]).
+/// This is exact between two rows if the contraction is linear in time ([`relaxed`]).
 #[derive(Debug)]
 pub(crate) struct StandardLinearSolid;
 
@@ -73,7 +73,7 @@ impl Effect for StandardLinearSolid {
 
 impl LoadEffect for StandardLinearSolid {
     fn act(&self, Row { moment, theta, memory, .. }: Row<'_>, balance: &Balance, force: &mut Jet) {
-        // Without the factor k, so that the derivative by k is there where k is 0.
+        // The memory omits the factor k, so that the derivative by k exists at k = 0.
         memory[0] = relaxed(memory[0], balance.turn, moment.since, theta[1]);
         *force = *force - theta[0] * memory[0];
     }
@@ -88,7 +88,8 @@ mod tests {
 
     #[test]
     fn it_builds_up_and_is_forgotten() {
-        // 1 % in 1 s with tau = 2 s: 150 N 0.01 2 (1 - exp(-1/2)); then at rest exp(-1/2) per second.
+        // 1 % in 1 s with tau = 2 s gives 150 N 0.01 2 (1 - exp(-1/2)), followed at rest by a factor of
+        // exp(-1/2) per second.
         let out = path(&StandardLinearSolid, &[150.0, 2.0], &[0.0, 0.01, 0.01, 0.01]);
         let first = 3.0 * (1.0 - (-0.5_f64).exp());
         for (found, expected) in
@@ -100,7 +101,7 @@ mod tests {
 
     #[test]
     fn quick_motion_meets_a_spring_and_slow_motion_a_dashpot() {
-        // tau = 1e6 s: k d; tau = 1 ms: k tau d/t.
+        // tau = 1e6 s gives k d, and tau = 1 ms gives k tau d/t.
         let out = path(&StandardLinearSolid, &[150.0, 1e6], &[0.0, 0.01, 0.02]);
         assert!((out[2] + 3.0).abs() < 1e-5);
         let out = path(&StandardLinearSolid, &[150.0, 1e-3], &[0.0, 0.01, 0.02]);

@@ -7,10 +7,12 @@ use crate::effect::{Action, Effect, Input, InputEffect, Jet, Row};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::{NUMBER, PERCENT};
 
-/// `factor = 1 + D exp(-N/N0)`, N the loops so far with the part of the one under way: on the modulus of the bladder, or on the whole force where there is none.
+/// `factor = 1 + D exp(-N/N0)`, where N is the number of loops so far, including the completed part of the
+/// current one. The factor acts on the modulus of the bladder, or on the whole force if there is no bladder.
 ///
-/// Filler breaks along the way, most of it on the first one, and nothing jumps from loop to loop. Within the first loop rubber is also stiffer where it is stretched
-/// further than ever before, and soft on the way back: that part looks like friction in one loop, and is left out.
+/// Filler breaks along the way, most of it on the first one, and nothing jumps from loop to loop. Within the
+/// first loop rubber is also stiffer while it is stretched further than ever before, and softer on the way
+/// back. This part looks like friction in one loop and is left out.
 #[derive(Debug)]
 pub(crate) struct StressSoftening;
 

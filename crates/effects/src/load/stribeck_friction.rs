@@ -1,4 +1,4 @@
-//! Stribeck friction: friction that is larger where the motion is slow (Stribeck 1902, Bo and Pavelescu 1982).
+//! Stribeck friction: friction that is larger in slow motion (Stribeck 1902, Bo and Pavelescu 1982).
 
 use bulge_numerics::Real;
 
@@ -7,10 +7,12 @@ use crate::effect::{Action, Balance, Effect, Jet, LoadEffect, Row};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::{NEWTON, PERCENT, PERCENT_PER_SECOND};
 
-/// `dF = -s F_c (1 + r exp(-(v/v_s)^2))`, v = d eps/dt, s = +1 while shortening, -1 while lengthening.
+/// `dF = -s F_c (1 + r exp(-(v/v_s)^2))`, with v = d eps/dt, s = +1 while shortening and -1 while
+/// lengthening.
 ///
-/// r = F_s/F_c - 1 is by how much static friction F_s exceeds that of quick motion. It is a number of the form and no size of its own: where all
-/// speeds are alike, only the product is in the data, and constant friction says as much with less.
+/// r = F_s/F_c - 1 is the excess of the static friction F_s over that in fast motion. It is a parameter of
+/// the form and not a size of its own. If all speeds are alike, the data determine only the product, and
+/// constant friction fits as well with fewer parameters.
 #[derive(Debug)]
 pub(crate) struct StribeckFriction;
 
@@ -62,7 +64,7 @@ impl Effect for StribeckFriction {
             .plausible(20.0, 200.0)
             .off_at(50.0)
             .logarithmic(),
-            // 1 to 10 mm/s of seals is 0.4 to 4 %/s of a muscle of 250 mm.
+            // 1 to 10 mm/s for seals corresponds to 0.4 to 4 %/s for a muscle of 250 mm.
             ParameterCard::new(
                 "speed",
                 PERCENT_PER_SECOND,

@@ -1,10 +1,12 @@
-//! Temperature: the force, and the rubber's modulus, change in proportion to the temperature (catalogue T1).
+//! Temperature: the force and the modulus of the rubber change in proportion to the temperature (catalogue
+//! T1).
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
 use crate::effect::{Action, Effect, Input, InputEffect, Row};
 use crate::mechanism::{Form, Mechanism};
 
-/// `F -> F (1 + alpha dT)`; with a bladder also `modulus -> modulus (1 + alpha_b dT)`, dT above the first row.
+/// `F -> F (1 + alpha dT)`, and with a bladder also `modulus -> modulus (1 + alpha_b dT)`, where dT is the
+/// temperature above that of the first row.
 #[derive(Debug)]
 pub(crate) struct Temperature;
 

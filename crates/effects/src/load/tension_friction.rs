@@ -1,11 +1,12 @@
-//! Tension friction: fibres rub where they are bent, in proportion to their tension (catalogue F5, variant of the PPAM).
+//! Tension friction: fibres rub where they are bent, in proportion to their tension (catalogue F5, variant
+//! for the PPAM).
 
 use crate::card::{Card, Evidence, Group, Needs, PLEATED, ParameterCard, Parity, Signature, Twin};
 use crate::effect::{Action, Balance, Effect, Jet, LoadEffect, Row};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::PERCENT;
 
-/// `dF = -s eta N`, N = F + p A(r) the force along the fibres.
+/// `dF = -s eta N`, where N = F + p A(r) is the force along the fibres.
 #[derive(Debug)]
 pub(crate) struct TensionFriction;
 

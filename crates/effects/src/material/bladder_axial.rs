@@ -1,11 +1,11 @@
-//! Axial bladder stiffness: the bladder resists being shortened, linearly (Chou and Hannaford 1996; catalogue E5).
+//! Axial bladder stiffness: the bladder resists shortening linearly (Chou and Hannaford 1996; catalogue E5).
 
 use crate::card::{BRAIDED, Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
 use crate::effect::{Action, Balance, Effect, Jet, LoadEffect, Row};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::NEWTON;
 
-/// `dF = -k eps`, k = A_b E_a.
+/// `dF = -k eps` with k = A_b E_a.
 #[derive(Debug)]
 pub(crate) struct BladderAxial;
 
@@ -63,7 +63,7 @@ mod tests {
 
     #[test]
     fn a_spring_that_pushes_when_shortened() {
-        // 2 pi 10 mm x 2 mm x 1 MPa = 125.66 N; a tenth of it at 10 %.
+        // 2 pi 10 mm x 2 mm x 1 MPa = 125.66 N, and a tenth of it at 10 %.
         let stiffness = std::f64::consts::TAU * 0.01 * 0.002 * 1e6;
         assert!((load(&BladderAxial, &[stiffness], |_| ()) + 12.566_370_614).abs() < 1e-8);
     }

@@ -1,4 +1,5 @@
-//! Second constant of the bladder: the part of rubber that a neo-Hookean law misses (Mooney-Rivlin; catalogue E8).
+//! Second constant of the bladder: the part of the rubber's elasticity that a neo-Hookean law lacks
+//! (Mooney-Rivlin; catalogue E8).
 
 use bulge_fibre::{Jet, Parts};
 use bulge_muscles::MuscleError;
@@ -8,7 +9,7 @@ use crate::effect::{Action, Effect, ShapeEffect};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::MEGAPASCAL;
 
-/// Stored energy W = c01 (I2 - 3) of the rubber, beside its c10 if it has one.
+/// Stored energy W = c01 (I2 - 3) of the rubber, in addition to its c10 term if it has one.
 #[derive(Debug)]
 pub(crate) struct BladderC01;
 

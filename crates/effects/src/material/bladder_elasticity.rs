@@ -1,4 +1,5 @@
-//! Bladder elasticity: the rubber tube inside a braid resists being deformed (Mooney-Rivlin; catalogue E7 and E8).
+//! Bladder elasticity: the rubber tube inside a braid resists deformation (Mooney-Rivlin; catalogue E7 and
+//! E8).
 
 use bulge_fibre::{Jet, Parts};
 use bulge_muscles::MuscleError;
@@ -8,7 +9,8 @@ use crate::effect::{Action, Effect, ShapeEffect};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::MEGAPASCAL;
 
-/// Stored energy W = c10 (I1 - 3) of the rubber in the equilibrium of the net; c01 of the muscle, if any, stays.
+/// Stored energy W = c10 (I1 - 3) of the rubber in the equilibrium of the net. A c01 stated by the muscle is
+/// kept.
 #[derive(Debug)]
 pub(crate) struct BladderElasticity;
 
@@ -49,7 +51,8 @@ impl Effect for BladderElasticity {
             ParameterCard::new("modulus", MEGAPASCAL, (0.0, 3.0), 0.3, about)
                 .key("c10")
                 .prior(0.3, 0.3)
-                // From a soft silicone (Ecoflex 00-30: 69 kPa at 100 %, six times c10) to a hard polyurethane.
+                // The range extends from a soft silicone (Ecoflex 00-30: 69 kPa at 100 %, six times c10) to a
+                // hard polyurethane.
                 .plausible(0.01, 1.2),
         ]
     }
@@ -90,7 +93,7 @@ mod tests {
 
     #[test]
     fn no_modulus_is_the_same_muscle() {
-        // Without a wall too: a muscle that can't have a bladder has none.
+        // At 0 this also holds for a muscle that can't have a bladder because it has no wall.
         assert_eq!(with(&BladderElasticity, &[0.0], &cylinder()).unwrap(), Parts::of(&cylinder()));
         assert!(with(&BladderElasticity, &[3e5], &cylinder()).is_err());
         assert!(with(&BladderElasticity, &[3e5], &pleated()).is_err());

@@ -1,4 +1,5 @@
-//! Bladder pre-strain: the bladder was wider or narrower than the braid before it was put in (Ball and Garcia 2016; catalogue E9).
+//! Bladder pre-strain: the bladder was wider or narrower than the braid before assembly (Ball and Garcia
+//! 2016; catalogue E9).
 
 use bulge_numerics::Real;
 use std::f64::consts::TAU;
@@ -82,7 +83,8 @@ mod tests {
         force.value()
     }
 
-    /// A tube of E_h t = 2 kN/m put in with a pre-strain of e0: what its force differs by from that without, to first order in e0.
+    /// The force of a tube of E_h t = 2 kN/m with a pre-strain of e0, minus that without pre-strain, to first
+    /// order in e0.
     #[test]
     fn the_force_is_what_a_strained_tube_adds() {
         let (stiffness, radius) = (2e3, 0.01);

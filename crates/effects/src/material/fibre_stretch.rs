@@ -1,4 +1,5 @@
-//! Fibre stretch: the fibres are not inextensible (Daerden 1999 for the PPAM, Davis 2003 for the braid; catalogue E1, E2 and B3).
+//! Fibre stretch: the fibres are not inextensible (Daerden 1999 for the PPAM, Davis 2003 for the braid;
+//! catalogue E1, E2 and B3).
 
 use bulge_fibre::{Jet, Parts};
 use bulge_muscles::{Force, MuscleError, Quantity, check};
@@ -9,10 +10,11 @@ use crate::effect::{Action, Effect, ShapeEffect};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::PERCENT_PER_KILONEWTON;
 
-/// Fibres that a braid is taken to have if it doesn't say: only their stiffness all together counts in a force.
+/// The number of fibres assumed for a braid that doesn't state it. Only the total stiffness of the fibres
+/// affects the force.
 const ASSUMED_FIBRES: f64 = 100.0;
 
-/// Every fibre gets longer by T/EA in the equilibrium; the parameter is 1/(n EA).
+/// Every fibre elongates by T/EA in the equilibrium. The parameter is 1/(n EA).
 #[derive(Debug)]
 pub(crate) struct FibreStretch;
 
@@ -71,12 +73,12 @@ impl Effect for FibreStretch {
 impl ShapeEffect for FibreStretch {
     fn reshape(&self, theta: &[Jet], parts: &mut Parts<Jet>) -> Result<(), MuscleError> {
         let compliance = theta[0];
-        // Fibres that don't stretch are solved in another way, which knows of no stretch.
+        // Inextensible fibres have another solution method, which has no stretch.
         if compliance.value() == 0.0 {
             return Ok(());
         }
         check::positive("fibre.stiffness", Force::from_si(compliance.value().recip()))?;
-        // Tension and stress are told of one fibre.
+        // Tension and stress are reported for a single fibre, so a number of fibres is needed.
         if !parts.is_pleated() && parts.fibres.is_none() {
             parts.fibres = Some(Jet::from(ASSUMED_FIBRES));
         }
@@ -93,7 +95,7 @@ mod tests {
 
     #[test]
     fn forces_of_an_independent_solution() {
-        // Catalogue B3: 40 fibres of 12.3 and 8.2 kN at 3 bar, R = 16 mm.
+        // Catalogue B3: 40 fibres of 12.3 and 8.2 kN at 3 bar, with R = 16 mm.
         let at = [0.0, 0.02, 0.05, 0.1, 0.2];
         for (each, forces) in [
             (12.3e3, [7237.0, 5352.0, 4031.0, 2885.0, 1596.0]),

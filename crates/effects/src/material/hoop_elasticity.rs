@@ -1,4 +1,4 @@
-//! Hoop elasticity: a bladder that resists being widened, linearly (catalogue E6).
+//! Hoop elasticity: a bladder that resists widening linearly (catalogue E6).
 
 use std::f64::consts::TAU;
 
@@ -8,7 +8,7 @@ use crate::effect::{Action, Balance, Effect, Jet, LoadEffect, Row};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::KILONEWTON_PER_METRE;
 
-/// `dF = 2 pi r0 E_h t (l2 - 1) dl2/dl1` on the kinematics of a cylinder.
+/// `dF = 2 pi r0 E_h t (l2 - 1) dl2/dl1` with the kinematics of a cylinder.
 #[derive(Debug)]
 pub(crate) struct HoopElasticity;
 
@@ -71,7 +71,8 @@ mod tests {
     use super::*;
     use crate::probe::load;
 
-    /// Energy E_h t/2 (l2 - 1)^2 per area of the tube of 2 pi r0 l0: its derivative by the length is the force.
+    /// The tube of area 2 pi r0 l0 has the energy E_h t/2 (l2 - 1)^2 per area. The derivative of the energy
+    /// by the length is the force.
     #[test]
     fn the_force_is_the_derivative_of_the_energy() {
         let (stiffness, length, radius) = (2e3, 0.25, 0.01);

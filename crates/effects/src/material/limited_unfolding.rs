@@ -1,4 +1,5 @@
-//! Limited unfolding: the cloth of a pleated muscle unfolds only so far and then stretches (S1, section 2; catalogue G6).
+//! Limited unfolding: the cloth of a pleated muscle unfolds to a limit and then stretches (S1, section 2;
+//! catalogue G6).
 
 use bulge_fibre::{Jet, Parts, TautCloth};
 use bulge_muscles::{Length, LineStiffness, MuscleError, Parameter, Quantity, check};
@@ -82,14 +83,14 @@ mod tests {
 
     #[test]
     fn it_acts_only_beyond_its_radius() {
-        // The equator is at 44.8 mm at 20 %, at 53.6 mm at 40 % (catalogue G5).
+        // The equator is at 44.8 mm at 20 % and at 53.6 mm at 40 % (catalogue G5).
         let cloth = with(&LimitedUnfolding, &[8e4, 0.0526], &pleated()).unwrap();
         let part = |contraction| force(&cloth, 2.0, contraction) / force(&pleated(), 2.0, contraction);
         assert!((part(0.2) - 1.0).abs() < 1e-9 && (part(0.3) - 1.0).abs() < 1e-9);
         assert!(part(0.4) < 0.99, "{}", part(0.4));
         let early = with(&LimitedUnfolding, &[8e4, 0.040], &pleated()).unwrap();
         assert!(force(&early, 2.0, 0.2) < 0.99 * force(&pleated(), 2.0, 0.2));
-        // Soft cloth acts in proportion to its stiffness.
+        // For soft cloth the effect is proportional to the stiffness.
         let soft = |stiffness| {
             let soft = with(&LimitedUnfolding, &[stiffness, 0.040], &pleated()).unwrap();
             force(&soft, 2.0, 0.25) - force(&pleated(), 2.0, 0.25)

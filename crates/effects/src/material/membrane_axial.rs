@@ -1,4 +1,5 @@
-//! Axial stiffness of the membrane: cloth and coating take a part of the shortening (neglected in S1; catalogue E12).
+//! Axial stiffness of the membrane: cloth and coating resist a part of the shortening (neglected in S1;
+//! catalogue E12).
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
 use crate::effect::{Action, Balance, Effect, Jet, LoadEffect, Row};

@@ -13,7 +13,7 @@ pub(crate) mod tube;
 use crate::effect::Effect;
 use std::sync::Arc;
 
-/// All of them.
+/// All material effects.
 pub(crate) fn all() -> Vec<Arc<dyn Effect>> {
     vec![
         Arc::new(fibre_stretch::FibreStretch),

@@ -1,10 +1,12 @@
-//! The bladder as a tube that follows a cylindrical braid: its hoop stretch and how that goes with the length.
+//! The bladder as a tube that follows a cylindrical braid: its hoop stretch, and the derivative of that by
+//! the axial stretch.
 
 use bulge_numerics::Real;
 
 use crate::effect::{Jet, Setting};
 
-/// Least square of the hoop stretch that is counted: a braid drawn out to a third of its radius, where inextensible fibres are all but straight.
+/// Lower limit of the square of the hoop stretch. There the braid is drawn out to a third of its radius, and
+/// inextensible fibres are nearly straight.
 const LEAST: f64 = 0.1;
 
 /// Hoop stretch of a tube inside a braid.
@@ -21,7 +23,7 @@ pub(crate) struct Tube {
 }
 
 impl Tube {
-    /// At a contraction; none without a braid angle.
+    /// The stretch at a contraction; none without a braid angle.
     pub(crate) fn at(contraction: Jet, setting: &Setting) -> Option<Self> {
         let (sin, cos) = setting.braid_angle.sin_cos();
         if sin <= 0.0 || cos <= 0.0 {

@@ -1,4 +1,4 @@
-//! Displacement gain: the displacement sensor's scale is off (catalogue M9).
+//! Displacement gain: the scale of the displacement sensor is wrong (catalogue M9).
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
 use crate::effect::{Action, Effect, Input, InputEffect, Row};

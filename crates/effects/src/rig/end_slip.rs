@@ -1,4 +1,4 @@
-//! End slip: the fibres give in their fittings under their tension (catalogue E4).
+//! End slip: the fibres give way in their fittings under tension (catalogue E4).
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
 use crate::effect::{Action, Effect, Input, InputEffect, Row};
@@ -7,7 +7,8 @@ use crate::rig::frame_compliance::power;
 
 /// `true contraction = measured + N/(k l0) (|N|/1 kN)^(n - 1)`, N = F + p A(r).
 ///
-/// A bond gives in proportion, n = 1; a clamp that bites stiffens, n < 1; one that begins to slip gives the more, n > 1.
+/// A bond gives in proportion to the tension (n = 1). A clamp that bites stiffens (n < 1). A clamp that
+/// begins to slip softens (n > 1).
 #[derive(Debug)]
 pub(crate) struct EndSlip;
 
@@ -75,10 +76,10 @@ mod tests {
 
     #[test]
     fn the_tension_shortens() {
-        // 50 kN/mm on 250 mm: 8e-8 per newton.
+        // 50 kN/mm on 250 mm gives 8e-8 per newton.
         let give = input(&EndSlip, &[2e-8, 1.0], |_| ()).give_tension;
         assert!((give.under(Jet::from(1e3)).value() / 8e-5 - 1.0).abs() < 1e-12);
-        // A clamp that begins to slip: four times the tension, eight times the slip.
+        // A clamp that begins to slip: four times the tension gives eight times the slip.
         let give = input(&EndSlip, &[2e-8, 1.5], |_| ()).give_tension;
         let [low, high] = [250.0, 1e3].map(|tension| give.under(Jet::from(tension)).value());
         assert!((high / low / 8.0 - 1.0).abs() < 1e-5);

@@ -1,10 +1,10 @@
-//! Force drift: the load cell's zero moves with the clock (catalogue M6).
+//! Force drift: the zero of the load cell changes with the clock (catalogue M6).
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
 use crate::effect::{Action, Balance, Effect, Jet, OutputEffect, Row};
 use crate::mechanism::{Form, Mechanism};
 
-/// `reading = F + a t`, t since the first row.
+/// `reading = F + a t`, where t is the time since the first row.
 #[derive(Debug)]
 pub(crate) struct ForceDrift;
 

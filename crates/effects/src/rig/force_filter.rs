@@ -1,4 +1,4 @@
-//! Force filter: the force reading follows the force as a filter of first order does.
+//! Force filter: the force reading is a first-order filter of the force.
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
 use crate::effect::{Action, Balance, Effect, Jet, OutputEffect, Row};
@@ -6,10 +6,11 @@ use crate::load::relaxed::relaxed;
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::SECOND;
 
-/// `tau y' = F - y`, y = F when a sweep begins.
+/// `tau y' = F - y`, with y = F at the beginning of a sweep.
 ///
-/// With d = F - y it is d' = F' - d/tau: exact between two rows if the force runs straight ([`relaxed`]). It is the force that is late, with all
-/// that acts on it: friction arrives late too, which a dead time taken from speeds (force-lag) doesn't shift.
+/// For d = F - y this is d' = F' - d/tau, which is exact between two rows if the force is linear in time
+/// ([`relaxed`]). The whole force is delayed, including friction. A dead time computed from speeds
+/// (force-lag) doesn't delay friction.
 #[derive(Debug)]
 pub(crate) struct ForceFilter;
 
@@ -78,7 +79,7 @@ mod tests {
     use crate::probe::{SETTING, balance};
     use bulge_numerics::Real;
 
-    /// Readings of forces, each a time after the one before.
+    /// Readings of forces, each given with the time since the previous one.
     fn readings(tau: Jet, rows: &[[f64; 2]]) -> Vec<Jet> {
         let mut memory = [Jet::from(0.0); 2];
         let row = |(i, &[since, force]): (usize, &[f64; 2])| {
@@ -96,7 +97,7 @@ mod tests {
 
     #[test]
     fn a_ramp_arrives_late_by_its_time() {
-        // 500 N, then 20 N/s: y = 500 + 20 (t - tau (1 - exp(-t/tau))), in uneven steps.
+        // A step to 500 N followed by 20 N/s: y = 500 + 20 (t - tau (1 - exp(-t/tau))), in uneven steps.
         let times = [0.0, 0.02, 0.3, 0.35, 1.1, 9.0];
         let mut last = 0.0;
         let rows = times.map(|t| [t - std::mem::replace(&mut last, t), 500.0 + 20.0 * t]);
@@ -108,7 +109,7 @@ mod tests {
 
     #[test]
     fn a_hum_is_smaller_and_late() {
-        // sin(w t) becomes sin(w t - atan(w tau))/sqrt(1 + w^2 tau^2), to the second order in the steps.
+        // sin(w t) becomes sin(w t - atan(w tau))/sqrt(1 + w^2 tau^2), to second order in the steps.
         let (w, tau): (f64, f64) = (3.0, 0.5);
         let error = |n: u32| {
             let step = 20.0 / f64::from(n);

@@ -1,4 +1,4 @@
-//! Force gain: the load cell's scale is off (catalogue M4).
+//! Force gain: the scale of the load cell is wrong (catalogue M4).
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
 use crate::effect::{Action, Balance, Effect, Jet, OutputEffect, Row};

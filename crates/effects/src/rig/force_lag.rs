@@ -1,4 +1,4 @@
-//! Force lag: the force reading is late against displacement and pressure (catalogue M10).
+//! Force lag: the force reading lags behind displacement and pressure (catalogue M10).
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
 use crate::effect::{Action, Effect, Input, InputEffect, Row};
@@ -6,9 +6,10 @@ use crate::mechanism::{Form, Mechanism};
 use crate::rig::lowered_pressure::lowered;
 use crate::unit::SECOND;
 
-/// `reading(t) = F(t - tau)`: contraction and pressure are taken tau earlier, `eps - tau d eps/dt` and `p - tau dp/dt`.
+/// `reading(t) = F(t - tau)`: contraction and pressure are taken tau earlier, that is at `eps - tau d eps/dt`
+/// and `p - tau dp/dt`.
 ///
-/// Exact while both run straight over tau; memory of friction isn't shifted.
+/// This is exact while both are linear over tau. The memory of friction isn't shifted.
 #[derive(Debug)]
 pub(crate) struct ForceLag;
 

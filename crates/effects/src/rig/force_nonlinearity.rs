@@ -1,4 +1,4 @@
-//! Force nonlinearity: the load cell's characteristic is bent (catalogue M5).
+//! Force nonlinearity: the characteristic of the load cell is curved (catalogue M5).
 
 use bulge_numerics::Real;
 
@@ -7,12 +7,12 @@ use crate::effect::{Action, Balance, Effect, Jet, OutputEffect, Row};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::NUMBER;
 
-/// Force at which the curvature is stated \[N\].
+/// The force at which the curvature is stated \[N\].
 const REFERENCE: f64 = 1e3;
 
 /// `reading = F + q F |F| (|F|/1 kN)^(k - 2)`, for a pull.
 ///
-/// k = 2 is the bridge that bends one way; a cell that is alike for pulls and pushes has k = 3.
+/// k = 2 describes a bridge that bends one way. A cell that is symmetric for pull and push has k = 3.
 #[derive(Debug)]
 pub(crate) struct ForceNonlinearity;
 
@@ -76,9 +76,9 @@ mod tests {
 
     #[test]
     fn the_square_of_the_force_is_added() {
-        // 2 %/kN of 500 N: 1 % of 500 N.
+        // 2 %/kN at 500 N is 1 % of 500 N.
         assert!((reading(&ForceNonlinearity, &[2e-5, 2.0], |_| ()) - 505.0).abs() < 1e-9);
-        // Of 1 kN as much with any power, of a half of it a quarter or an eighth.
+        // At 1 kN the error is the same for any power. At half of that it is a quarter or an eighth.
         assert!((reading(&ForceNonlinearity, &[2e-5, 3.0], |_| ()) - 502.5).abs() < 1e-9);
     }
 }

@@ -1,4 +1,5 @@
-//! Frame compliance: the frame gives under the force, and the displacement sensor doesn't see it (catalogue E3).
+//! Frame compliance: the frame gives way under the force, which the displacement sensor doesn't see
+//! (catalogue E3).
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
 use crate::effect::{Action, Effect, Input, InputEffect, Row};
@@ -7,8 +8,9 @@ use crate::unit::NUMBER;
 
 /// `true contraction = measured + F/(k l0) (|F|/1 kN)^(n - 1)`.
 ///
-/// A beam gives in proportion to the force, n = 1; dry contacts stiffen as they are pressed together, n = 2/3 for round ones (Hertz) down to 1/2 for rough ones;
-/// what slips in its clamps gives the more, the harder it is pulled.
+/// A beam gives in proportion to the force (n = 1). Dry contacts stiffen as they are pressed together, from
+/// n = 2/3 for round ones (Hertz) to 1/2 for rough ones. A part that slips in its clamps softens as the pull
+/// grows.
 #[derive(Debug)]
 pub(crate) struct FrameCompliance;
 
@@ -69,7 +71,7 @@ impl InputEffect for FrameCompliance {
     }
 }
 
-/// The power with which a joint gives ([`crate::Give`]): 1 in files from before there was one.
+/// The power with which a joint gives ([`crate::Give`]). It is 1 in files from before this parameter existed.
 pub(super) fn power(about: &str) -> ParameterCard<'_> {
     ParameterCard::new("power", NUMBER, (0.4, 3.0), 1.0, about)
         .plausible(0.5, 2.0)
@@ -86,18 +88,18 @@ mod tests {
 
     #[test]
     fn the_force_shortens() {
-        // 10 kN/mm on 250 mm: 4e-7 per newton.
+        // 10 kN/mm on 250 mm gives 4e-7 per newton.
         let give = input(&FrameCompliance, &[1e-7, 1.0], |_| ()).give_force;
         assert!((give.under(Jet::from(300.0)).value() / 1.2e-4 - 1.0).abs() < 1e-12);
     }
 
     #[test]
     fn a_contact_stiffens_under_the_force() {
-        // Hertz: eight times the force, four times the approach.
+        // Hertz: eight times the force gives four times the approach.
         let give = input(&FrameCompliance, &[1e-7, 2.0 / 3.0], |_| ()).give_force;
         let [light, heavy] = [1e3, 8e3].map(|force| give.under(Jet::from(force)).value());
         assert!((light / 4e-4 - 1.0).abs() < 1e-6 && (heavy / light / 4.0 - 1.0).abs() < 1e-6);
-        // Pushed it gives the other way, and its slope is that of the curve.
+        // Under a push the joint gives in the other direction. The slope is that of the curve.
         assert!((give.under(Jet::from(-1e3)).value() + light).abs() < 1e-18);
         let across = give.under(Jet::from(501.0)).value() - give.under(Jet::from(499.0)).value();
         assert!((give.slope(500.0) / (0.5 * across) - 1.0).abs() < 1e-5);

@@ -1,17 +1,18 @@
-//! The volume of a muscle of inextensible fibres from its dimensions alone: braid a cylinder, pleated muscle of circular meridians.
+//! The volume of a muscle of inextensible fibres from its dimensions alone: a cylinder for a braid, circular
+//! meridians for a pleated muscle.
 
 use bulge_numerics::Real;
 
 use crate::effect::{Jet, Setting};
 
-/// Below this contraction the volume of a pleated muscle is held: its slope grows without bound towards 0, where real fibres, which stretch
-/// by about as much, never come.
+/// Below this contraction the volume of a pleated muscle is held constant. Its slope grows without bound
+/// towards 0, which real fibres never reach because they stretch by about as much.
 const LEAST_CONTRACTION: f64 = 1e-3;
 
-/// Least sin^2 of the braid angle: a braid drawn straight has no volume left.
+/// Lower limit of sin^2 of the braid angle. A braid drawn straight has no volume left.
 const LEAST_SINE_SQUARED: f64 = 1e-3;
 
-/// Volume over that at contraction 0, and its relative slope.
+/// The volume divided by that at contraction 0, and its relative slope.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct IdealVolume {
     /// V/V0.
@@ -21,14 +22,15 @@ pub(crate) struct IdealVolume {
 }
 
 impl IdealVolume {
-    /// At a contraction.
+    /// The volume at a contraction.
     ///
     /// ```text
     /// braided:  V ~ (1 - eps) (1 - cos^2(a0) (1 - eps)^2)
     /// pleated:  meridian an arc of half-angle b with sin(b)/b = 1 - eps, which meets the fittings at the radius R
     /// ```
-    /// Against the equilibrium of the shipped muscles the slope is right to 1 % up to 20 % and 6 % too small at 35 % (pleated), 7 % too large
-    /// at 10 % and 17 % at 25 % (clamped braid of 250 mm, whose ends hold gas back); where it is worst the force is smallest.
+    /// Compared with the equilibrium of the shipped muscles, the slope is accurate to 1 % up to 20 % and 6 %
+    /// too small at 35 % (pleated). It is 7 % too large at 10 % and 17 % too large at 25 % (clamped braid of
+    /// 250 mm, whose ends hold gas back). The force is smallest where the error is largest.
     pub(crate) fn at(contraction: Jet, setting: &Setting) -> Self {
         if setting.is_pleated() {
             Self::barrel(contraction, setting.radius / setting.length)
@@ -42,7 +44,7 @@ impl IdealVolume {
         let sine_squared = -(stretch * cosine).squared() + 1.0;
         let at_rest = (1.0 - cosine * cosine).max(LEAST_SINE_SQUARED);
         if sine_squared.value() < LEAST_SINE_SQUARED {
-            // Held at this angle: only the length changes.
+            // The braid angle is held here, so that only the length changes.
             return Self {
                 ratio: stretch * (LEAST_SINE_SQUARED / at_rest),
                 growth: Jet::from(-1.0) / stretch,
@@ -53,8 +55,8 @@ impl IdealVolume {
         Self { ratio, growth }
     }
 
-    /// Lengths over l0. The arc of radius a = 1/(2 b) about a centre at d = R - a cos(b) from the axis encloses
-    /// V/pi = 2 d^2 a sin(b) + 2 d a^2 (b + sin(b) cos(b)) + a^3 (2 sin(b) - 2/3 sin^3(b)).
+    /// Lengths are relative to l0. The arc of radius a = 1/(2 b) about a centre at d = R - a cos(b) from the
+    /// axis encloses V/pi = 2 d^2 a sin(b) + 2 d a^2 (b + sin(b) cos(b)) + a^3 (2 sin(b) - 2/3 sin^3(b)).
     fn barrel(contraction: Jet, end_radius: f64) -> Self {
         let held = contraction.value() < LEAST_CONTRACTION;
         let contraction = if held { Jet::from(LEAST_CONTRACTION) } else { contraction };
@@ -77,7 +79,8 @@ impl IdealVolume {
     }
 }
 
-/// The angle b with sin(b)/b = 1 - eps, and db/d eps. Newton's method; at most 1 - eps = 0.01, b = 3.11.
+/// The angle b with sin(b)/b = 1 - eps, and db/d eps, by Newton's method.
+/// The largest angle is b = 3.11, at 1 - eps = 0.01.
 fn half_angle(contraction: Jet) -> (Jet, Jet) {
     let chord = (1.0 - contraction.value()).max(0.01);
     let slope = |b: f64| (b * b.cos() - b.sin()) / (b * b);
@@ -89,7 +92,7 @@ fn half_angle(contraction: Jet) -> (Jet, Jet) {
             break;
         }
     }
-    // db/d eps = -1/(sin(b)/b)', and its own derivative by b: (sin(b)/b)'' = -sin(b)/b - 2/b (sin(b)/b)'.
+    // db/d eps = -1/(sin(b)/b)', and its own derivative by b uses (sin(b)/b)'' = -sin(b)/b - 2/b (sin(b)/b)'.
     let first = slope(angle);
     let second = -angle.sin() / angle - 2.0 / angle * first;
     let by_contraction = -1.0 / first;
@@ -105,7 +108,8 @@ mod tests {
 
     #[test]
     fn cylinder_by_hand() {
-        // a0 = 25 deg, eps = 10 %: 0.9 (1 - 0.821394 0.81)/(1 - 0.821394) = 1.686414; -1/0.9 + 2 0.821394 0.9/0.334671 = 3.306687.
+        // At a0 = 25 deg and eps = 10 % the ratio is 0.9 (1 - 0.821394 0.81)/(1 - 0.821394) = 1.686414, and
+        // the growth is -1/0.9 + 2 0.821394 0.9/0.334671 = 3.306687.
         let found = IdealVolume::cylinder(Jet::variable(0.1, 0), 25_f64.to_radians().cos());
         assert!((found.ratio.value() - 1.686_414).abs() < 1e-6, "{}", found.ratio.value());
         assert!((found.growth.value() - 3.306_687).abs() < 1e-6, "{}", found.growth.value());
@@ -114,12 +118,13 @@ mod tests {
 
     #[test]
     fn barrel_is_a_cylinder_at_rest_and_a_sphere_when_round() {
-        // Without fittings, half a turn of fibre: the arc of b = pi/2 is a half circle, V = 4/3 pi (1/pi)^3 of 1 = l0.
+        // Half a turn of fibre without fittings: the arc of b = pi/2 is a half circle, and V = 4/3 pi
+        // (1/pi)^3 for l0 = 1.
         let contraction = 1.0 - 2.0 / std::f64::consts::PI;
         let small = 1e-9;
         let round = IdealVolume::barrel(Jet::from(contraction), small).ratio.value() * small * small;
         assert!((round / (4.0 / 3.0 / std::f64::consts::PI.powi(3)) - 1.0).abs() < 1e-7);
-        // Nearly straight: V/V0 = 1 + (8/3) (b/4)/R up to order b^2, b = sqrt(6 eps).
+        // Nearly straight: V/V0 = 1 + (8/3) (b/4)/R up to order b^2, with b = sqrt(6 eps).
         let near = IdealVolume::barrel(Jet::from(1e-3), 1.0).ratio.value();
         let b = 6e-3_f64.sqrt();
         assert!((near - (1.0 - 1e-3) * (1.0 + b / 3.0 + b * b / 30.0)).abs() < 2e-5, "{near}");
@@ -140,8 +145,8 @@ mod tests {
 
     #[test]
     fn it_is_near_the_equilibrium() {
-        // Contractions, and how much too large or small (dV/d eps)/V may be there. What a clamped braid keeps of its volume in its ends
-        // makes it grow more slowly than the cylinder.
+        // Contractions, and the allowed relative error of (dV/d eps)/V there. A clamped braid keeps part of
+        // its volume in its ends, so its volume grows more slowly than that of the cylinder.
         let pleated = [(0.01, 0.002), (0.05, 0.004), (0.1, 0.006), (0.2, 0.012), (0.35, 0.065)];
         let braided = [(0.0, 1e-6), (0.05, 0.04), (0.1, 0.07), (0.15, 0.095), (0.25, 0.17)];
         for (name, points) in [("ppam-2-r16", pleated), ("ppam-2-r11.5", pleated), ("dmsp-20-250", braided)] {

@@ -1,4 +1,5 @@
-//! Length zero error: the length at which the displacement sensor reads zero is not the stated one (catalogue M7).
+//! Length zero error: the displacement sensor reads zero at a length that differs from the stated one
+//! (catalogue M7).
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
 use crate::effect::{Action, Effect, Input, InputEffect, Row};
@@ -72,7 +73,7 @@ mod tests {
 
     #[test]
     fn the_muscle_is_shorter_by_the_offset() {
-        // 4 mm of 250 mm.
+        // 4 mm on 250 mm.
         assert!((input(&LengthZeroError, &[4e-3], |_| ()).contraction.value() - 0.116).abs() < 1e-15);
     }
 }

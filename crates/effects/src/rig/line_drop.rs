@@ -1,4 +1,4 @@
-//! Line drop: a leak in the muscle draws gas through the line, which costs pressure (catalogue P1).
+//! Line drop: a leak in the muscle draws gas through the line, which lowers the pressure (catalogue P1).
 
 use bulge_numerics::Real;
 
@@ -7,13 +7,16 @@ use crate::effect::{Action, Effect, Input, InputEffect, Row};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::{NUMBER, PERCENT};
 
-/// Pressure at which the loss is stated \[Pa\]: in the middle of what these muscles are used at.
+/// The pressure at which the loss is stated \[Pa\], in the middle of the range in which these muscles are
+/// used.
 const REFERENCE: f64 = 3e5;
 
 /// `p = reading (1 - phi (reading/3 bar)^(k - 1))`.
 ///
-/// The leak draws a mass flow in proportion to the pressure, the line loses the difference of the squares of absolute pressures (laminar) or the square of the flow
-/// (turbulent): k is 1 where pressures are small against the air's, about 1.5 at some bar, and up to 2 in turbulent flow.
+/// The mass flow of the leak is proportional to the pressure. The loss in the line follows the difference of
+/// the squared absolute pressures (laminar) or the square of the flow (turbulent). k is therefore 1 for
+/// pressures that are small compared with that of the air, about 1.5 at some bar, and up to 2 in turbulent
+/// flow.
 #[derive(Debug)]
 pub(crate) struct LineDrop;
 
@@ -69,7 +72,7 @@ impl Effect for LineDrop {
 impl InputEffect for LineDrop {
     fn act(&self, Row { theta, .. }: Row<'_>, input: &mut Input) {
         let part = input.pressure.value() / REFERENCE;
-        // At no pressure nothing flows.
+        // Without pressure there is no flow.
         if part > 0.0 {
             let loss = theta[0] * ((theta[1] - 1.0) * (input.pressure / REFERENCE).ln()).exp();
             input.pressure = input.pressure * (-loss + 1.0);
@@ -86,7 +89,7 @@ mod tests {
     #[test]
     fn a_part_of_the_pressure_is_lost() {
         let left = |power: f64| input(&LineDrop, &[0.03, power], |_| ()).pressure.value();
-        // Of 2 bar 3 %, and two thirds of that where the flow is turbulent.
+        // At 2 bar the loss is 3 %, and two thirds of that in turbulent flow.
         assert!((left(1.0) - 1.94e5).abs() < 1e-9 && (left(2.0) - 1.96e5).abs() < 1e-9);
         let mut vented = Input::of(Jet::from(0.0), Jet::from(0.1));
         let theta = [0.03, 2.0].map(Jet::from);

@@ -1,13 +1,14 @@
-//! Load misalignment: the load cell doesn't look along the muscle (catalogue M11).
+//! Load misalignment: the load cell isn't aligned with the muscle (catalogue M11).
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
 use crate::effect::{Action, Balance, Effect, Jet, OutputEffect, Row};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::PERCENT;
 
-/// `reading = F (1 - loss)`, loss = 1 - cos(psi).
+/// `reading = F (1 - loss)` with loss = 1 - cos(psi).
 ///
-/// Given by the loss and not by the angle psi, because the derivative by the angle vanishes at 0, where a screen asks.
+/// The parameter is the loss and not the angle psi, because the derivative by the angle vanishes at 0, where
+/// a screen evaluates it.
 #[derive(Debug)]
 pub(crate) struct LoadMisalignment;
 

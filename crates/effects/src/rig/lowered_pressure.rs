@@ -1,12 +1,13 @@
-//! A pressure lowered by an effect, which stays positive so that the equilibrium has an answer.
+//! A pressure lowered by an effect. It stays positive so that the equilibrium exists.
 
 use crate::effect::Jet;
 use bulge_numerics::Real;
 
-/// The least pressure that an effect leaves \[Pa\]: 1 mbar, under what sensors of force maps resolve.
+/// The smallest pressure that an effect leaves \[Pa\]: 1 mbar, which is below the resolution of the sensors
+/// of force maps.
 const LEAST: f64 = 100.0;
 
-/// `p - by`, but not under [`LEAST`]; a pressure that is under it already is not lowered (nothing to take away: the same to the bit).
+/// `p - by`, but not below [`LEAST`]. A pressure that is already below it stays unchanged, bit for bit.
 pub(crate) fn lowered(pressure: Jet, by: Jet) -> Jet {
     let left = pressure - by;
     let least = if pressure.value() < LEAST { pressure } else { Jet::from(LEAST) };

@@ -1,4 +1,4 @@
-//! Rig: what sensors, frame and valves add between the muscle and the numbers in the file.
+//! Rig: errors of sensors, frame and valves between the muscle and the numbers in the file.
 
 mod displacement_gain;
 mod end_slip;
@@ -26,8 +26,9 @@ mod weight;
 use crate::effect::Effect;
 use std::sync::Arc;
 
-/// All of them, in the order in which they act: from the readings to the muscle, then from the force to its reading. A sensor reads
-/// true (1 + gain) + zero, so the zero of an input comes before its gain and that of the output after it.
+/// All rig effects, in the order in which they act: from the readings to the muscle, then from the force to
+/// its reading. A sensor reads true (1 + gain) + zero. The zero of an input therefore comes before its gain,
+/// and that of the output after it.
 pub(crate) fn all() -> Vec<Arc<dyn Effect>> {
     vec![
         Arc::new(force_lag::ForceLag),

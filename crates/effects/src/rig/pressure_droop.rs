@@ -1,4 +1,5 @@
-//! Pressure droop: the regulator gives less pressure the more gas the muscle has taken (catalogue P5).
+//! Pressure droop: the pressure of the regulator falls with the amount of gas that the muscle has taken
+//! (catalogue P5).
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
 use crate::effect::{Action, Effect, Input, InputEffect, Row};
@@ -7,7 +8,7 @@ use crate::rig::ideal_volume::IdealVolume;
 use crate::rig::lowered_pressure::lowered;
 use crate::unit::KILOPASCAL;
 
-/// `p = reading - c (V/V0 - 1)`, V of a muscle of inextensible fibres ([`IdealVolume`]).
+/// `p = reading - c (V/V0 - 1)` with the volume V of a muscle of inextensible fibres ([`IdealVolume`]).
 #[derive(Debug)]
 pub(crate) struct PressureDroop;
 

@@ -1,11 +1,11 @@
-//! Pressure gain: the pressure sensor's scale is off (catalogue M2).
+//! Pressure gain: the scale of the pressure sensor is wrong (catalogue M2).
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
 use crate::effect::{Action, Effect, Input, InputEffect, Row};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::PERCENT;
 
-/// `reading = p (1 + g)`, so that the muscle has `p = reading/(1 + g)`.
+/// `reading = p (1 + g)`, so the pressure in the muscle is `p = reading/(1 + g)`.
 #[derive(Debug)]
 pub(crate) struct PressureGain;
 
@@ -62,7 +62,7 @@ mod tests {
 
     #[test]
     fn a_sensor_that_reads_too_much_hides_a_lower_pressure() {
-        // 2 bar read at + 2.5 %: 2/1.025 = 1.951220 bar.
+        // 2 bar read with a gain of +2.5 %: 2/1.025 = 1.951220 bar.
         assert!((input(&PressureGain, &[0.025], |_| ()).pressure.value() - 195_121.951_2).abs() < 1e-3);
     }
 }

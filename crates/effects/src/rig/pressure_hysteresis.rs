@@ -1,4 +1,4 @@
-//! Pressure hysteresis: the pressure sensor follows a reversal of the pressure late by a fixed way.
+//! Pressure hysteresis: after a reversal of the pressure the sensor lags by a fixed pressure difference.
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
 use crate::effect::{Action, Effect, Input, InputEffect, Jet, Row};
@@ -7,7 +7,7 @@ use crate::mechanism::{Form, Mechanism};
 use crate::rig::lowered_pressure::lowered;
 use crate::unit::KILOPASCAL;
 
-/// `z -> s + (z - s) exp(-|dp|/delta)`, `p = reading + h z`, s the sign of dp.
+/// `z -> s + (z - s) exp(-|dp|/delta)`, `p = reading + h z`, where s is the sign of dp.
 #[derive(Debug)]
 pub(crate) struct PressureHysteresis;
 
@@ -102,7 +102,8 @@ mod tests {
             );
             input.pressure.value() - 2e5
         };
-        // One distance up: 2 kPa (1 - 1/e); far up: 2 kPa; down by two distances: -2 kPa (1 - 2 exp(-2)).
+        // One distance up gives 2 kPa (1 - 1/e), far up gives 2 kPa, and down by two distances gives -2 kPa
+        // (1 - 2 exp(-2)).
         let found = [run(1e4), run(1e6), run(-2e4), run(0.0)];
         let down = -2e3 * (1.0 - 2.0 * (-2.0_f64).exp());
         for (found, expected) in found.into_iter().zip([2e3 * (1.0 - (-1.0_f64).exp()), 2e3, down, down]) {

@@ -1,4 +1,4 @@
-//! Pressure lag: the pressure reading is late against the force.
+//! Pressure lag: the pressure reading lags behind the force.
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
 use crate::effect::{Action, Effect, Input, InputEffect, Row};
@@ -6,7 +6,7 @@ use crate::mechanism::{Form, Mechanism};
 use crate::rig::lowered_pressure::lowered;
 use crate::unit::SECOND;
 
-/// `p = reading + tau dp/dt`, exact for a filter of first order while the pressure runs straight over tau.
+/// `p = reading + tau dp/dt`, exact for a first-order filter while the pressure is linear over tau.
 #[derive(Debug)]
 pub(crate) struct PressureLag;
 

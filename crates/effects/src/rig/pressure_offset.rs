@@ -6,7 +6,7 @@ use crate::mechanism::{Form, Mechanism};
 use crate::rig::lowered_pressure::lowered;
 use crate::unit::KILOPASCAL;
 
-/// `reading = p + zero`, so that the muscle has `p = reading - zero`.
+/// `reading = p + zero`, so the pressure in the muscle is `p = reading - zero`.
 #[derive(Debug)]
 pub(crate) struct PressureOffset;
 

@@ -1,4 +1,5 @@
-//! Regulator lag: the gas has to pass a line, so the muscle has another pressure than the regulator while it moves (catalogue P3).
+//! Regulator lag: gas has to pass a line, so the pressure in a moving muscle differs from that of the
+//! regulator (catalogue P3).
 
 use bulge_fibre::AMBIENT_PRESSURE;
 
@@ -12,10 +13,13 @@ use crate::unit::SECOND;
 
 /// `d(reading - p)/dt = q - (reading - p)/tau`, `q = (p + p_a) (V'/V) d eps/dt + d reading/dt`.
 ///
-/// Gas balance at constant temperature: d((p + p_a) V)/dt = C (reading - p), with the line's conductance C and tau = V/C. From row to row it is exact for a
-/// demand q that stays ([`relaxed`]); a sweep begins in the steady lag `tau q` of a motion that is under way. In q the pressure is the reading: what that leaves out is
-/// of second order in the lag. V'/V is that of a muscle of inextensible fibres ([`IdealVolume`]: a cylinder, or a barrel of circular meridians), because the
-/// equilibrium is not known yet: 1 % off up to 20 % contraction for a PPAM, 7 % at 10 % for a braid of 250 mm. tau = V/C is taken as one number, though V grows.
+/// The gas balance at constant temperature is d((p + p_a) V)/dt = C (reading - p), with the conductance C of
+/// the line and tau = V/C. Between two rows it is exact for a constant demand q ([`relaxed`]). A sweep begins
+/// in the steady lag `tau q` of a motion that is under way. The pressure in q is the reading, which neglects
+/// terms of second order in the lag. V'/V is that of a muscle of inextensible fibres ([`IdealVolume`]: a
+/// cylinder, or a barrel with circular meridians), because the equilibrium isn't known yet. Its error is 1 %
+/// up to 20 % contraction for a PPAM, and 7 % at 10 % for a braid of 250 mm. tau = V/C is taken as constant,
+/// although V grows.
 #[derive(Debug)]
 pub(crate) struct RegulatorLag;
 
@@ -86,7 +90,8 @@ mod tests {
 
     #[test]
     fn a_shortening_muscle_has_less_pressure() {
-        // V'/V = 3.306687 at 25 deg and 10 %; (2 + 1.01325) bar, 1 % per second, 0.2 s: 1992.77 Pa.
+        // V'/V = 3.306687 at 25 deg and 10 %. With (2 + 1.01325) bar, 1 % per second and 0.2 s this gives
+        // 1992.77 Pa.
         let up = input(&RegulatorLag, &[0.2], |moment| moment.rate = 0.01).pressure.value();
         let down = input(&RegulatorLag, &[0.2], |moment| moment.rate = -0.01).pressure.value();
         assert!((2e5 - up - 1992.77).abs() < 0.01, "{up}");
@@ -102,7 +107,8 @@ mod tests {
 
     #[test]
     fn after_a_stop_the_pressure_comes_to_the_readings() {
-        // From rest a ramp of 0.1 bar/s for 0.9 s, then a hold: d = tau s (1 - exp(-t/tau)), and from there exp(-t/tau).
+        // From rest, a ramp of 0.1 bar/s for 0.9 s and then a hold: d = tau s (1 - exp(-t/tau)), followed by
+        // a decay with exp(-t/tau).
         let (tau, slope) = (0.4_f64, 1e4);
         let mut memory = [Jet::from(0.0)];
         let mut behind = |since: f64, rate: f64, begins: bool| {

@@ -1,4 +1,4 @@
-//! Valve hysteresis: the valve lets the pressure fall a little before it opens (catalogue P4).
+//! Valve hysteresis: the pressure falls a little before the valve opens (catalogue P4).
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
 use crate::effect::{Action, Effect, Input, InputEffect, Row};
@@ -6,7 +6,8 @@ use crate::mechanism::{Form, Mechanism};
 use crate::rig::lowered_pressure::lowered;
 use crate::unit::KILOPASCAL;
 
-/// `p = reading - s dp`, s = +1 while the muscle takes gas (it shortens, or is filled at held length), -1 while it gives gas back.
+/// `p = reading - s dp`. s is +1 while the muscle takes gas (it shortens, or is filled at held length), and
+/// -1 while it gives gas back.
 #[derive(Debug)]
 pub(crate) struct ValveHysteresis;
 

@@ -1,4 +1,4 @@
-//! Weight: the load cell also carries what hangs from it (catalogue M12).
+//! Weight: the load cell also carries the parts that hang from it (catalogue M12).
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
 use crate::effect::{Action, Balance, Effect, Jet, OutputEffect, Row};

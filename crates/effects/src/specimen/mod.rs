@@ -5,7 +5,7 @@ mod specimen_spread;
 use crate::effect::Effect;
 use std::sync::Arc;
 
-/// All of them.
+/// All specimen effects.
 pub(crate) fn all() -> Vec<Arc<dyn Effect>> {
     vec![Arc::new(specimen_spread::SpecimenSpread)]
 }

@@ -1,4 +1,4 @@
-//! Specimen spread: muscles of the same make differ in their force (catalogue H1).
+//! Specimen spread: muscles of the same make differ in force (catalogue H1).
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
 use crate::effect::{Action, Balance, Effect, Jet, OutputEffect, Row};

@@ -1,4 +1,5 @@
-//! A user's own effect as an effect like any other: its expression is evaluated at the load, with exact derivatives.
+//! User-defined effects as effects of the catalogue. A force formula is evaluated as a load, with exact
+//! derivatives.
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature};
 use crate::effect::{Action, Balance, Effect, Jet, LoadEffect, Moment, Row, Setting, ShapeEffect};
@@ -7,7 +8,7 @@ use crate::user::{ShapeFormula, ShapeQuantity, UserEffect, UserFormula, UserPara
 use bulge_fibre::Parts;
 use bulge_muscles::MuscleError;
 
-/// Columns that a variable needs.
+/// The data that a variable needs.
 const NEEDS: &[(&str, Needs)] = &[
     ("direction", Needs::Path),
     ("max_eps", Needs::Path),
@@ -26,7 +27,7 @@ impl UserEffect {
     }
 }
 
-/// The variables of an expression, in the order of [`VARIABLES`].
+/// The values of the variables of an expression, in the order of [`VARIABLES`].
 fn variables(moment: &Moment, setting: &Setting, balance: &Balance) -> Vec<Jet> {
     let of = |name: &str| match name {
         "p" => balance.pressure,
@@ -45,7 +46,7 @@ fn variables(moment: &Moment, setting: &Setting, balance: &Balance) -> Vec<Jet> 
         "tension" => balance.tension,
         "fibres" => Jet::from(setting.fibres.map_or(f64::NAN, f64::from)),
         "braid_angle" => Jet::from(setting.braid_angle),
-        // The list and this match are held together by a test.
+        // A test keeps the list and this match consistent.
         _ => Jet::from(f64::NAN),
     };
     VARIABLES.iter().map(|variable| of(variable.name)).collect()
@@ -110,7 +111,7 @@ impl LoadEffect for UserEffect {
     }
 }
 
-/// Bounds and values are in SI already.
+/// The card of a parameter. Its bounds and values are already in SI.
 fn card_of(parameter: &UserParameter) -> ParameterCard<'_> {
     let about = parameter.about.as_deref().unwrap_or("");
     let card =

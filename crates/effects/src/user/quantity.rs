@@ -1,4 +1,4 @@
-//! Values of a parameter: numbers with a unit of its dimension, which agree with each other.
+//! Values of a parameter: numbers with a unit of its dimension that are consistent with each other.
 
 use super::EffectFileError;
 use super::value::Table;
@@ -8,7 +8,7 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::DeValue;
 
-/// A parameter's table whose unit is known.
+/// A parameter's table and its unit.
 pub(crate) struct Quantity<'a> {
     pub(crate) table: Table<'a>,
     pub(crate) unit: String,
@@ -39,7 +39,7 @@ impl Quantity<'_> {
         Ok((low, typical, high))
     }
 
-    /// Mean, within the bounds, and standard deviation, if they are stated.
+    /// Mean (within the bounds) and standard deviation, if they are stated.
     pub(crate) fn prior(&self, low: f64, high: f64) -> Result<Option<(f64, f64)>, EffectFileError> {
         let Some(value) = self.table.get("prior") else { return Ok(None) };
         let text = self.value_text("prior", value)?;
@@ -62,7 +62,7 @@ impl Quantity<'_> {
         Ok(Some((mean.si, width)))
     }
 
-    /// An SI value as the file would write it.
+    /// An SI value as it would be written in the file.
     fn shown(&self, si: f64) -> String {
         units::exact_any_text(si, &self.unit)
     }
@@ -80,7 +80,7 @@ impl Quantity<'_> {
         }
     }
 
-    /// Whether a bare number is a value in this unit.
+    /// Whether a bare number counts as a value in this unit.
     fn is_plain(&self) -> bool {
         self.dimension.is_none() && matches!(self.unit.as_str(), "1" | "-" | "rad" | "decade")
     }
@@ -108,7 +108,8 @@ impl Quantity<'_> {
         self.table.error(value.span(), error.to_string(), format!("write `{}`", self.example(key)))
     }
 
-    /// The unit of a value must be that of the parameter; a bare number is none in per cent or degrees.
+    /// Checks the unit of a value against that of the parameter. A bare number isn't a value in per cent or
+    /// degrees.
     fn check(&self, key: &str, value: &Spanned<DeValue<'_>>, found: &Any) -> Result<(), EffectFileError> {
         let wanted = format!("a parameter in `{}` needs {}", self.unit, self.dimension.describe());
         let what = if found.dimension != self.dimension && found.unit.is_empty() {

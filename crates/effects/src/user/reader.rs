@@ -1,4 +1,4 @@
-//! From the tables of a file to effects: what must be there, and what must agree.
+//! Reads effects from the tables of a file, and checks that they are complete and consistent.
 
 use super::quantity::Quantity;
 use super::value::{Entry, Table};
@@ -16,7 +16,7 @@ use bulge_muscles::units;
 use std::ops::Range;
 use toml::de::{DeTable, DeValue};
 
-/// Keys of an effect, and of a parameter.
+/// The keys of an effect, and of a parameter.
 const EFFECT_KEYS: [&str; 12] = [
     "title",
     "force",
@@ -41,13 +41,13 @@ const TWINS: &str = "twins = [\"force-offset\"]";
 const PARAMETER: &str =
     "parameters.k = { unit = \"N\", typical = \"50 N\", low = \"0 N\", high = \"500 N\" }";
 
-/// How many characters a title, and another text, may have.
+/// The largest numbers of characters of a title and of other texts.
 const MAX_TITLE: usize = 120;
 const MAX_WORDS: usize = 4000;
-/// How many effects may be named as twins.
+/// The largest number of twins.
 const MAX_TWINS: usize = 20;
 
-/// All effects of a file, in its order.
+/// All effects of a file, in their order.
 pub(crate) fn effects(
     text: &str,
     origin: &str,
@@ -128,7 +128,8 @@ fn effect(all: &Table<'_>, entry: &Entry<'_>) -> Result<UserEffect, EffectFileEr
     })
 }
 
-/// The key of the formula, and of which quantity of the shape it is; `force` if there is none.
+/// The key of the formula, and the shape quantity that it describes. The key is `force` if there is no
+/// formula.
 fn formula_key(table: &Table<'_>) -> Result<(&'static str, Option<ShapeQuantity>), EffectFileError> {
     let shapes = ShapeQuantity::ALL.map(|quantity| (quantity.key(), Some(quantity)));
     let all = std::iter::once(("force", None)).chain(shapes);
@@ -166,7 +167,7 @@ fn words(
     Ok(Some(text.trim().to_owned()))
 }
 
-/// What happens physically: as stated, else as in the family, else the user's own.
+/// The mechanism: the stated one, or that of the family, or the user's own.
 fn mechanism(table: &Table<'_>, family: Option<&str>) -> Result<Mechanism, EffectFileError> {
     let catalogue = Catalogue::builtin();
     let of_family = catalogue
@@ -197,7 +198,7 @@ fn mechanism(table: &Table<'_>, family: Option<&str>) -> Result<Mechanism, Effec
     }
 }
 
-/// How exact the formula can be: loose if not stated.
+/// How exact the formula can be; loose if not stated.
 fn form(table: &Table<'_>) -> Result<Form, EffectFileError> {
     let Some((stated, place)) = table.words("form", FORM)? else { return Ok(Form::Loose) };
     Form::ALL.into_iter().find(|form| form.name() == stated.trim()).ok_or_else(|| {
@@ -236,7 +237,7 @@ fn twins(table: &Table<'_>, own: &str) -> Result<Vec<String>, EffectFileError> {
     Ok(twins)
 }
 
-/// The parameters, with the places of their names.
+/// The parameters, and the places of their names.
 fn parameters(
     table: &Table<'_>,
     variables: &[Variable],
@@ -301,7 +302,7 @@ fn parameter(
     Ok(UserParameter { name: (*name).to_owned(), unit, factor, dimension, typical, low, high, prior, about })
 }
 
-/// The unit, which may also be the number 1.
+/// The unit, which may be written as the number 1.
 fn unit_text(table: &Table<'_>) -> Result<Option<(String, Range<usize>)>, EffectFileError> {
     let Some(value) = table.get("unit") else { return Ok(None) };
     match value.get_ref() {

@@ -1,4 +1,4 @@
-//! A user's own effect of the shape: a formula that the equilibrium of the net is solved with.
+//! User-defined shape effects: the equilibrium of the net is solved with a formula.
 
 use bulge_fibre::{Formula, FormulaInput, Jet, MOST_PARAMETERS, Parts};
 use bulge_muscles::{Dimension, MuscleError};
@@ -9,22 +9,23 @@ use std::sync::Arc;
 
 use crate::expression::{Expression, ExpressionError, SHAPE_VARIABLES};
 
-/// What a formula of the shape says.
+/// The quantity that a shape formula describes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ShapeQuantity {
-    /// Stored energy of the wall per area at rest \[N/m\], besides that of the muscle's own bladder and cloth.
+    /// Stored energy of the wall per area at rest \[N/m\], added to that of the muscle's own bladder and
+    /// cloth.
     Energy,
-    /// Area on which the pressure acts at a radius \[m^2\], instead of that of the polygon or circle.
+    /// Area on which the pressure acts at a radius \[m^2\], in place of that of the polygon or circle.
     Area,
-    /// Turn of the fibres about the axis per length of fibre \[1/m\], instead of sin(alpha0)/r0.
+    /// Turn of the fibres about the axis per length of fibre \[1/m\], in place of sin(alpha0)/r0.
     Twist,
 }
 
 impl ShapeQuantity {
-    /// All of them.
+    /// All shape quantities.
     pub const ALL: [Self; 3] = [Self::Energy, Self::Area, Self::Twist];
 
-    /// Its key in a file.
+    /// The key in a file.
     #[must_use]
     pub const fn key(self) -> &'static str {
         match self {
@@ -42,7 +43,7 @@ impl ShapeQuantity {
         }
     }
 
-    /// The variables that it can't depend on.
+    /// The variables on which it can't depend.
     const fn without(self) -> &'static [FormulaInput] {
         match self {
             Self::Energy => &[],
@@ -52,22 +53,24 @@ impl ShapeQuantity {
     }
 }
 
-/// A formula of the shape, differentiated.
+/// A shape formula with its derivatives.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ShapeFormula {
-    /// What it says.
+    /// The quantity that it describes.
     pub quantity: ShapeQuantity,
-    /// As it was written.
+    /// The formula as written.
     pub expression: Expression,
-    /// With the derivatives that the equilibrium needs.
+    /// The formula with the derivatives that the equilibrium needs.
     tape: Arc<Tape>,
 }
 
 impl ShapeFormula {
-    /// Reads a formula over [`SHAPE_VARIABLES`] and these parameters, and differentiates it: an energy twice by the stretches, an area twice by the radius.
+    /// Reads a formula of [`SHAPE_VARIABLES`] and these parameters and differentiates it: an energy twice by
+    /// the stretches, an area twice by the radius.
     ///
     /// # Errors
-    /// As [`Expression::parse`]; also if it has more than [`MOST_PARAMETERS`] parameters, depends on what it can't depend on, or is too long.
+    /// As [`Expression::parse`]; also if it has more than [`MOST_PARAMETERS`] parameters, uses a variable on
+    /// which the quantity can't depend, or is too long.
     pub fn parse(
         quantity: ShapeQuantity,
         text: &str,
@@ -113,8 +116,8 @@ impl ShapeFormula {
         Ok(Self { quantity, expression, tape: Arc::new(tape) })
     }
 
-    /// Puts the formula into the parts of a muscle, with its parameters; where it changes nothing (a stiffness of 0) and nothing moves with it, the parts stay
-    /// what they are.
+    /// Puts the formula with its parameters into the parts of a muscle. If it changes nothing (at zero
+    /// stiffness) and `theta` carries no derivatives, the parts stay unchanged.
     pub(crate) fn reshape(&self, theta: &[Jet], parts: &mut Parts<Jet>) -> Result<(), MuscleError> {
         let moves = theta.iter().any(|number| number.gradient().iter().any(|slope| *slope != 0.0));
         if !moves && self.changes_nothing(theta, parts) {
@@ -133,7 +136,7 @@ impl ShapeFormula {
         Ok(())
     }
 
-    /// Whether it says what is said without it, at some stretches, radii and pressures.
+    /// Whether the formula equals the built-in expression at a few stretches, radii and pressures.
     fn changes_nothing(&self, theta: &[Jet], parts: &Parts<Jet>) -> bool {
         let of = |[l1, l2, p]: [f64; 3]| {
             let (r0, angle) = (parts.radius.value(), parts.angle.value());
@@ -153,7 +156,7 @@ impl ShapeFormula {
     }
 }
 
-/// The derivative by l2, with r = l2 r0 moving along.
+/// The derivative by l2, with r = l2 r0 following l2.
 fn by_circumference(tape: &mut Builder, of: Place) -> Place {
     let [by_stretch, by_radius] =
         [FormulaInput::AroundAxis, FormulaInput::Radius].map(|input| tape.derivative(of, input as usize));
@@ -162,7 +165,7 @@ fn by_circumference(tape: &mut Builder, of: Place) -> Place {
     tape.operate(Operator::Add, by_stretch, along)
 }
 
-/// The derivative by r, with l2 = r/r0 moving along.
+/// The derivative by r, with l2 = r/r0 following r.
 fn by_radius(tape: &mut Builder, of: Place) -> Place {
     let by_stretch = by_circumference(tape, of);
     let reference = tape.input(FormulaInput::ReferenceRadius as usize);
@@ -190,7 +193,8 @@ mod tests {
         Parts::of(&muscle.with(Parameter::C10, c10).unwrap())
     }
 
-    /// The bladder of the catalogue as a formula: the same force, stiffness, volume and derivatives, with the ODE and by quadrature.
+    /// The bladder of the catalogue as a formula gives the same force, stiffness, volume and derivatives,
+    /// with the ODE and by quadrature.
     #[test]
     fn the_shipped_bladder_as_a_formula_is_the_same() {
         for muscle in [clamped(), cylinder().with(Parameter::Wall, 0.002).unwrap()] {
@@ -214,7 +218,7 @@ mod tests {
                     assert!(
                         relative(one.stiffness_adiabatic_n_per_m, other.stiffness_adiabatic_n_per_m) < 1e-10
                     );
-                    // With derivatives, as fits ask for it: by c10.
+                    // Derivatives by c10, as fits ask for them.
                     let mut moving = [shipped.still(), formula.still()];
                     let c10 = Jet::variable(3e5, 0);
                     moving[0].rubber.as_mut().unwrap().c10 = c10;
@@ -244,7 +248,7 @@ mod tests {
         parameters.a = { unit = \"1\", typical = 1.3, low = 0.5, high = 8 }\n\
         parameters.h = { unit = \"mm\", typical = \"2 mm\", low = \"0.5 mm\", high = \"5 mm\" }\n";
 
-    /// dF = 2 pi r0 (W_1 - W_2 l1 cot^2(alpha0)/l2) of a cylinder, W per area at rest.
+    /// dF = 2 pi r0 (W_1 - W_2 l1 cot^2(alpha0)/l2) for a cylinder, with W per area at rest.
     #[test]
     fn gent_and_ogden_pull_as_their_energies_say() {
         let (muscle, contraction) = (cylinder(), 0.15);
@@ -264,7 +268,7 @@ mod tests {
             let found = force(&parts, 4.0, contraction) - force(&muscle, 4.0, contraction);
             assert!((found / expected - 1.0).abs() < 1e-8, "{found} {expected}");
         }
-        // Both are neo-Hookean in their limits: c10 = mu/2.
+        // Both tend to the neo-Hookean law with c10 = mu/2.
         let neo = force(&stated(&clamped(), 3e5), 3.0, 0.1);
         for (text, theta) in [(GENT, [6e5, 1e9, 0.002]), (OGDEN, [6e5, 2.0, 0.002])] {
             let limit = force(&own(text).reshaped(&theta, &clamped()).unwrap(), 3.0, 0.1);
@@ -272,7 +276,8 @@ mod tests {
         }
     }
 
-    /// The gas on the inner face of a wall, and fibres that turn as in another braid, as formulas: what the catalogue computes.
+    /// Formulas for the gas on the inner face of a wall and for fibres that turn as in another braid agree
+    /// with the catalogue.
     #[test]
     fn area_and_twist_are_those_of_the_net() {
         let muscle = clamped();
@@ -290,7 +295,7 @@ mod tests {
         for contraction in [0.02, 0.1, 0.2] {
             let (a, b) = (force(&inside, 3.0, contraction), force(&wall, 3.0, contraction));
             assert!((a / b - 1.0).abs() < 1e-10, "{a} {b}");
-            // 5 % more turn at 2 bar is 1.25 % at 0.5 bar: only the product counts.
+            // 5 % more turn at 2 bar corresponds to 1.25 % at 0.5 bar, because only the product counts.
             let at = |k: f64, bar: f64| {
                 let parts = turned.reshaped(&[k], &muscle).unwrap();
                 force(&parts, bar, contraction) / bar
@@ -298,13 +303,14 @@ mod tests {
             let (a, b) = (at(0.25e-6, 2.0), at(1e-6, 0.5));
             assert!((a / b - 1.0).abs() < 1e-10 && (a / at(0.0, 2.0) - 1.0).abs() > 1e-3, "{a} {b}");
         }
-        // Nothing changes at 0.
+        // At 0 nothing changes.
         assert_eq!(own(area).reshaped(&[0.0], &muscle).unwrap(), Parts::of(&muscle));
         assert_eq!(turned.reshaped(&[0.0], &muscle).unwrap(), Parts::of(&muscle));
         assert_eq!(own(SHAPE_EXAMPLE).reshaped(&[0.0, 0.002], &muscle).unwrap(), Parts::of(&muscle));
     }
 
-    /// F = dU/dl at constant pressure: the force of a muscle with a formula is the slope of its potential, here dF/dp = -dV/dl.
+    /// Since F = dU/dl at constant pressure, the force of a muscle with a formula derives from a potential.
+    /// The test is dF/dp = -dV/dl.
     #[test]
     fn formulas_obey_maxwell() {
         let parts = own(GENT).reshaped(&[6e5, 20.0, 0.002], &clamped()).unwrap();
@@ -318,7 +324,7 @@ mod tests {
         assert!(problem.solve(Given::Force(0.0), Approach::Auto).unwrap().contraction - limit < 1e-9);
     }
 
-    /// A sling that comes taut on the way: its energy has a kink, so the meridian is integrated.
+    /// A sling that comes taut on the way. Its energy has a kink, so the meridian is integrated.
     #[test]
     fn a_kink_is_integrated() {
         let sling = "[effects.sling]\ntitle = \"Sling\"\nenergy = \"k*max(0, l2 - 1.2)^2\"\n\
@@ -329,11 +335,11 @@ mod tests {
             let found = problem.follow(contraction, Approach::Auto).unwrap();
             (found.force_n, problem.gradient(contraction, Approach::Auto).unwrap())
         };
-        // Slack up to a contraction, then a loss that grows with the stiffness.
+        // The sling is slack up to a contraction. Beyond it the loss of force grows with the stiffness.
         assert!((at(2e3, 0.03).0 / at(0.0, 0.03).0 - 1.0).abs() < 1e-9);
         let [soft, stiff] = [2e3, 4e3].map(|k| at(0.0, 0.18).0 - at(k, 0.18).0);
         assert!(soft > 1.0 && stiff > 1.5 * soft, "{soft} {stiff}");
-        // dF/dp = -dV/dl, as exactly as derivatives pass a kink whose place moves within a step of the integration.
+        // dF/dp = -dV/dl, to the accuracy of derivatives across a kink that moves within an integration step.
         let gradient = at(2e3, 0.18).1;
         let volume = gradient.by_contraction[1] / clamped().length().to_m();
         assert!((gradient.by_pressure[0] / volume - 1.0).abs() < 2e-4);

@@ -1,4 +1,4 @@
-//! Files of effects: what is read, and what every slip is answered with.
+//! Files of effects: valid files, and the message for every kind of slip.
 
 use super::*;
 
@@ -12,7 +12,7 @@ fn refused(text: &str, place: (usize, usize), parts: &[&str]) {
     }
 }
 
-/// The example with one replacement, which must take place.
+/// The example with one replacement, which must occur.
 #[track_caller]
 fn with(from: &str, to: &str) -> String {
     assert!(EXAMPLE.contains(from), "{from}");
@@ -147,7 +147,7 @@ fn mechanism_and_form() {
         read("mechanism = \"give-of-the-rig\"\nform = \"near\""),
         (Mechanism::GiveOfTheRig, Form::Near)
     );
-    // A family of the catalogue has its mechanism; another is the user's own.
+    // A family of the catalogue has a mechanism. Any other family gets the user's own.
     assert_eq!(read("family = \"membrane-axial\""), (Mechanism::Rubber, Form::Loose));
     assert_eq!(read("family = \"hoses\"\nform = \"exact\""), (Mechanism::User, Form::Exact));
     let card = from_toml(&with("force =", "form = \"exact\"\nforce ="), "e.toml").unwrap();

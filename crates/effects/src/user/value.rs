@@ -1,4 +1,4 @@
-//! The tables of a file of effects: keys with their places, and what is wrong with their values.
+//! Tables of a file of effects: keys with their places, and errors in their values.
 
 use super::{EffectFileError, located};
 use crate::expression::{nearest, quoted};
@@ -9,12 +9,12 @@ use toml::de::{DeTable, DeValue};
 /// A key with its place and its value.
 pub(crate) type Entry<'a> = (&'a str, Range<usize>, &'a Spanned<DeValue<'a>>);
 
-/// One table, with the text around it.
+/// One table and the text around it.
 #[derive(Clone)]
 pub(crate) struct Table<'a> {
     pub(crate) text: &'a str,
     pub(crate) origin: &'a str,
-    /// How messages call it.
+    /// The name of the table in messages.
     pub(crate) title: String,
     pub(crate) span: Range<usize>,
     pub(crate) entries: &'a DeTable<'a>,
@@ -45,7 +45,7 @@ impl<'a> Table<'a> {
         self.entries.iter().find(|(key, _)| key.get_ref() == name).map(|(_, value)| value)
     }
 
-    /// Refuses keys that are not among these.
+    /// Refuses keys that are not in this list.
     pub(crate) fn only(&self, known: &[&'static str]) -> Result<(), EffectFileError> {
         let unknown = self.in_order().into_iter().find(|(name, ..)| !known.contains(name));
         let Some((name, span, _)) = unknown else { return Ok(()) };
@@ -80,7 +80,7 @@ impl<'a> Table<'a> {
         self.error(value.span(), what, format!("write `{example}`"))
     }
 
-    /// Text that says something.
+    /// A text that isn't empty.
     pub(crate) fn words(
         &self,
         name: &str,
@@ -96,7 +96,7 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// A table in it.
+    /// A table inside this one.
     pub(crate) fn table(
         &self,
         entry: &Entry<'a>,
@@ -107,16 +107,17 @@ impl<'a> Table<'a> {
         let DeValue::Table(entries) = value.get_ref() else {
             return Err(self.wrong_type(name, value, "a table", example));
         };
-        // A table made by dotted keys has no place of its own, so its name stands for it.
+        // A table made by dotted keys has no place of its own, so the place of its name is used.
         Ok(Table { text: self.text, origin: self.origin, title, span: key.clone(), entries })
     }
 
-    /// Where bytes of a text value stand in the file; all of the value if it was written with escapes.
+    /// The place in the file of some bytes of a text value. It is the whole value if that was written with
+    /// escapes.
     pub(crate) fn inside(&self, value: &str, place: &Range<usize>, part: Range<usize>) -> Range<usize> {
         let written = self.text.get(place.clone()).unwrap_or("");
         let quotes = if written.starts_with("\"\"\"") || written.starts_with("'''") { 3 } else { 1 };
         let body = written.get(quotes..).unwrap_or("");
-        // A line break directly behind three quotes does not belong to the text.
+        // A line break directly after three quotes doesn't belong to the text.
         let skipped = if quotes == 3 && body.starts_with("\r\n") {
             2
         } else {

@@ -1,4 +1,5 @@
-//! The whole catalogue: names, cards, what `off` means, and every derivative against differences.
+//! Tests of the whole catalogue: names, cards, the meaning of `off`, and every derivative compared with
+//! differences.
 
 use bulge_effects::{
     Action, Balance, Card, CardDocument, Catalogue, Effect, Form, Input, Jet, LoadEffect, Mechanism, Moment,
@@ -10,7 +11,7 @@ use bulge_numerics::{Random, Real};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-/// Names that files, scripts and reports rely on; the catalogue may hold more.
+/// Names that files, scripts and reports rely on. The catalogue may contain more.
 const NAMES: &[&str] = &[
     "end-radius",
     "fibre-count",
@@ -50,7 +51,7 @@ const NAMES: &[&str] = &[
     "specimen-spread",
 ];
 
-/// Lanes of the derivatives by pressure and contraction; those before are for the parameters.
+/// Lanes of the derivatives by pressure and contraction. The lanes before them are for the parameters.
 const PRESSURE: usize = 6;
 const CONTRACTION: usize = 7;
 
@@ -64,12 +65,12 @@ fn muscles(effect: &dyn Effect) -> Vec<Muscle> {
     all.filter(|muscle| effect.card().kind.is_none_or(|kind| kind == muscle.kind())).collect()
 }
 
-/// The cards of the parameters for one muscle: multiples become SI.
+/// The cards of the parameters for one muscle, with multiples converted to SI.
 fn cards<'a>(effect: &'a dyn Effect, muscle: &Muscle) -> Vec<ParameterCard<'a>> {
     effect.parameters().into_iter().map(|card| card.of(muscle)).collect()
 }
 
-/// A value inside the bounds of a parameter.
+/// A value within the bounds of a parameter.
 fn inside(random: &mut Random, card: &ParameterCard<'_>) -> f64 {
     let part = random.between(0.02, 0.98);
     if card.logarithmic {
@@ -79,7 +80,7 @@ fn inside(random: &mut Random, card: &ParameterCard<'_>) -> f64 {
     }
 }
 
-/// A sweep with reversals, in uneven steps of time.
+/// A sweep with reversals and uneven time steps.
 fn sweep(random: &mut Random, rows: usize) -> Vec<Moment> {
     let (mut out, mut sense): (Vec<Moment>, f64) = (Vec::with_capacity(rows), 1.0);
     let (mut contraction, mut pressure) = (random.between(0.05, 0.15), random.between(1e5, 4e5));
@@ -112,7 +113,7 @@ fn sweep(random: &mut Random, rows: usize) -> Vec<Moment> {
     out
 }
 
-/// An equilibrium of made-up laws that depend on pressure and contraction.
+/// An equilibrium from made-up laws that depend on pressure and contraction.
 fn balance(moment: &Moment, pressure: Jet, contraction: Jet) -> Balance {
     let force = pressure * (-contraction * 2.5 + 1.0) * 2.5e-3;
     let mid_radius = contraction * 0.06 + 0.011;
@@ -128,7 +129,7 @@ fn balance(moment: &Moment, pressure: Jet, contraction: Jet) -> Balance {
     }
 }
 
-/// Everything that an effect leaves at its three places along a sweep, with the differences that the readings are moved by.
+/// All outputs of an effect along a sweep: input, load and reading. `dp` and `de` are added to the readings.
 fn run(
     effect: &dyn Effect,
     setting: &Setting,
@@ -141,7 +142,7 @@ fn run(
     for moment in sweep {
         let (pressure, contraction) = (dp + moment.pressure, de + moment.contraction);
         let mut input = Input::of(pressure, contraction);
-        // Values other than 0 and 1, so that sums and products show.
+        // Values other than 0 and 1 reveal sums and products.
         input.spread = Jet::from(1e-3);
         input.give_force.linear = Jet::from(1e-7);
         input.give_tension.linear = Jet::from(2e-7);
@@ -162,7 +163,7 @@ fn run(
     out
 }
 
-/// The derivative of `f` at 0 to the fourth order in the step.
+/// The derivative of `f` at 0, to fourth order in the step.
 fn difference(f: impl Fn(f64) -> Vec<f64>, step: f64) -> Vec<f64> {
     let [near, far] = [step, 2.0 * step].map(|h| (f(h), f(-h)));
     let term = |i: usize| 8.0 * (near.0[i] - near.1[i]) - (far.0[i] - far.1[i]);
@@ -261,7 +262,7 @@ fn parameters_are_in_order() {
             let within = |value: f64| value >= card.low && value <= card.high;
             assert!(card.low < card.high && card.low.is_finite() && card.high.is_finite(), "{at}: bounds");
             assert!(within(card.typical), "{at}: typical");
-            // Below bounds that exclude it, 0 means that it isn't there.
+            // If the bounds exclude 0 from below, `off` = 0 means that the effect is absent.
             assert!(within(card.off) || (card.off == 0.0 && card.low > 0.0), "{at}: off");
             assert!(!card.logarithmic || card.low > 0.0, "{at}: logarithm");
             if let Some((mean, sd)) = card.prior {
@@ -307,7 +308,7 @@ fn off_changes_nothing_bit_for_bit() {
     }
 }
 
-/// The effect that isn't there.
+/// An effect that does nothing.
 #[derive(Debug)]
 struct Nothing;
 
@@ -336,7 +337,8 @@ fn derivatives_agree_with_differences() {
         for muscle in muscles(effect) {
             let cards = cards(effect, &muscle);
             for trial in 0..8 {
-                // Where the effect is off too: a screen asks for the derivative by an amplitude of 0.
+                // Derivatives are also tested with the effect off, because a screen needs them at an
+                // amplitude of 0.
                 let value = |card: &ParameterCard<'_>| {
                     if trial % 4 > 0 { inside(&mut random, card) } else { card.off.max(card.low) }
                 };
@@ -347,7 +349,7 @@ fn derivatives_agree_with_differences() {
     }
 }
 
-/// Derivatives of all outputs by every parameter, the pressure and the contraction.
+/// Checks the derivatives of all outputs by every parameter, the pressure and the contraction.
 fn check_derivatives(effect: &dyn Effect, muscle: &Muscle, theta: &[f64], sweep: &[Moment]) {
     let setting = Setting::of(muscle);
     let lanes: Vec<Jet> = theta.iter().enumerate().map(|(i, v)| Jet::variable(*v, i)).collect();
@@ -367,7 +369,8 @@ fn check_derivatives(effect: &dyn Effect, muscle: &Muscle, theta: &[f64], sweep:
         let differences = difference(|h| at(lane, h), 1e-4 * scale);
         for (i, (exact, difference)) in exact.iter().zip(differences).enumerate() {
             let derivative = exact.gradient()[lane];
-            // The values' rounding errors over the step are far below the second part; those of terms that cancel are of the size of the largest number.
+            // The rounding errors of the values, divided by the step, are far below the second term. Terms
+            // that cancel have rounding errors of the size of the largest parameter.
             let size = derivative.abs() + 1e-4 * exact.value().abs() / scale;
             let largest = theta.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
             assert!(
@@ -394,7 +397,7 @@ fn parts_move_as_differences_say() {
                 let theta: Vec<f64> = cards.iter().map(|card| inside(&mut random, card)).collect();
                 let lanes: Vec<Jet> = theta.iter().enumerate().map(|(i, v)| Jet::variable(*v, i)).collect();
                 let mut found = parts.still();
-                // A muscle may be unable to have the effect: no wall, no countable fibres.
+                // An effect may not fit a muscle that has no wall or no countable fibres.
                 if effect.reshape(&lanes, &mut found).is_err() {
                     continue;
                 }
@@ -416,7 +419,7 @@ fn parts_move_as_differences_say() {
                 }
             }
         }
-        // A textbook cylinder is no shipped muscle.
+        // No shipped muscle is a textbook cylinder.
         assert!(name == "end-taper" || is_shape == (reshaped > 0), "{name}: {reshaped}");
     }
 }
@@ -465,7 +468,7 @@ fn documents_hold_numbers_in_shown_units() {
     let rubber = CardDocument::of(catalogue.find("bladder-elasticity").unwrap().as_ref());
     let [modulus] = &rubber.parameters[..] else { panic!("{rubber:?}") };
     assert_eq!((modulus.unit.as_str(), modulus.key.as_str()), ("MPa", "c10"));
-    // Exactly: 0.3, not 0.30000000000000004.
+    // The numbers must be exact: 0.3, not 0.30000000000000004.
     let shown = [modulus.low, modulus.typical, modulus.high, modulus.off].map(|value| value.to_string());
     assert_eq!(shown, ["0", "0.3", "3", "0"]);
     assert_eq!((modulus.prior, modulus.plausible), (Some([0.3, 0.3]), Some([0.01, 1.2])));

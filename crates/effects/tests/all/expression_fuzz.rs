@@ -1,4 +1,5 @@
-//! Formulas and files of effects from random and damaged text: an answer or a message, never a panic, quickly.
+//! Formulas and effect files from random and damaged text give an answer or a message quickly, and never a
+//! panic.
 
 use bulge_effects::expression::{Expression, MAX_BYTES, VARIABLES};
 use bulge_effects::user;
@@ -9,7 +10,8 @@ use proptest::test_runner::{Config, TestRng, TestRunner};
 const PARAMETERS: [(&str, Dimension); 3] =
     [("k", Dimension::FORCE), ("eps_c", Dimension::NONE), ("mu", Dimension::AREA)];
 
-/// What is read must compute, be written and be read again; what is not must say where and why.
+/// A text that is read must evaluate, be written and be read again. A text that is refused must have a place
+/// and a reason.
 fn check_formula(text: &str) {
     for result in [Dimension::FORCE, Dimension::NONE] {
         match Expression::parse(text, &PARAMETERS, result) {
@@ -45,19 +47,19 @@ fn check_file(text: &str) {
     }
 }
 
-/// The same texts every time, so that a failure is found by everybody.
+/// The same texts every time, so that a failure is reproducible.
 fn runner(cases: u32) -> TestRunner {
     let config = Config { cases, failure_persistence: None, ..Config::default() };
     let random = TestRng::deterministic_rng(config.rng_algorithm);
     TestRunner::new_with_rng(config, random)
 }
 
-/// Some of these pieces, one after the other.
+/// A sequence of some of these pieces.
 fn pieces(of: &'static [&'static str], most: usize) -> impl Strategy<Value = String> {
     prop::collection::vec(prop::sample::select(of), 0..most).prop_map(|pieces| pieces.concat())
 }
 
-/// Some characters of a text replaced, inserted, cut out or repeated.
+/// A text with some characters replaced, inserted, cut out or repeated.
 fn damaged(text: &'static str) -> impl Strategy<Value = String> {
     let change = (any::<prop::sample::Index>(), 0..4_u8, any::<char>(), 0..20_usize);
     prop::collection::vec(change, 1..6).prop_map(move |changes| {

@@ -1,4 +1,4 @@
-//! The catalogue of effects and expressions: one program of tests, one module for each part.
+//! The catalogue of effects and expressions: one test program with one module for each topic.
 
 mod catalogue;
 mod expression_fuzz;

@@ -1,11 +1,11 @@
-//! Interpolation is exact to its degree; rows beyond the end of equilibria leave the others as they are.
+//! Interpolation is exact to its degree. Rows beyond the end of equilibria leave the others unchanged.
 
 use super::*;
 use crate::base::Shaped;
 use bulge_fibre::Parts;
 use bulge_muscles::{Angle, Bladder, Braided, Construction, Length, Muscle, Pressure};
 
-/// A braid of 25 degrees on rubber, its radius in mm and c10 in Pa.
+/// A braid of 25 degrees with a rubber bladder; its radius is in mm and c10 in Pa.
 pub(crate) fn braid(radius: f64, c10: f64) -> (Parts, Equilibrium) {
     let braided = Braided::new(Length::mm(radius), Angle::deg(25.0)).unwrap();
     let muscle = Muscle::new("b", Length::mm(120.0), Construction::Braided(braided)).unwrap();
@@ -15,7 +15,7 @@ pub(crate) fn braid(radius: f64, c10: f64) -> (Parts, Equilibrium) {
     (parts, equilibrium)
 }
 
-/// Nodes for rows about a pressure, from 1 % to a contraction.
+/// Nodes for rows around a pressure, from 1 % to a contraction.
 pub(crate) fn lattice(equilibrium: &Equilibrium, pressure: f64, most: f64) -> Lattice {
     let empty = Lattice::unsolved(equilibrium, 0, 1.0, false);
     let spans = [0.9, 1.0, 1.1].map(|part| empty.span(part * pressure, [0.01, most]).unwrap());
@@ -26,8 +26,8 @@ fn force(lattice: &Lattice, contraction: f64) -> Option<f64> {
     lattice.answer(2e5, contraction).map(|answer| answer.force.value)
 }
 
-/// Rows far beyond the end of equilibria change nothing of what lies before it, not in the last bit; up to where the force vanishes rows have whole stencils, and
-/// beyond the end the error is the one that a search ends with.
+/// Rows far beyond the end of equilibria change nothing before it, bit for bit. Rows up to the zero of the
+/// force have complete stencils. Beyond the end the error is that of a direct search.
 #[test]
 fn rows_beyond_the_end_change_nothing_before_it() {
     let equilibrium = braid(10.0, 3e5).1;
@@ -47,7 +47,7 @@ fn rows_beyond_the_end_change_nothing_before_it() {
         assert!((one - alone).abs() < 1e-4 * at(0.02).unwrap(), "{contraction}: {one} {alone}");
     }
     assert!(force(&far, pulls).is_some(), "no whole stencil at {pulls}");
-    // A row without stencil is solved itself, until it is known that there is none.
+    // A row without a stencil is solved directly, until equilibria are known to have ended.
     let rows =
         |contraction| answer(Some(&far), &equilibrium, [2e5, contraction], &mut None, &AtomicUsize::new(0));
     let mut ended = None;
@@ -67,8 +67,8 @@ fn rows_beyond_the_end_change_nothing_before_it() {
     assert!(ended.is_some());
 }
 
-/// Largest error over the force at 2 %, away from where equilibria end: 1e-6 of it, 1e-4 on the coarser lattice of a search, and the sixth order between them; the third
-/// order in the pressure where rows are at levels.
+/// Largest error over the force at 2 %, away from the end of equilibria: 1e-6, 1e-4 on the coarser lattice of
+/// a search, and sixth order between them. With rows at levels of pressure it is third order in the pressure.
 #[test]
 fn errors_fall_with_the_power_of_the_step() {
     let equilibrium = braid(10.0, 1e5).1;

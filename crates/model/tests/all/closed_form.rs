@@ -1,4 +1,5 @@
-//! Straight fibres in closed form within a fit: each row starts from the row before or from its own last equilibrium.
+//! Straight fibres in closed form within a fit. Each row starts from the previous row or from its own last
+//! equilibrium.
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
@@ -6,7 +7,7 @@ use bulge_effects::{Catalogue, Moment};
 use bulge_model::{Model, Prediction, Record, Wanted, Warm};
 use bulge_muscles::preset;
 
-/// Triangles between 0.5 and 35 % at three pressures: the pressure jumps from row to row where a sweep ends.
+/// Triangles between 0.5 and 35 % at three pressures. The pressure jumps from row to row where a sweep ends.
 fn record(rows: usize) -> Record {
     let moment = |i: usize| {
         let part = (i % 100) as f64 / 50.0;
@@ -31,7 +32,7 @@ fn model() -> Model {
         })
 }
 
-/// Numbers as a search tries them: small steps, and large ones.
+/// Parameter values as a search tries them, with small and large steps.
 fn trials(model: &Model) -> Vec<Vec<f64>> {
     let numbers = |friction: f64, stretch: f64, zero: f64, excess: f64| vec![friction, stretch, zero, excess];
     assert_eq!(model.parameters().len(), 4);

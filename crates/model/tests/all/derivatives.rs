@@ -1,4 +1,5 @@
-//! Every effect along a path: derivatives against differences, and nothing changed, bit for bit, where it is off.
+//! Every effect along a path: derivatives agree with differences, and an effect that is off changes nothing,
+//! bit for bit.
 
 #![expect(
     clippy::unwrap_used,
@@ -47,14 +48,14 @@ fn path(seed: u64) -> Record {
     Record::from_moments(moments, vec![0.0; 48], vec![0..24, 24..48]).unwrap()
 }
 
-/// Cheap answers: closed form, and the textbook cylinder with a wall.
+/// Muscles with cheap answers: closed form, and the textbook cylinder with a wall.
 fn muscles() -> Vec<Muscle> {
     let braid = "name = \"b\"\nkind = \"braided\"\nlength = \"250 mm\"\nradius = \"10 mm\"\nwall = \"2 mm\"\n\
                  braid_angle = \"25 deg\"\nends = \"cylinder\"\n";
     vec![preset("ppam-2-r16").unwrap(), bulge_muscles::from_toml(braid, "braid").unwrap()]
 }
 
-/// Derivatives by parameter `j` against a difference over `h`, to a millionth of the largest one.
+/// Compares the derivatives by parameter `j` with a difference over `h`, to a millionth of the largest one.
 fn check(model: &Model, record: &Record, theta: &[f64], j: usize, h: f64) {
     let wanted = Wanted { parameters: (0..theta.len()).collect(), readings: true };
     let found = model.evaluate(record, theta, &wanted).unwrap();
@@ -69,7 +70,7 @@ fn check(model: &Model, record: &Record, theta: &[f64], j: usize, h: f64) {
     for i in 0..record.len() {
         let quotient = (up[i] - down[i]) / (2.0 * h);
         let error = (found.jacobian[i * k + j] - quotient).abs();
-        // Rounding of a force of some 1000 N over the step.
+        // The rounding error of a force of some 1000 N, divided by the step.
         let rounding = 1e-12 * found.force[i].abs().max(100.0) / h;
         let p = &model.parameters()[j];
         assert!(
@@ -90,13 +91,13 @@ fn derivatives_agree_with_differences() {
         for muscle in muscles() {
             for effect in Catalogue::builtin().iter() {
                 let Ok(model) = Model::new(&muscle).with(effect, None) else { continue };
-                // Those that need shooting are tried with fewer rows elsewhere.
+                // Effects that need shooting are tested with fewer rows elsewhere.
                 if model.is_costly(&model.start()).unwrap_or(true) {
                     continue;
                 }
                 let mut theta = model.start();
                 for (value, p) in theta.iter_mut().zip(model.parameters()) {
-                    // Away from off and from the bounds.
+                    // The value is away from `off` and from the bounds.
                     if (*value - p.off).abs() < 1e-3 * (p.high - p.low) {
                         *value += 0.02 * (p.high - p.low);
                     }
@@ -177,7 +178,7 @@ fn laws_are_models() {
     }
 }
 
-/// A braid of which a second specimen has another length, radius and angle, and loops on both.
+/// A braid with a second specimen of another length, radius and angle, and loops on both.
 fn specimens(ends: &str) -> (Muscle, Record) {
     let braid = format!(
         "name = \"b\"\nkind = \"braided\"\nlength = \"250 mm\"\nradius = \"10 mm\"\nwall = \"2 mm\"\nbraid_angle = \"25 deg\"\nends = \"{ends}\"\n\n\
@@ -242,11 +243,11 @@ fn each_specimen_is_its_own_muscle_and_shares_the_effects() {
         let record = own(&record.moments()[rows.clone()]);
         let found = alone.evaluate(&record, &alone.start(), &Wanted::default()).unwrap().force;
         for (a, b) in force[rows].iter().zip(found) {
-            // A lattice for 48 rows, and none for 24.
+            // 48 rows get a lattice, 24 don't.
             assert!((a - b).abs() < 1e-5 * b.abs().max(100.0), "{specimen}: {a} {b}");
         }
     }
-    // A radius of 10.5 instead of 10 mm is one of 9.45 instead of 9 mm.
+    // A radius of 10.5 instead of 10 mm corresponds to 9.45 instead of 9 mm.
     let wide = with(of_both(&muscle), "radius-error", &[0.0105]);
     let force = wide.evaluate(&record, &wide.start(), &Wanted::default()).unwrap().force;
     let second = muscle.of_specimen("2").unwrap().with(Parameter::Radius, 0.00945).unwrap();
@@ -254,7 +255,7 @@ fn each_specimen_is_its_own_muscle_and_shares_the_effects() {
     for (a, b) in force[24..].iter().zip(found.force) {
         assert!((a - b).abs() < 1e-5 * b.abs().max(100.0), "{a} {b}");
     }
-    // Zeros come with the mounting: each specimen has its own.
+    // Zero errors come with the mounting, so each specimen has its own.
     for (effect, numbers) in [("force-offset", 2), ("length-zero-error", 2), ("force-gain", 1)] {
         let model = of_both(&muscle).with(catalogue.find(effect).unwrap(), None).unwrap();
         assert_eq!(model.parameters().len(), numbers, "{effect}");

@@ -1,4 +1,5 @@
-//! Equilibria that are held: exact where they were solved, to first order beside it, and shared with models that leave the muscle as it is.
+//! Held equilibria are exact where they were solved and of first order beside it. They are shared with models
+//! that leave the muscle unchanged.
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
@@ -16,7 +17,7 @@ fn model(effects: &[&str]) -> Model {
     effects.iter().fold(base, |model, name| model.with(catalogue.find(name).unwrap(), None).unwrap())
 }
 
-/// Slow strokes at three pressures: so many rows that a lattice is worth its while.
+/// Slow strokes at three pressures, with enough rows for a lattice to pay off.
 fn record() -> Record {
     let moment = |i: u32| Moment {
         direction: 1.0,
@@ -35,7 +36,7 @@ fn wanted() -> Wanted {
     Wanted { parameters: vec![0, 1, 2], readings: false }
 }
 
-/// The shape changed by a part of what a data sheet leaves open, and a number of the input as well.
+/// The shape changed by a fraction of what a data sheet leaves open, together with an input parameter.
 fn moved(part: f64) -> Vec<f64> {
     vec![THETA[0] * (1.0 + 0.01 * part), THETA[1] + 0.003 * part, THETA[2] + 2e-4 * part]
 }
@@ -48,7 +49,7 @@ fn what_is_held_is_exact_where_it_was_solved() {
     let solved = model.evaluate_warm(&record, &THETA, &wanted(), &warm).unwrap();
     assert!(warm.is_held());
     assert_eq!(solved, model.evaluate_warm(&record, &THETA, &wanted(), &warm).unwrap());
-    // Inputs are not linear in anything: only the shape is.
+    // Only the shape is linearised, not the input.
     let shifted = vec![THETA[0], THETA[1], 5e-4];
     let held = model.evaluate_warm(&record, &shifted, &wanted(), &warm).unwrap();
     let full = model.evaluate(&record, &shifted, &wanted()).unwrap();
@@ -109,7 +110,7 @@ fn what_is_shared_serves_the_same_muscle_only() {
     }
 }
 
-/// Near the largest contraction the nodes beyond have no equilibrium: stencils lie aside there.
+/// Near the largest contraction the next nodes have no equilibrium, so stencils are shifted.
 #[test]
 fn rows_next_to_the_end_of_equilibria_are_those_solved_alone() {
     let model = model(&["radius-error", "bladder-elasticity"]);
@@ -123,7 +124,7 @@ fn rows_next_to_the_end_of_equilibria_are_those_solved_alone() {
         model.evaluate(&record, &theta, &Wanted::default()).map(|found| found.force)
     };
     let mut end = 0.1;
-    // The last of them are hard to find for any search.
+    // The last rows are hard for any search.
     while forces(&[end + 0.005]).is_ok() {
         end += 0.001;
     }
@@ -134,6 +135,6 @@ fn rows_next_to_the_end_of_equilibria_are_those_solved_alone() {
     let full = found.iter().fold(0.0_f64, |most, force| most.max(force.abs()));
     let interpolated = errors.iter().filter(|error| **error > 0.0).count();
     let worst = errors.iter().copied().fold(0.0, f64::max);
-    // Up to where the force vanishes rows are interpolated; the rest, next to the end, is solved row by row.
+    // Rows up to the zero of the force are interpolated. The rest, next to the end, is solved row by row.
     assert!(worst < 1e-4 * full && 2 * interpolated > errors.len(), "{worst} N, {interpolated}");
 }

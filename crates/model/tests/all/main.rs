@@ -1,4 +1,5 @@
-//! Models against closed forms, shooting and finite differences: one program of tests, one module for each part.
+//! Models against closed forms, shooting and finite differences: one test program with one module for each
+//! topic.
 
 mod closed_form;
 mod derivatives;

@@ -1,4 +1,4 @@
-//! Muscles whose every row is a search for an equilibrium: derivatives, warm starts, the lattice, and rows that don't count.
+//! Muscles whose every row takes shooting: derivatives, warm starts, the lattice, and rows that don't count.
 
 #![expect(
     clippy::unwrap_used,
@@ -26,7 +26,7 @@ fn model(muscle: &Muscle, effects: &[&str]) -> Model {
         .fold(Model::new(muscle), |model, name| model.with(catalogue.find(name).unwrap(), None).unwrap())
 }
 
-/// A static map: every contraction at every pressure.
+/// A static map with every contraction at every pressure.
 fn map(pressures: &[f64], contractions: &[f64]) -> Record {
     let at = |p: &f64| contractions.iter().map(|e| Moment::at_rest(*p, *e)).collect::<Vec<_>>();
     let moments: Vec<Moment> = pressures.iter().flat_map(at).collect();
@@ -38,7 +38,8 @@ fn force(model: &Model, record: &Record, theta: &[f64]) -> Vec<f64> {
     model.evaluate(record, theta, &Wanted::default()).unwrap().force
 }
 
-/// dF/d(number j) by differences extrapolated to no step: central ones, or forward from an off value on a bound.
+/// dF/d(parameter j) by differences extrapolated to zero step: central ones, or forward ones from an off
+/// value on a bound.
 fn difference(model: &Model, record: &Record, theta: &[f64], j: usize, h: f64, forward: bool) -> Vec<f64> {
     let at = |step: f64| {
         let mut moved = theta.to_vec();
@@ -87,7 +88,7 @@ fn derivatives_by_every_shape_agree_with_differences() {
                         *value += 0.02 * (p.high - p.low);
                     }
                 }
-                // Cloth of no circumference is no muscle beside one.
+                // Cloth of zero circumference has no neighbouring muscle to difference with.
                 if off && name == "lobes" {
                     continue;
                 }
@@ -97,14 +98,15 @@ fn derivatives_by_every_shape_agree_with_differences() {
                 for (j, p) in model.parameters().iter().enumerate().filter(|(_, p)| p.effect == name) {
                     let usual =
                         if p.value == p.off { 0.01 * (p.high - p.low) } else { (p.value - p.off).abs() };
-                    // Some are a number with a small uncertainty, such as a radius.
+                    // For some parameters this value is a typical size with a small uncertainty, such as a
+                    // radius.
                     let usual = usual.min(0.1 * (p.high - p.low));
                     let h = if off { 0.02 } else { 0.01 } * usual;
                     let expected = difference(&model, &record, &theta, j, h, off && theta[j] - h < p.low);
                     let largest = expected.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
                     for (i, expected) in expected.iter().enumerate() {
                         let error = (found.jacobian[i * k + j] - expected).abs();
-                        // The solver's answers are exact to some 1e-12; differences divide that by the step.
+                        // The solver's answers are exact to some 1e-12, which differences divide by the step.
                         let rounding = 3e-11 * found.force[i].abs().max(100.0) / h;
                         assert!(
                             error <= 1e-6 * largest + rounding,
@@ -113,7 +115,7 @@ fn derivatives_by_every_shape_agree_with_differences() {
                             found.jacobian[i * k + j]
                         );
                     }
-                    // The even ones have none at 0.
+                    // Effects that are even in a parameter have no derivative at 0.
                     tried += usize::from(largest > 0.0);
                 }
             }
@@ -166,7 +168,7 @@ fn warm_answers_are_cold_ones_on_any_number_of_threads() {
     }
 }
 
-/// At low pressure a stiff bladder leaves the fibres nothing to carry: no equilibrium.
+/// At low pressure a stiff bladder leaves the fibres no load to carry, so there is no equilibrium.
 #[test]
 fn rows_that_do_not_count_need_no_equilibrium() {
     let model = model(&braid(), &EFFECTS);
@@ -181,7 +183,7 @@ fn rows_that_do_not_count_need_no_equilibrium() {
     assert!(matches!(&error, ModelError::NoEquilibrium { rows, .. } if *rows == [2, 3]), "{error}");
     let error = model.evaluate_warm(&record, &theta, &wanted, &Warm::new()).unwrap_err();
     assert!(matches!(&error, ModelError::NoEquilibrium { rows, .. } if *rows == [2]), "{error}");
-    // The rows with a state are what they are without the others.
+    // The rows with a state don't depend on the others.
     let all = Wanted { parameters: vec![0, 2], readings: true };
     let partly = model.evaluate_partly(&record, &theta, &all, &Warm::new()).unwrap();
     assert_eq!(partly.without_state, [2, 3]);
@@ -194,7 +196,7 @@ fn rows_that_do_not_count_need_no_equilibrium() {
     assert!(matches!(partly.error, Some(ModelError::NoEquilibrium { .. })));
 }
 
-/// Rows between the nodes against the same rows alone, which are solved themselves.
+/// Compares interpolated rows with the same rows alone, which are solved directly.
 #[test]
 fn the_lattice_is_exact_to_a_millionth_of_full_scale() {
     let model = model(&braid(), &EFFECTS);
@@ -220,7 +222,7 @@ fn the_lattice_is_exact_to_a_millionth_of_full_scale() {
     assert!(between > 40, "{between}");
 }
 
-/// Rubber that an effect brings counts for later effects as that of the muscle itself does.
+/// Rubber added by an effect counts for later effects like that of the muscle itself.
 #[test]
 fn effects_see_the_bladder_of_the_reshaped_muscle() {
     let own = braid().with(Parameter::C10, 3e5).unwrap();
@@ -246,7 +248,7 @@ fn effects_see_the_bladder_of_the_reshaped_muscle() {
     }
 }
 
-/// Adds up what it is told of the strands' turn, and reads as 1e6 N per unit.
+/// Adds up the turn of the strands and reads 1e6 N per unit.
 #[derive(Debug)]
 struct Turns;
 
@@ -291,7 +293,7 @@ impl LoadEffect for Turns {
     }
 }
 
-/// How far the strands turn from the first to the last pressure at one contraction, in `steps` steps.
+/// The total turn of the strands from the first to the last pressure at one contraction, in `steps` steps.
 fn turned(muscle: &Muscle, effects: &[(&str, &[f64])], pressures: [f64; 2], eps: f64, steps: u32) -> f64 {
     let catalogue = Catalogue::builtin();
     let model = effects.iter().fold(Model::new(muscle), |model, (name, values)| {
@@ -314,8 +316,9 @@ fn turned(muscle: &Muscle, effects: &[(&str, &[f64])], pressures: [f64; 2], eps:
     (with - without) / 1e6
 }
 
-/// Against an independent solution of the same clamped net (250 mm, r0 10.7 mm, 25 deg, wall 2 mm, c10 0.3 MPa): at mid-length the bladder turns the
-/// strands by A/p, A = 0.9, 1.5 and 2.1 % bar at 5, 10 and 15 %; fibres of 0.2 %/kN turn them by 0.06 %/bar at 10 %.
+/// Reference: an independent solution of the same clamped net (250 mm, r0 10.7 mm, 25 deg, wall 2 mm, c10 0.3
+/// MPa). At mid-length the bladder turns the strands by A/p with A = 0.9, 1.5 and 2.1 % bar at 5, 10 and 15
+/// %. Fibres of 0.2 %/kN turn them by 0.06 %/bar at 10 %.
 #[test]
 fn strands_turn_with_the_pressure_where_fibres_or_bladder_give() {
     let file = "name = \"b\"\nkind = \"braided\"\nlength = \"250 mm\"\nradius = \"10.7 mm\"\nwall = \"2 mm\"\n\
@@ -326,24 +329,25 @@ fn strands_turn_with_the_pressure_where_fibres_or_bladder_give() {
     for (eps, area) in [(0.05, 0.9e3), (0.1, 1.5e3), (0.15, 2.1e3)] {
         let found = turned(&muscle, &[stiff, bladder], [3e5, 6e5], eps, 30);
         let expected = area * (1.0 / 3e5 - 1.0 / 6e5);
-        // The coefficients have one decimal, and turn and A/p agree within 3 % there.
+        // The coefficients have one decimal. There the turn and A/p agree within 3 %.
         assert!((found / expected - 1.0).abs() < 0.08, "{eps}: {found} {expected}");
-        // Steps are as long as the sampling makes them.
+        // The length of a step depends on the sampling.
         let coarse = turned(&muscle, &[stiff, bladder], [3e5, 6e5], eps, 3);
         assert!((coarse / found - 1.0).abs() < 2e-3, "{coarse} {found}");
     }
-    // Stretched fibres, known to the equilibrium or not.
+    // Stretched fibres give the same turn, whether the equilibrium includes the stretch or not.
     let known = turned(&muscle, &[("fibre-stretch", &[2e-6])], [1e5, 6e5], 0.1, 10);
     let usual = turned(&muscle, &[], [1e5, 6e5], 0.1, 10);
     assert!((known / 5.0 - 0.6e-3).abs() < 0.05e-3, "{known}");
     assert!((usual / known - 1.0).abs() < 0.1, "{usual} {known}");
-    // Rigid fibres without a bladder: the shape doesn't depend on the pressure.
+    // With rigid fibres and no bladder the shape doesn't depend on the pressure.
     assert!(turned(&muscle, &[stiff], [1e5, 6e5], 0.1, 10).abs() < 1e-6);
 }
 
 #[test]
 fn rows_beyond_the_limit_have_no_state_with_a_lattice_or_without() {
-    // A stiff bladder at low pressure: equilibria end within the range of contraction, at each pressure elsewhere.
+    // With a stiff bladder at low pressure, equilibria end within the range of contractions, at each pressure
+    // at another one.
     let muscle = braid();
     let model = model(&muscle, &["bladder-elasticity"]);
     let theta = [6e5];
