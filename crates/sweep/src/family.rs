@@ -358,7 +358,7 @@ impl Member {
     /// Outputs at a contraction at which the muscle pulls.
     ///
     /// # Errors
-    /// If there is no equilibrium, or if the muscle would push or its fibres slacken: the error names the limit.
+    /// If there is no equilibrium, or if the muscle would push or its fibres slacken (naming the limit).
     pub fn pulling(
         &self,
         contraction: f64,
