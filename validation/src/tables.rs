@@ -1,4 +1,4 @@
-//! Tables against the closed form from which they were built, and against each other's outputs.
+//! Tables against the closed form that they approximate, and against their own derivatives.
 
 use bulge_fibre::closed_form::{self, ClosedForm};
 use bulge_sweep::{Plan, tabulate};

@@ -209,6 +209,7 @@ impl Joint {
             return Ok(low);
         }
         muscle.pull(angle, high)?;
+        // Bisection keeps `high` a pressure at which the muscle pulls.
         while high - low > PRESSURE_TOLERANCE * high {
             let middle = 0.5 * (low + high);
             match muscle.pull(angle, middle) {

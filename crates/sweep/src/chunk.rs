@@ -21,8 +21,8 @@ use crate::family_error::FamilyError;
 use crate::plan::Plan;
 use crate::points::finite;
 
-/// Points of a part of a chunk. There are enough that the muscle which two parts have in common costs little,
-/// and few enough that a chunk of muscles which need an integration has parts for every thread.
+/// Points of a part of a chunk. The number is large enough that a muscle shared by two parts costs little. It
+/// is small enough that a chunk of muscles that need an integration has parts for every thread.
 const PART: u64 = 256;
 
 /// The points of a chunk, column by column.
@@ -33,7 +33,8 @@ pub struct Chunk {
     /// Values of the axes in SI, in the order of the plan. On an axis up to the limit, the contraction is set
     /// to the lower end if the muscle has no limit or a limit below that end.
     pub axes: Vec<Vec<f64>>,
-    /// Values of the outputs in SI, in the order of the plan; meaningless where [`Chunk::infeasible`] gives a reason.
+    /// Values of the outputs in SI, in the order of the plan. They are meaningless where
+    /// [`Chunk::infeasible`] gives a reason.
     pub outputs: Vec<Vec<f64>>,
     /// Reasons of the points without equilibrium, with their index in the chunk, in rising order.
     pub infeasible: Vec<(usize, String)>,
@@ -172,7 +173,8 @@ impl<'a> Computer<'a> {
         columns
     }
 
-    /// A chunk as a Parquet file: `index` int64, the axes as required doubles, the outputs as optional doubles, `infeasible` as optional text.
+    /// A chunk as a Parquet file: `index` int64, the axes as required doubles, the outputs as optional
+    /// doubles, `infeasible` as optional text.
     /// Metadata: `bulge.columns` (names and units), `bulge.sweep` (`about`).
     ///
     /// # Errors

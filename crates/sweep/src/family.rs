@@ -168,7 +168,7 @@ impl Family {
     /// effects add to the force.
     ///
     /// # Errors
-    /// If there is no equilibrium, or none beside it.
+    /// If there is no equilibrium at the point or next to it.
     pub fn gradients(
         &self,
         point: &[f64],

@@ -104,7 +104,8 @@ impl Plan {
     /// beside it.
     ///
     /// # Errors
-    /// If the file can't be read, is larger than 1 MiB, is not UTF-8 or is no valid sweep, or if its muscle can't be read. The message is complete.
+    /// If the file can't be read, is larger than 1 MiB, is not UTF-8 or is no valid sweep, or if its muscle
+    /// can't be read. The message is complete.
     pub fn read(path: impl AsRef<Path>) -> Result<Self, FileError> {
         let path = path.as_ref();
         let (text, origin) = (KIND.read(path)?, path.display().to_string());

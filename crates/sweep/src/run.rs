@@ -291,7 +291,7 @@ impl Run<'_> {
 pub struct Piece {
     /// The Parquet file `points/000000.parquet`.
     pub parquet: Vec<u8>,
-    /// The CSV file `csv/000000.csv`, if it was asked for.
+    /// The CSV file `csv/000000.csv`, if it was requested.
     pub csv: Option<String>,
     /// The promise `chunks/000000.json`, which must be written last.
     pub promise: ChunkManifest,

@@ -54,7 +54,8 @@ impl Sobol {
     }
 }
 
-/// The direction numbers of a primitive polynomial of degree s with inner coefficients a_1 ... a_(s-1) (eq. 3 of Joe and Kuo, in units of 2^-52):
+/// The direction numbers of a primitive polynomial of degree s with inner coefficients a_1 ... a_(s-1) (eq. 3
+/// of Joe and Kuo, in units of 2^-52):
 ///
 /// ```text
 /// v_k = a_1 v_(k-1) xor ... xor a_(s-1) v_(k-s+1) xor v_(k-s) xor v_(k-s)/2^s

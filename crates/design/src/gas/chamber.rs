@@ -316,6 +316,7 @@ impl<'a> Chamber<'a> {
                 -found.stiffness_n_per_m * l0 - slope,
             ))
         };
+        // If Newton's method leaves the neighbourhood, the general search below takes over.
         if let Some(mut e) = near {
             for _ in 0..8 {
                 let Ok((value, slope)) = excess(e) else { break };

@@ -145,6 +145,7 @@ impl<'a> Stroke<'a> {
                 instead: "it is less than the load: take a higher pressure, a smaller load or a shorter way",
             });
         }
+        // The ambient air that the muscle holds without pressure is not taken from the supply.
         let slack = follow(self.muscle, LEAST_PRESSURE_PA, self.from, Approach::Auto)?;
         let heat = R_AIR * self.temperature_k;
         let gas =

@@ -84,7 +84,8 @@ impl Joint {
     /// requested.
     ///
     /// # Errors
-    /// If the file can't be read, is larger than 1 MiB, is not UTF-8 or is no valid joint, or if a muscle can't be read. The message is complete.
+    /// If the file can't be read, is larger than 1 MiB, is not UTF-8 or is no valid joint, or if a muscle
+    /// can't be read. The message is complete.
     pub fn read<T>(
         path: &Path,
         checks: Checks,

@@ -194,6 +194,7 @@ impl Joint {
         let stand = |agonist: f64| self.stand(angle, [agonist, self.partner(angle, agonist, outside)?]);
         let ends = [stand(range[0])?.stiffness_nm_per_rad, stand(range[1])?.stiffness_nm_per_rad];
         let [least, most] = [ends[0].min(ends[1]), ends[0].max(ends[1])];
+        // Rounding may put a stiffness at an end of the range slightly outside.
         let slack = 1e-9 * most.abs();
         if !(stiffness >= least - slack && stiffness <= most + slack) {
             return Err(JointError::Stiffness { angle, stiffness, range: [least, most] });

@@ -155,6 +155,7 @@ fn one(
         },
     };
     let [low, high] = family.limits().length_m;
+    // A given or rounded length may be outside the range.
     if !(low..=high).contains(&length) {
         return not(format!(
             "it would be {:.1} mm long: it can be had from {:.0} to {:.0} mm",

@@ -117,6 +117,7 @@ impl Draft<'_> {
             }
         }
         bytes.extend(self.text.as_bytes());
+        // The checksum covers all bytes before it.
         let checksum = crc64(&bytes);
         bytes.extend(checksum.to_le_bytes());
         Ok(bytes)

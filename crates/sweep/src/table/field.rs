@@ -55,6 +55,6 @@ pub trait Field: Sync {
     /// All outputs and their derivatives by the axes: `gradients[o * axes + i]`.
     ///
     /// # Errors
-    /// If there is no value at the point or beside it.
+    /// If there is no value at the point or next to it.
     fn gradients(&self, point: &[f64], values: &mut [f64], gradients: &mut [f64]) -> Result<(), NoValue>;
 }

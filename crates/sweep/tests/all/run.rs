@@ -305,7 +305,7 @@ fn the_unfinished_files_of_others_at_work_are_left_alone() {
     assert!(!other.exists());
 }
 
-/// Each begins when others write: whoever looks for half-written files must not take theirs.
+/// Each process begins while others write. A search for unfinished files must not take theirs.
 #[test]
 fn many_begin_at_once_and_none_removes_what_another_writes() {
     let plan = plan(&CLOSED.replace("chunk = 64", "chunk = 5"));

@@ -43,6 +43,7 @@ impl Run<'_> {
             }
             (last, before, part) = (part, here, next);
         }
+        // The remaining angle pi/2 - theta, divided by dtheta/dt = |k| (1 - x)/|dm|.
         let opening = 1.0 - now.x;
         let time = if opening > 0.0 {
             (opening * (1.0 + now.x)).sqrt().atan2(now.x) * part.abs() / (now.choked.abs() * opening)
@@ -55,6 +56,7 @@ impl Run<'_> {
         *y = with(part);
         y[2] += time;
         let mut end = self.sample(y, phase)?;
+        // The pressures are equal, so the flow is exactly 0.
         end.flow_kg_per_s = 0.0;
         track.samples.push(end);
         Ok(true)

@@ -129,6 +129,7 @@ pub(super) fn run(filling: &Filling<'_>) -> Result<History, GasError> {
         if end.is_none() {
             end = Some(run.integrate(&mut y, &mut phase, &mut track, span, &mut steps)?);
         }
+        // Without heat the rest has a closed form; with heat, the slow phase follows.
         if end == Some(Event::Met) && !run.has_heat() {
             settled = run.meet(&mut y, phase, &mut track)?;
         }
@@ -360,6 +361,7 @@ impl Run<'_> {
         let mut f = |y: &State| self.right_hand_side(y, phase);
         let mut first = None;
         for event in candidates {
+            // Each event shortens the step, so that only an earlier one can replace it.
             if self.event(*event, y, phase)? > 0.0 {
                 let slope = f(before);
                 let value = |part: f64| {

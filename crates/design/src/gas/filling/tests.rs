@@ -81,7 +81,8 @@ fn a_supply_too_weak_to_choke_fills_on_a_sine_alone() {
     assert!((found.samples.last().unwrap().time_s / time - 1.0).abs() < 1e-8);
 }
 
-/// Subsonic venting to the ambient, r = p0/P: dt = -dP/(rate P w(p0/P)), by Simpson's rule in theta with r = b + (1 - b) sin(theta).
+/// Subsonic venting to the ambient with r = p0/P: dt = -dP/(rate P w(p0/P)), by Simpson's rule in theta with
+/// r = b + (1 - b) sin(theta).
 #[test]
 fn a_rigid_vessel_blows_down_exponentially() {
     let blow = Filling { supply: Supply::ambient(), start_pressure_pa: 6e5, ..filling(litre(), 0.0) };
@@ -210,7 +211,7 @@ fn the_time_is_that_of_a_quadrature() {
         }
         let t90 = found.time_90_s.unwrap();
         assert!((t90 / time - 1.0).abs() < 1e-4, "{t90} {time}");
-        // More samples are more steps: the times stay.
+        // More samples take more steps, but the times don't change.
         let fine = Filling { samples: 300, ..setup }.run().unwrap();
         let [a, b] = [&found, &fine].map(|found| found.samples.last().unwrap().time_s);
         assert!((a / b - 1.0).abs() < 1e-8 && (t90 / fine.time_90_s.unwrap() - 1.0).abs() < 1e-8, "{a} {b}");
@@ -240,7 +241,7 @@ fn mass_is_what_flowed_and_the_load_is_carried() {
         }
     }
     assert!(lifted > 50 && lifted < found.samples.len());
-    // Down again: the load comes back to its support, and the air that came in is out.
+    // On the way down the load returns to its support, and the same mass of air flows out.
     let down = Filling { supply: Supply::ambient(), start_pressure_pa: 4e5, ..setup }.run().unwrap();
     let last = down.samples.last().unwrap();
     assert!((last.contraction - 0.05).abs() < 1e-12 && last.pressure_pa.abs() < 1e-6 && down.settled);
@@ -259,12 +260,12 @@ fn a_held_inextensible_muscle_is_a_vessel() {
     assert!((one.time_99_s.unwrap() / other.time_99_s.unwrap() - 1.0).abs() < 1e-9);
     assert!((one.samples.last().unwrap().time_s / other.samples.last().unwrap().time_s - 1.0).abs() < 1e-9);
     for (a, b) in one.samples.iter().zip(&other.samples) {
-        // Steps of another size, by rounding.
+        // Rounding leads to steps of another size.
         assert!((a.pressure_pa - b.pressure_pa).abs() < 0.1 && (a.time_s - b.time_s).abs() < 1e-7);
         let pull = held.at(1e5).unwrap().force_n * a.pressure_pa / 1e5;
         assert!((a.force_n - pull).abs() < 1e-6);
     }
-    // Below the least pressure that is solved, too.
+    // This also holds below the least pressure that is solved.
     assert!((held.at(40.0).unwrap().force_n / held.at(4e5).unwrap().force_n - 1e-4).abs() < 1e-12);
     assert!(held.at(0.0).unwrap().force_n.abs() < 1e-12);
 }

@@ -52,6 +52,7 @@ pub fn csv(table: &Table<'_>, points_per_axis: usize) -> Result<String, ExportEr
             let (low, mut high) = (axes[i].low, axes[i].high);
             let mut part = part;
             if i == 0 {
+                // The other coordinates are set already, because axis 0 is the last of this loop.
                 high = table.upper_end(&point).unwrap_or(high);
                 let least = if is_singular { INSIDE } else { 0.0 };
                 let most = if table.is_fitted() { 1.0 - INSIDE } else { 1.0 };

@@ -1,4 +1,5 @@
-//! Polynomials of force and volume in the form that S1 prints (eqs. 31 and 32, Tables 1 and 2), for muscles of one slenderness.
+//! Polynomials of force and volume in the form printed in S1 (eqs. 31 and 32, Tables 1 and 2), for muscles of
+//! one slenderness.
 //!
 //! ```text
 //! F = p l0^2 (f4 k^3 + f3 k^2 + f2 k + f1 + f0/k)                 S1 eq. 31
@@ -87,7 +88,8 @@ impl PapersPolynomial {
 /// The fit is a least-squares fit at 400 Chebyshev points, by orthogonal polynomials.
 ///
 /// # Errors
-/// [`ExportError::NotOfThisTable`], [`ExportError::Range`], or [`ExportError::Outside`] where the table has no value.
+/// [`ExportError::NotOfThisTable`], [`ExportError::Range`], or [`ExportError::Outside`] where the table has
+/// no value.
 pub fn papers_polynomial(
     table: &Table<'_>,
     slenderness: Option<f64>,

@@ -351,7 +351,7 @@ mod tests {
         assert_eq!((best.radius_mm, best.range_percent, best.points), (16.0, [0.0, 38.5], 16));
         near(best.from_coefficients, 0.0296, 1e-4);
         near(found.settings[found.nearest_curve].from_curve, 3.74, 0.01);
-        // The smaller radius is out of the question.
+        // The smaller radius is excluded.
         let other = found.settings.iter().filter(|s| s.radius_mm < 12.0);
         assert!(
             other.clone().all(|s| s.from_curve > 85.0 && s.from_coefficients > 0.2) && other.count() == 45
