@@ -83,8 +83,8 @@ impl Folder {
     ///
     /// A process that is alone holds the lock exclusively until [`Self::share`], so no other process begins
     /// to write while unfinished files are removed. All others share the lock, and wait for an exclusive
-    /// holder. The system releases the lock when a process ends, for whatever reason. The file is none where
-    /// the file system has no locks.
+    /// holder. The system releases the lock when a process ends, for whatever reason. The returned lock
+    /// is none where the file system has no locks.
     pub(crate) fn lock(&self) -> io::Result<(Option<File>, bool)> {
         let file = File::options().create(true).truncate(false).write(true).open(self.0.join(".lock"))?;
         let is_alone = file.try_lock().is_ok();

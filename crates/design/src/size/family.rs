@@ -23,8 +23,8 @@ pub struct Limits {
 }
 
 impl Limits {
-    /// Limits of a Festo fluidic muscle of 20 mm, as stated by the manufacturer: 6 bar, contractions up to 25
-    /// %, 40 mm to 9 m, 1500 N.
+    /// Limits of a Festo fluidic muscle of 20 mm, as stated by the manufacturer: 6 bar, contractions up to
+    /// 25 %, 40 mm to 9 m, 1500 N.
     pub const FLUIDIC: Self =
         Self { pressure_pa: 6e5, contraction: [0.0, 0.25], length_m: [0.04, 9.0], force_n: 1500.0 };
     /// Limits of a pleated muscle: 3 bar and 3000 N as tested in S1, 5 to 35 % as S1 recommends for the life
@@ -76,7 +76,7 @@ enum Source {
     Net { muscle: Box<Muscle>, known: Vec<Known>, is_similar: bool },
 }
 
-/// Muscles that differ in length only.
+/// Muscles that differ by their length.
 #[derive(Debug, Clone)]
 pub struct Family {
     name: String,
