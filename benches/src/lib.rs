@@ -1,4 +1,4 @@
-//! Benchmarks of Bulge: the muscles that are measured, and the timing that the programs share.
+//! Benchmarks of Bulge: the muscles that are measured, and the timing functions that the programs share.
 
 use bulge_effects::{Effect, user};
 use bulge_fibre::{Approach, FibreError, Given, Problem, Response};
@@ -15,10 +15,10 @@ mod parquet;
 
 pub use parquet::parquet;
 
-/// Whatever stops a benchmark.
+/// Any error that stops a benchmark.
 pub type Failure = Box<dyn Error>;
 
-/// Slenderness l0/R of the pleated muscle of the benches (`ppam-2-r16`).
+/// Slenderness l0/R of the pleated muscle of the benchmarks (`ppam-2-r16`).
 pub const SLENDERNESS: f64 = 6.875;
 /// Contractions of the comparison with other programs: 1000 from 5 to 40 %.
 pub const CONTRACTIONS: usize = 1000;
@@ -29,7 +29,8 @@ pub fn contraction(i: usize) -> f64 {
     0.05 + 0.35 * i as f64 / (CONTRACTIONS - 1) as f64
 }
 
-/// The pleated muscle, l0/R = 6.875, n = 40, at 1 bar; with fibres of the given stiffness EA \[N\] if there is one.
+/// The pleated muscle, l0/R = 6.875, n = 40, at 1 bar. If a stiffness EA \[N\] is given, its fibres are
+/// elastic.
 ///
 /// # Errors
 /// Never: the numbers are valid.
@@ -48,7 +49,7 @@ fn braid_muscle(length_over_radius: f64, ends: Ends) -> Result<Muscle, MuscleErr
     Muscle::new("braid", Length::mm(10.0 * length_over_radius), Construction::Braided(braided))
 }
 
-/// A clamped braid of the given l0/r0, at 3 bar.
+/// A clamped braid with the given l0/r0, at 3 bar.
 ///
 /// # Errors
 /// If l0/r0 is out of range.
@@ -56,7 +57,7 @@ pub fn braid(length_over_radius: f64) -> Result<Problem, Failure> {
     Ok(Problem::new(&braid_muscle(length_over_radius, Ends::Clamped)?, Pressure::bar(3.0))?)
 }
 
-/// The clamped braid of l0/r0 = 25 with a rubber bladder of 1.5 mm, at 3 bar.
+/// The clamped braid with l0/r0 = 25 and a rubber bladder of 1.5 mm, at 3 bar.
 ///
 /// # Errors
 /// Never: the numbers are valid.
@@ -66,7 +67,7 @@ pub fn bladder() -> Result<Problem, Failure> {
     Ok(Problem::new(&muscle, Pressure::bar(3.0))?)
 }
 
-/// The rubber of [`bladder`] as a formula of one's own.
+/// The rubber of [`bladder`] as a user-defined formula.
 const RUBBER: &str = r#"[effects.rubber]
 title = "Mooney-Rivlin"
 energy = "h*(c10*(l1^2 + l2^2 + 1/(l1*l2)^2 - 3) + c01*(1/l1^2 + 1/l2^2 + (l1*l2)^2 - 3))"
@@ -75,7 +76,7 @@ parameters.c01 = { unit = "kPa", typical = "50 kPa", low = "0 kPa", high = "3000
 parameters.h = { unit = "mm", typical = "1.5 mm", low = "0.5 mm", high = "5 mm" }
 "#;
 
-/// The same braid as [`bladder`], its rubber a formula.
+/// The braid of [`bladder`] with its rubber as a formula.
 ///
 /// # Errors
 /// Never: the numbers are valid.
@@ -93,7 +94,7 @@ pub fn cylinder() -> Result<Problem, Failure> {
     Ok(Problem::new(&braid_muscle(25.0, Ends::Cylinder)?, Pressure::bar(3.0))?)
 }
 
-/// Force, volume and derivatives at a contraction, from a start of its own.
+/// Force, volume and derivatives at a contraction, solved without a neighbouring solution as a start.
 ///
 /// # Errors
 /// See [`FibreError`].
@@ -114,7 +115,7 @@ pub fn median_us(rounds: usize, calls: usize, mut run: impl FnMut()) -> f64 {
     times[rounds / 2]
 }
 
-/// Random points of a table's domain whose first axis ends where the second one says.
+/// Random points in the domain of a table, where the end of the first axis depends on the second one.
 #[must_use]
 pub fn random_points<const O: usize>(lookup: &Lookup<'_, 2, O>, count: usize) -> Vec<[f64; 2]> {
     let mut random = Random::new(1, 0);

@@ -1,7 +1,8 @@
-//! A simulated test of the pleated muscle with four effects and noise of a fixed seed: what loading and fitting are timed on.
+//! A simulated test of the pleated muscle with four effects and noise of a fixed seed. Loading and fitting
+//! are timed on it.
 //!
-//! Five pressures (1 to 3 bar), each slow and at five times that speed: triangles between 3 and 30 % contraction, the second with an inner
-//! loop. The true numbers are in [`TRUTH`].
+//! At five pressures (1 to 3 bar), the contraction follows triangles between 3 and 30 %, once slowly and once
+//! at five times that speed; the second triangle has an inner loop. The true numbers are in [`TRUTH`].
 
 use bulge_effects::{Catalogue, Effect};
 use bulge_measurements::{Columns, Data, Labels, Trace};
@@ -12,19 +13,20 @@ use std::sync::Arc;
 
 use crate::Failure;
 
-/// The effects with the numbers that are hidden in the data: 12 N; 150 N s; 0.2 %/kN (EA of all fibres 500 kN); 0.4 mm.
+/// The effects with the numbers that generate the data: 12 N; 150 N s; 0.2 %/kN (EA of all fibres 500 kN);
+/// 0.4 mm.
 pub const TRUTH: [(&str, f64); 4] = [
     ("coulomb-friction", 12.0),
     ("viscous-damping", 150.0),
     ("fibre-stretch", 2e-6),
     ("length-zero-error", 4e-4),
 ];
-/// Noise: one standard deviation of force \[N\], pressure \[Pa\] and contraction.
+/// Standard deviations of the noise of force \[N\], pressure \[Pa\] and contraction.
 const NOISE: [f64; 3] = [1.0, 30.0, 1e-5];
 /// Pressures \[Pa\], and rates of contraction \[1/s\].
 const PRESSURES: [f64; 5] = [1e5, 1.5e5, 2e5, 2.5e5, 3e5];
 const RATES: [f64; 2] = [0.02, 0.1];
-/// Turning points of a sweep.
+/// Turning points of the contraction in a sweep.
 const CORNERS: [f64; 7] = [0.03, 0.30, 0.03, 0.20, 0.10, 0.30, 0.03];
 
 /// The pleated muscle of the benches.
@@ -46,7 +48,7 @@ pub fn effects(catalogue: &Catalogue) -> Result<Vec<Arc<dyn Effect>>, Failure> {
 /// About `rows` rows of the test.
 ///
 /// # Errors
-/// Never: the muscle can have the effects.
+/// Never: the effects are possible for the muscle.
 pub fn columns(rows: usize) -> Result<Columns, Failure> {
     let each = (rows / (PRESSURES.len() * RATES.len())).max(2);
     let (mut pressure, mut contraction, mut time, mut sweep) =
@@ -83,7 +85,7 @@ pub fn columns(rows: usize) -> Result<Columns, Failure> {
     Ok(columns)
 }
 
-/// The contraction after a way along the corners.
+/// The contraction at a distance along the path through the corners.
 fn at(along: f64) -> f64 {
     let mut left = along;
     for pair in CORNERS.windows(2) {
@@ -96,7 +98,7 @@ fn at(along: f64) -> f64 {
     CORNERS[CORNERS.len() - 1]
 }
 
-/// The forces of the muscle with the hidden effects, without noise.
+/// The forces of the muscle with the true effects, without noise.
 fn forces(columns: &Columns) -> Result<Vec<f64>, Failure> {
     let muscle = muscle()?;
     let catalogue = Catalogue::builtin();
@@ -124,7 +126,8 @@ pub fn csv(columns: &Columns) -> String {
     text
 }
 
-/// Reproducible normal numbers: a 64-bit linear congruential sequence (Knuth's MMIX constants) and Box and Muller's transform.
+/// Reproducible normal random numbers from a 64-bit linear congruential sequence (Knuth's MMIX constants) by
+/// the Box-Muller transform.
 struct Noise(u64);
 
 impl Noise {

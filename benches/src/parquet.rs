@@ -15,7 +15,7 @@ fn column(name: &str, physical: Physical, logical: Option<LogicalType>) -> Resul
     Ok(Arc::new(builder.with_logical_type(logical).build()?))
 }
 
-/// Time, pressure, contraction and force in SI, and the sweep.
+/// Writes time, pressure, contraction and force in SI, and the sweep.
 ///
 /// # Errors
 /// Never: the columns have equal lengths.

@@ -1,4 +1,4 @@
-//! The clamped braid, without and with bladder, against an independent energy method.
+//! The clamped braid, with and without bladder, against an independent energy method.
 
 use bulge_fibre::{Approach, Problem, Response};
 use bulge_muscles::{Angle, Bladder, Braided, Construction, Ends, Length, Muscle, Parameter, Pressure};
@@ -9,7 +9,7 @@ use crate::specimen::{at, braid, braid_25, cylinder_25, pleated};
 
 const PRESSURE: Pressure = Pressure::mpa(0.3);
 
-/// Force, volume and radius of six geometries, and the cylinder formula beside them.
+/// Force, volume and radius of six geometries, and the cylinder formula for comparison.
 pub(crate) fn clamped_net() -> Check {
     Claim {
         group: "braid",
@@ -38,7 +38,7 @@ pub(crate) fn clamped_net() -> Check {
     })
 }
 
-/// Force, ratio to the cylinder, radius, volume, tensions at both ends of the half fibre, and end slope.
+/// Force, its ratio to the cylinder, radius, volume, tensions at both ends of half a fibre, and end slope.
 pub(crate) fn tensions() -> Check {
     Claim {
         group: "braid",
@@ -65,7 +65,7 @@ pub(crate) fn tensions() -> Check {
             tally.add(volume.unexplained(1e9 * found.volume_m3), || case("volume"));
             tally.add(tension_mid.unexplained(found.fibre_tension_n), || case("largest tension"));
             tally.add(slope.unexplained(found.end_slope_rad.to_degrees()), || case("end slope"));
-            // A meridian is drawn only where the muscle pulls.
+            // A meridian is drawn only if the muscle pulls.
             if found.force_n > 0.0 {
                 let given = bulge_fibre::Given::Contraction(contraction.value);
                 let shape = problem.shape(given, Approach::Auto, 21)?;
@@ -101,7 +101,7 @@ pub(crate) fn limits() -> Check {
     })
 }
 
-/// The same braid around a rubber tube.
+/// The clamped braid around a rubber tube.
 pub(crate) fn bladder() -> Check {
     Claim {
         group: "braid",
@@ -125,7 +125,7 @@ pub(crate) fn bladder() -> Check {
     })
 }
 
-/// A pleated muscle whose fibres are misaligned by 25 degrees is that braid.
+/// A pleated muscle whose fibres are misaligned by 25 degrees equals that braid.
 pub(crate) fn misaligned() -> Check {
     Claim {
         group: "braid",

@@ -1,28 +1,28 @@
-//! One check: what is compared, how far apart it is, and how far it may be.
+//! One check: the compared quantities, their difference, and its tolerance.
 
 use std::error::Error;
 
-/// Whatever goes wrong inside a check.
+/// Any error inside a check.
 pub(crate) type Trouble = Box<dyn Error>;
 
 /// A row of the verification table.
 #[derive(Debug, Clone)]
 pub struct Check {
-    /// Which part of the physics or the numerics is checked.
+    /// Part of the physics or the numerics that is checked.
     pub group: &'static str,
-    /// What is compared with what.
+    /// The comparison.
     pub name: &'static str,
-    /// Where the expected values come from.
+    /// Source of the expected values.
     pub source: &'static str,
-    /// Largest error found; infinite if something failed or was not a number.
+    /// Largest error; infinite if something failed or was not a number.
     pub error: f64,
-    /// Largest error that is accepted.
+    /// Largest accepted error.
     pub tolerance: f64,
     /// Number of comparisons.
     pub cases: usize,
-    /// Where the tolerance comes from.
+    /// Reason of the tolerance.
     pub why: &'static str,
-    /// The case with the largest error, or what failed.
+    /// The case with the largest error, or the failure.
     pub worst: String,
 }
 
@@ -52,7 +52,7 @@ pub(crate) struct Claim {
 }
 
 impl Claim {
-    /// Runs the comparisons; an error among them makes the error of the check infinite.
+    /// Runs the comparisons. If one of them fails, the error of the check is infinite.
     pub(crate) fn run(self, compare: impl FnOnce(&mut Tally) -> Result<(), Trouble>) -> Check {
         let mut tally = Tally { error: 0.0, cases: 0, worst: String::new() };
         if let Err(trouble) = compare(&mut tally) {
@@ -72,7 +72,7 @@ pub(crate) struct Tally {
 }
 
 impl Tally {
-    /// Counts one error; one that is not a number counts as infinite.
+    /// Adds one error. An error that is not a number counts as infinite.
     pub(crate) fn add(&mut self, error: f64, case: impl FnOnce() -> String) {
         let error = if error.is_nan() { f64::INFINITY } else { error.abs() };
         self.cases += 1;
@@ -82,17 +82,17 @@ impl Tally {
         }
     }
 
-    /// Counts `got - expected` relative to the expected value.
+    /// Adds `got - expected` relative to the expected value.
     pub(crate) fn relative(&mut self, got: f64, expected: f64, case: impl FnOnce() -> String) {
         self.add((got - expected) / expected, case);
     }
 
-    /// Counts `got - expected` relative to the expected value, or to `floor` where that is larger.
+    /// Adds `got - expected` relative to the larger of the expected value and `floor`.
     pub(crate) fn scaled(&mut self, got: f64, expected: f64, floor: f64, case: impl FnOnce() -> String) {
         self.add((got - expected) / expected.abs().max(floor.abs()), case);
     }
 
-    /// Counts an absolute difference.
+    /// Adds an absolute difference.
     pub(crate) fn absolute(&mut self, got: f64, expected: f64, case: impl FnOnce() -> String) {
         self.add(got - expected, case);
     }

@@ -30,7 +30,7 @@ pub(crate) fn inelastic() -> Check {
     })
 }
 
-/// The same with elastic fibres, and their strain.
+/// Force, volume, m, `phi_R` and radius of elastic fibres, and their strain.
 pub(crate) fn elastic() -> Check {
     Claim {
         group: "closed form",
@@ -49,7 +49,7 @@ pub(crate) fn elastic() -> Check {
     })
 }
 
-/// One row, as a user asks for it (through a muscle) and directly.
+/// Compares one row, computed as a user does (through a muscle) and directly.
 fn compare(
     tally: &mut Tally,
     [slenderness, contraction, group]: [f64; 3],
@@ -76,7 +76,7 @@ fn compare(
         ("volume", found.volume_m3, l0.powi(3) * v, 0.0),
         ("polygon volume", found.volume_polygon_m3, area * l0.powi(3) * v, 0.0),
         ("radius", found.max_radius_m / RADIUS.to_m(), radius, 0.0),
-        // A strain of 0 counts absolutely.
+        // A strain of 0 is compared absolutely.
         ("strain", found.fibre_strain, strain, if strain == 0.0 { 1.0 } else { 0.0 }),
     ] {
         tally.scaled(got, expected, floor, || case(what));

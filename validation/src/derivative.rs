@@ -9,7 +9,7 @@ use crate::specimen::{at, every_kind, stride};
 
 const PRESSURE: Pressure = Pressure::bar(2.0);
 
-/// dF and dV by the contraction, the pressure and every parameter.
+/// Derivatives of F and V with respect to the contraction, the pressure and every parameter.
 pub(crate) fn gradients() -> Check {
     Claim {
         group: "derivatives",
@@ -26,7 +26,7 @@ pub(crate) fn gradients() -> Check {
     })
 }
 
-/// The same by shooting where the closed form would apply, so that both are checked.
+/// The same derivatives by shooting where the closed form would apply, so that both methods are checked.
 pub(crate) fn gradients_by_shooting() -> Check {
     Claim {
         group: "derivatives",
@@ -60,7 +60,7 @@ fn compare(
         problem.follow(eps, approach).map(|found| [found.force_n, found.volume_m3])
     };
     let mut add = |what: &str, exact: [f64; 2], value: f64, difference: [f64; 2]| {
-        // A derivative counts against at least a tenth of the output over the variable.
+        // The error of a derivative is related to at least a tenth of the output divided by the variable.
         for (i, (output, size)) in
             [("force", found.force_n), ("volume", found.volume_m3)].into_iter().enumerate()
         {
@@ -84,12 +84,12 @@ fn compare(
     Ok(())
 }
 
-/// Value and step of a parameter; none if it is 0, or a count too small to be moved by whole numbers.
+/// Value and step of a parameter; none if it is 0, or if it is a count too small for whole-number steps.
 fn step_of(muscle: &Muscle, parameter: Parameter) -> Option<(f64, f64)> {
     let value = muscle.get(parameter).unwrap_or(0.0);
     match parameter {
         Parameter::Fibres => (value >= 20.0).then_some((value, 1.0)),
-        // The cloth's edge moves along a steep meridian.
+        // The edge of the cloth moves along a steep meridian.
         Parameter::UnfoldedRadius => Some((value, 0.003 * value)),
         _ => (value != 0.0).then_some((value, 0.01 * stride(muscle) * value)),
     }
@@ -101,7 +101,8 @@ fn changed(muscle: &Muscle, parameter: Parameter, value: f64) -> Result<Problem,
     Ok(Problem::new(&muscle.with(parameter, value)?, PRESSURE)?)
 }
 
-/// All outputs of the linearised answer by the contraction, the pressure and every parameter, from the start of a neighbour.
+/// Derivatives of all outputs of the linearised answer with respect to the contraction, the pressure and
+/// every parameter, starting from a neighbouring solution.
 pub(crate) fn linearised() -> Check {
     Claim {
         group: "derivatives",
@@ -170,7 +171,8 @@ fn outputs(problem: &Problem, contraction: f64) -> Result<[f64; 4], Trouble> {
     ])
 }
 
-/// dF/dl at constant pressure, and at constant gas amount along a path on which `(p + p_ambient) V^g` is constant.
+/// dF/dl at constant pressure, and at constant gas amount along a path on which `(p + p_ambient) V^g` is
+/// constant.
 pub(crate) fn stiffness() -> Check {
     Claim {
         group: "derivatives",
@@ -198,7 +200,8 @@ pub(crate) fn stiffness() -> Check {
     })
 }
 
-/// Force at a contraction with the pressure at which the gas amount is as given, by the secant method.
+/// Force at a contraction, with the pressure for which the gas amount has the given value, by the secant
+/// method.
 fn closed_vessel(muscle: &Muscle, contraction: f64, exponent: f64, amount: f64) -> Result<f64, Trouble> {
     let surplus = |pressure: f64| -> Result<[f64; 2], Trouble> {
         let found = at(muscle, Pressure::pa(pressure), contraction)?;
@@ -207,7 +210,7 @@ fn closed_vessel(muscle: &Muscle, contraction: f64, exponent: f64, amount: f64) 
     };
     let mut old = (PRESSURE.to_pa(), surplus(PRESSURE.to_pa())?);
     let mut new = old;
-    // The first step as if the volume did not depend on the pressure.
+    // The first step neglects that the volume depends on the pressure.
     let mut next = PRESSURE.to_pa() - old.1[0] * (PRESSURE.to_pa() + AMBIENT_PRESSURE);
     for _ in 0..20 {
         if (next - new.0).abs() <= 1e-13 * next {

@@ -1,4 +1,5 @@
-//! Muscles put to use: sizes against S4, closed muscles against the equilibrium's own stiffness, a filling against its closed form.
+//! Applications of muscles: sizes against S4, closed muscles against the stiffness of the equilibrium, a
+//! filling against its closed form.
 
 use bulge_design::gas::{Chamber, ClosedMuscle, Filling, GasModel, Load, Orifice, Supply};
 use bulge_design::size::{LoadCase, Requirements, fluidic_muscles, size};
@@ -8,7 +9,7 @@ use bulge_muscles::{Pressure, preset};
 
 use crate::check::{Check, Claim};
 
-/// Loads in kg, pressures in bar and contractions in % that S4 reads off its figure 4.
+/// Loads in kg, pressures in bar and contractions in % that S4 reads from its figure 4.
 const S4: [[f64; 3]; 8] = [
     [50.0, 4.5, 14.5],
     [50.0, 4.0, 12.5],
@@ -48,7 +49,7 @@ pub(crate) fn sizes() -> Check {
     })
 }
 
-/// Slopes of the closed muscle's force against what the equilibrium says.
+/// Slopes of the force of the closed muscle against the stiffness of the equilibrium.
 pub(crate) fn closed() -> Check {
     Claim {
         group: "design",
@@ -77,7 +78,7 @@ pub(crate) fn closed() -> Check {
     })
 }
 
-/// A vessel filled through a valve: at first the pressure rises along a line, then as an arcsine.
+/// A vessel filled through a valve: the pressure first rises linearly, then as an arcsine.
 pub(crate) fn filling() -> Check {
     Claim {
         group: "design",
@@ -111,7 +112,7 @@ pub(crate) fn filling() -> Check {
     })
 }
 
-/// The load of a muscle that is filled while held.
+/// The force of a muscle that is filled while it is held.
 pub(crate) fn held() -> Check {
     Claim {
         group: "design",

@@ -1,7 +1,8 @@
-//! Derivatives by central differences and orders of convergence: the blunt tools that need no trust.
+//! Derivatives by central differences, and orders of convergence: simple tools that need no further
+//! verification.
 
-/// First derivative by the central difference of sixth order, for one or more outputs: `(45 d1 - 9 d2 + d3)/(60 h)` with
-/// `dk = f(x + k h) - f(x - k h)`; its error is `h^6 f^(7)/140`.
+/// First derivative by the central difference of sixth order, for one or more outputs:
+/// `(45 d1 - 9 d2 + d3)/(60 h)` with `dk = f(x + k h) - f(x - k h)`. Its error is `h^6 f^(7)/140`.
 pub(crate) fn derivative<E, const N: usize>(
     mut f: impl FnMut(f64) -> Result<[f64; N], E>,
     x: f64,
@@ -17,7 +18,7 @@ pub(crate) fn derivative<E, const N: usize>(
     Ok(sum)
 }
 
-/// Order with which an error falls when what causes it falls by `factor`.
+/// Order of an error that falls from `coarse` to `fine` as its cause falls by `factor`.
 pub(crate) fn order(coarse: f64, fine: f64, factor: f64) -> f64 {
     (coarse / fine).abs().ln() / factor.ln()
 }

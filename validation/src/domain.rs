@@ -1,6 +1,7 @@
-//! The domain map: random muscles of every kind over the ranges that are promised, one random question each, and how it ended.
+//! The domain map: random muscles of every kind over the supported ranges are each asked one random question,
+//! and the outcomes are counted.
 //!
-//! Number i of a seed is the same muscle with the same question in every run, whatever the number of threads.
+//! Number i of a seed is the same muscle with the same question in every run, on any number of threads.
 
 use bulge_fibre::{Approach, FibreError, Given, Problem, Response};
 use bulge_muscles::{Fault, Muscle, MuscleError, Pressure, Quantity};
@@ -15,18 +16,18 @@ mod muscles;
 
 use muscles::{KINDS, reference};
 
-/// Largest residual of the end conditions that an answer may have, whose square remains after the last step.
+/// Largest residual of the end conditions that an answer may have. Its square remains after the last step.
 const RESIDUAL: f64 = 1e-6;
 /// Largest departure from the first integral.
 const FIRST_INTEGRAL: f64 = 1e-9;
-/// Difference of force and volume up to which two equilibria are the same.
+/// Relative difference of force and volume below which two equilibria are the same.
 const SAME: f64 = 1e-5;
-/// Evaluations that one equilibrium may take.
+/// Most evaluations for one equilibrium.
 pub const EVALUATIONS: u32 = 60_000;
-/// Cases of a count that are kept.
+/// Number of cases that are kept in a count.
 const KEPT: usize = 40;
 
-/// How a question ended.
+/// Outcome of a question.
 #[derive(Debug, Clone, PartialEq)]
 enum Ending {
     Solved {
@@ -34,23 +35,24 @@ enum Ending {
     },
     /// Solved, but not an equilibrium.
     Wrong(String),
-    /// Exit status 1 and 3.
+    /// Exit status 1 or 3.
     Refused(Fault),
-    /// Exit status 4, and what the first integrals say.
+    /// Exit status 4, and the judgement by the first integrals.
     Lost(String, Judgement),
     Panicked,
 }
 
-/// What a search by the first integrals ([`integrals::states`]) finds where the shooting found nothing.
+/// Result of a search by the first integrals ([`integrals::states`]) if the shooting found nothing.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Judgement {
     /// An equilibrium with taut fibres that pulls: the question has an answer.
     Pulls(integrals::State),
-    /// Only such as would push, or whose fibres are slack: the question has none, which should have been said with a limit.
+    /// Only equilibria that would push or whose fibres are slack. The question has no answer, and the limit
+    /// should have been reported.
     Beyond(integrals::State),
-    /// None.
+    /// No equilibrium.
     Nothing,
-    /// None, but for this muscle the search can't exclude one.
+    /// No equilibrium was found, but for this muscle the search can't exclude one.
     Unknown,
 }
 
@@ -68,7 +70,7 @@ impl Judgement {
     }
 }
 
-/// How the questions to one kind of muscle ended.
+/// Outcomes of the questions to one kind of muscle.
 #[derive(Debug, Clone, Default)]
 pub struct Count {
     /// The kind.
@@ -77,24 +79,25 @@ pub struct Count {
     pub solved: usize,
     /// Refused as wrong input (exit status 1).
     pub input: usize,
-    /// No solution, with the limit (exit status 3).
+    /// Without a solution; the limit was reported (exit status 3).
     pub no_solution: usize,
     /// Not converged (exit status 4).
     pub not_converged: usize,
-    /// Of these: where the first integrals have an equilibrium that pulls, only one that pushes or has slack fibres, none, and where they can't exclude one.
+    /// Of the questions that did not converge: those where the first integrals have an equilibrium that
+    /// pulls, only one that pushes or has slack fibres, none, and those where they can't exclude one.
     pub judged: [usize; 4],
-    /// Answered with something that is no equilibrium.
+    /// Answered with a state that is not in equilibrium.
     pub wrong: usize,
     /// Panics.
     pub panicked: usize,
     /// Most evaluations of an answer.
     pub evaluations: u32,
-    /// What went wrong: number, muscle, question and message.
+    /// Failed cases: number, muscle, question and message.
     pub cases: Vec<String>,
 }
 
 impl Count {
-    /// Questions in all.
+    /// Number of all questions.
     #[must_use]
     pub fn all(&self) -> usize {
         self.solved + self.input + self.no_solution + self.not_converged + self.wrong + self.panicked
@@ -135,10 +138,11 @@ impl Count {
     }
 }
 
-/// Questions of the check, and of them those that may not converge.
+/// Number of questions of the check, and the fraction of them that may fail to converge.
 const SAMPLE: (usize, f64) = (2000, 3e-3);
 
-/// A sample of the map: none wrong, no panic, evaluations bounded, and hardly any that didn't converge.
+/// A sample of the map: no wrong answer, no panic, a bounded number of evaluations, and almost no failure to
+/// converge.
 pub(crate) fn sample() -> Check {
     Claim {
         group: "domain",
@@ -161,7 +165,7 @@ pub(crate) fn sample() -> Check {
     })
 }
 
-/// Questions of which those that are solved are searched for by the first integrals.
+/// Number of questions whose solutions are also searched for by the first integrals.
 const SEARCHED: usize = 30;
 
 /// The equilibria of random muscles, searched for by their two first integrals.
@@ -184,7 +188,7 @@ pub(crate) fn by_integrals() -> Check {
     })
 }
 
-/// Asks `count` muscles one question each, kind after kind in turn.
+/// Asks `count` muscles one question each, cycling through the kinds.
 #[must_use]
 pub fn map(seed: u64, count: usize) -> Vec<Count> {
     let endings: Vec<(String, Ending)> = (0..count).into_par_iter().map(|number| one(seed, number)).collect();
@@ -195,7 +199,8 @@ pub fn map(seed: u64, count: usize) -> Vec<Count> {
     counts.into()
 }
 
-/// The questions of a range one by one: what was asked, how it ended, and of those without an answer what the first integrals say.
+/// Lists the questions of a range: the question, its outcome, and, if there was no answer, the judgement by
+/// the first integrals.
 #[must_use]
 pub fn listed(seed: u64, range: std::ops::Range<usize>) -> Vec<String> {
     range.into_par_iter().map(|number| told(seed, number)).collect()
@@ -227,8 +232,9 @@ fn told(seed: u64, number: usize) -> String {
     format!("{kind}, number {number}, {question:?} at {pressure}: {ending}; {muscle:?}")
 }
 
-/// How often the search by the first integrals finds what the shooting found: of `count` questions those that were solved, those found with the same
-/// force and volume, and the others.
+/// Tests how often the search by the first integrals finds the solutions of the shooting. Of `count`
+/// questions, it returns the number that were solved, the number found with the same force and volume, and
+/// the remaining cases.
 #[must_use]
 pub fn found_by_integrals(seed: u64, count: usize) -> (usize, usize, Vec<String>) {
     let both: Vec<Both> = (0..count).into_par_iter().filter_map(|number| both(seed, number)).collect();
@@ -240,9 +246,9 @@ pub fn found_by_integrals(seed: u64, count: usize) -> (usize, usize, Vec<String>
     (both.len(), both.len() - missed.len(), missed)
 }
 
-/// A question that the shooting solves, searched for by the first integrals.
+/// A question that the shooting solves and the first integrals search for.
 struct Both {
-    /// Difference of force and volume of the nearest state, relative; 1 if there is none.
+    /// Relative difference of force and volume of the nearest state; 1 if there is none.
     off: f64,
     can_exclude: bool,
     case: String,
@@ -274,7 +280,7 @@ fn both(seed: u64, number: usize) -> Option<Both> {
     })
 }
 
-/// Number `number` of a seed: a muscle, its pressure, and what is asked; none: the limit.
+/// Number `number` of a seed: a muscle, its pressure, and the question; none stands for the limit.
 ///
 /// # Errors
 /// Never, unless a range here is wrong.
@@ -302,7 +308,7 @@ fn one(seed: u64, number: usize) -> (String, Ending) {
     (case, ending)
 }
 
-/// What is asked for; none: the limit.
+/// The question; none stands for the limit.
 fn question(sampler: &mut Sampler, muscle: &Muscle, pressure: Pressure) -> Option<Given> {
     let (radius, length) = (muscle.radius().si(), muscle.length().si());
     let part = sampler.between(0.0, 1.0);
@@ -320,7 +326,7 @@ fn question(sampler: &mut Sampler, muscle: &Muscle, pressure: Pressure) -> Optio
     None
 }
 
-/// What a question is answered with.
+/// Answer to a question.
 enum Answer {
     Found(Box<Response>),
     Limit(f64),
@@ -346,7 +352,7 @@ fn ask(muscle: &Muscle, pressure: Pressure, question: Option<Given>) -> Ending {
     }
 }
 
-/// Why an answer is no equilibrium, or none to the question.
+/// Why an answer is not an equilibrium, or not the one in question.
 fn wrong_with(found: &Response, question: Option<Given>) -> Option<String> {
     let numbers = [
         found.force_n,

@@ -1,4 +1,4 @@
-//! The force as a derivative of energy: what an equilibrium must obey, whatever carries the load.
+//! The force as a derivative of energy. Every equilibrium obeys this, whatever carries the load.
 
 use bulge_fibre::{Approach, Given, MeridianPoint, Problem, Shape};
 use bulge_muscles::{Construction, Muscle, Pressure, Quantity};
@@ -34,7 +34,7 @@ pub(crate) fn virtual_work() -> Check {
     })
 }
 
-/// `dF/dp = -dV/dl`, since both are second derivatives of one potential `G(l, p)` with `dG = F dl - V dp`.
+/// `dF/dp = -dV/dl`, because both are second derivatives of one potential `G(l, p)` with `dG = F dl - V dp`.
 pub(crate) fn maxwell() -> Check {
     Claim {
         group: "energy",
@@ -58,7 +58,7 @@ pub(crate) fn maxwell() -> Check {
     })
 }
 
-/// F = dG/dl, the potential integrated along the drawn meridian from the definitions of the energies.
+/// F = dG/dl. The potential is integrated along the drawn meridian from the definitions of the energies.
 pub(crate) fn potential() -> Check {
     Claim {
         group: "energy",
@@ -69,7 +69,8 @@ pub(crate) fn potential() -> Check {
     }
     .run(|tally| {
         for (name, muscle, contraction) in every_kind()? {
-            // Points equally spaced in fibre length, as Simpson's rule asks: by shooting, or along the straight cylinder.
+            // Simpson's rule needs points that are equally spaced in fibre length: by shooting, or along the
+            // straight cylinder.
             let problem = Problem::new(&muscle, PRESSURE)?;
             let approach = if name.starts_with("cylinder") { Approach::Auto } else { Approach::Shooting };
             let energy = |eps| -> Result<[f64; 2], Trouble> {
@@ -87,10 +88,10 @@ pub(crate) fn potential() -> Check {
     })
 }
 
-/// Points of a drawn meridian; odd, so that Simpson's rule fits each half.
+/// Points of a drawn meridian. The number is odd, so that Simpson's rule fits each half.
 const POINTS: usize = 4001;
 
-/// Potential U - pV and volume (of the cross-section that carries the pressure).
+/// Potential U - pV and the volume of the cross-sections that carry the pressure.
 fn integrate(muscle: &Muscle, shape: &Shape) -> Result<[f64; 2], Trouble> {
     let points = &shape.meridian;
     let (first, last) = points.first().zip(points.last()).ok_or("an empty meridian")?;
@@ -124,7 +125,7 @@ fn densities(muscle: &Muscle, point: &MeridianPoint) -> (f64, f64) {
         let (a, b) = ((sigma / rest).powi(2), (r / muscle.radius().si()).powi(2));
         let (i1, i2) = (a + b + 1.0 / (a * b), 1.0 / a + 1.0 / b + a * b);
         let w = bladder.c10().si() * (i1 - 3.0) + bladder.c01().si() * (i2 - 3.0);
-        // Area of the wall's section at rest, times the axial length at rest of this piece of fibre.
+        // Area of the section of the wall at rest, times the axial length at rest of this piece of fibre.
         stored += 2.0 * PI * muscle.radius().si() * bladder.wall().si() * rest * w;
     }
     if let Some(cloth) = muscle.unfolding() {

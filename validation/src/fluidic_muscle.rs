@@ -1,4 +1,5 @@
-//! The measured braid of S5: its force by fibre length and turns (eqs. 11, 12, Table 2), and what its rubber adds when it is drawn out.
+//! The measured braid of S5: its force from fibre length and turns (eqs. 11, 12, Table 2), and the
+//! contribution of its rubber when it is stretched.
 
 use bulge_fibre::{Approach, Problem};
 use bulge_muscles::{Angle, Bladder, Braided, Construction, Ends, Length, Muscle, Pressure, preset};
@@ -13,7 +14,8 @@ const FIBRE: f64 = 0.275_85;
 const TURNS: f64 = 1.73;
 const PRESSURE: Pressure = Pressure::bar(3.0);
 
-/// The cylinder whose fibres have the length b and N turns: cos(alpha0) = l0/b, r0 = b sin(alpha0)/(2 pi N).
+/// The cylinder whose fibres have the length b and make N turns: cos(alpha0) = l0/b, r0 = b sin(alpha0)/(2 pi
+/// N).
 fn braid() -> Result<Muscle, Trouble> {
     let angle = (LENGTH / FIBRE).acos();
     let radius = FIBRE * angle.sin() / (2.0 * PI * TURNS);
@@ -21,7 +23,7 @@ fn braid() -> Result<Muscle, Trouble> {
     Ok(Muscle::new("DMSP-20-250", Length::m(LENGTH), Construction::Braided(braided))?)
 }
 
-/// Force by fibre length and turns.
+/// Force from fibre length and turns.
 pub(crate) fn fibre_length_and_turns() -> Check {
     Claim {
         group: "published",
@@ -45,7 +47,7 @@ pub(crate) fn fibre_length_and_turns() -> Check {
             tally.scaled(found, by_turns, floor, || format!("eq. 11 at contraction {contraction}"));
             tally.scaled(found, by_angle, floor, || format!("eq. 12 at contraction {contraction}"));
         }
-        // cos^2(alpha) = 1/3 there.
+        // At the limit, cos^2(alpha) = 1/3.
         let limit = Problem::new(&muscle, PRESSURE)?.contraction_limit(Approach::Auto)?;
         tally.relative(limit, 1.0 - FIBRE / (3.0_f64.sqrt() * LENGTH), || format!("largest contraction {limit:.4}"));
         Ok(())
@@ -74,7 +76,8 @@ pub(crate) fn shipped_muscle() -> Check {
     })
 }
 
-/// Rubber pushes where the muscle is shortened and pulls where it is drawn out: S5 measured more than the theoretical force there.
+/// Rubber pushes if the muscle is shortened and pulls if it is stretched. In the latter case S5 measured more
+/// than the theoretical force.
 pub(crate) fn drawn_out() -> Check {
     Claim {
         group: "published",
@@ -85,11 +88,11 @@ pub(crate) fn drawn_out() -> Check {
     }
     .run(|tally| {
         let bladder = Bladder::new(Pressure::kpa(290.0), Pressure::kpa(0.0), Length::mm(2.0))?;
-        // At the printed radius and angle; against W evaluated at 10.725 mm and 25 deg.
+        // At the printed radius and angle; expected values from W at 10.725 mm and 25 deg.
         let braided = Braided::new(Length::mm(10.725), Angle::deg(25.0))?.with_ends(Ends::Cylinder);
         let bare = Muscle::new("bare", Length::m(LENGTH), Construction::Braided(braided))?;
         let rubber = bare.clone().with_bladder(bladder)?.with_gas_wall(Some(Length::mm(0.0)))?;
-        // With 1 bar the rubber alone would carry the pressure at 20 %, and the fibres nothing.
+        // At 1 bar and 20 % the rubber alone would carry the pressure, and the fibres nothing.
         for pressure in [Pressure::bar(3.0), Pressure::bar(6.0)] {
             for (contraction, expected) in [
                 (-0.03, 284.28),

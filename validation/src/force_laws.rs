@@ -1,4 +1,5 @@
-//! The force functions that S2, S4 and S5 fitted to Festo muscles: their coefficients, correlation, loops and efficiency.
+//! The force functions that S2, S4 and S5 fitted to Festo muscles: coefficients, correlation, loops and
+//! efficiency.
 
 use bulge_effects::law::{Law, LawGeometry, LawPoint, efficiency};
 use bulge_muscles::preset;
@@ -10,7 +11,7 @@ use crate::check::{Check, Claim, Trouble};
 use crate::reference::values;
 
 const FUNCTIONS: &str = include_str!("../reference/festo_force_functions.csv");
-/// Law and table of the functions in the file, from 1.
+/// Law and table of each function in the file, counted from 1.
 const TABLES: [(&str, &str); 7] = [
     ("sarosi-6", "DMSP-20-200N"),
     ("sarosi-6", "DMSP-20-400N"),
@@ -42,19 +43,19 @@ impl Fitted {
         self.law.force(at, &self.muscle, self.coefficients)
     }
 
-    /// Half of what lengthening takes more than shortening.
+    /// Half of the difference between the forces in lengthening and in shortening.
     fn half_width(&self, bar: f64, percent: f64) -> f64 {
         0.5 * (self.force(bar, percent, -1.0) - self.force(bar, percent, 1.0))
     }
 
-    /// 1 to 5 bar and 0 to 25 % in steps of 1, where it pulls.
+    /// 1 to 5 bar and 0 to 25 % in steps of 1, where the muscle pulls.
     fn grid(&self) -> Vec<(f64, f64)> {
         let all = (1..=5).flat_map(|bar| (0..=25).map(move |percent| (f64::from(bar), f64::from(percent))));
         all.filter(|(bar, percent)| self.force(*bar, *percent, 0.0) > 0.0).collect()
     }
 }
 
-/// Every coefficient as it is printed.
+/// Every coefficient as printed.
 pub(crate) fn printed_functions() -> Check {
     Claim {
         group: "force laws",
@@ -78,7 +79,8 @@ pub(crate) fn printed_functions() -> Check {
     })
 }
 
-/// The contraction at which the function lifts S4's loads, against the one that S4 read from its chart.
+/// The contraction at which the function lifts the loads of S4, against the value that S4 read from its
+/// chart.
 pub(crate) fn sizing_examples() -> Check {
     Claim {
         group: "force laws",
@@ -110,8 +112,9 @@ pub(crate) fn sizing_examples() -> Check {
     })
 }
 
-/// S2 fits eq. 16 and eq. 17 to the same measurements, which it does not print. Eq. 17 is eq. 16 with a = 1 N/bar, so that the squares add up:
-/// R^2(16) - R^2(17) is the squared difference of the two functions over the variance of the force, whatever was measured.
+/// S2 fits eq. 16 and eq. 17 to the same measurements, which it does not print. Eq. 17 is eq. 16 with a = 1
+/// N/bar, so the squares add up: for any measurements, R^2(16) - R^2(17) is the squared difference of the two
+/// functions divided by the variance of the force.
 pub(crate) fn correlation() -> Check {
     Claim {
         group: "force laws",
@@ -140,7 +143,7 @@ pub(crate) fn correlation() -> Check {
     })
 }
 
-/// Half of the loop as a linear function of 1, the pressure \[bar\] and exp(-kappa/3 %).
+/// Half the width of the loop as a linear function of 1, the pressure \[bar\] and exp(-kappa/3 %).
 struct HalfWidth {
     loops: Fitted,
     grid: Vec<(f64, f64)>,
@@ -176,7 +179,7 @@ impl Residuals for HalfWidth {
     }
 }
 
-/// Half the width of S2's loops, and their fit by a constant, the pressure and a decay.
+/// Half the widths of the loops of S2, and their fit by a constant, the pressure and a decay.
 pub(crate) fn half_widths() -> Check {
     Claim {
         group: "force laws",
@@ -208,7 +211,8 @@ pub(crate) fn half_widths() -> Check {
     })
 }
 
-/// S5 prints its efficiencies as a figure only: here S2's functions of the same type stand for the measurement.
+/// S5 shows its efficiencies only in a figure; here the functions of S2 of the same type stand for the
+/// measurement.
 pub(crate) fn efficiencies() -> Check {
     Claim {
         group: "force laws",

@@ -1,4 +1,4 @@
-//! Isobaric characteristics against equilibria solved one by one.
+//! Isobars against equilibria that are solved one by one.
 
 use bulge_fibre::{Approach, Given, Problem, Response, isobars};
 use bulge_muscles::Pressure;
@@ -6,7 +6,7 @@ use bulge_muscles::Pressure;
 use crate::check::{Check, Claim};
 use crate::specimen::every_kind;
 
-/// Neighbours serve as starts and pressures are scaled: neither may show.
+/// Isobars take neighbours as starts and scale pressures. Neither may affect the result.
 pub(crate) fn one_by_one() -> Check {
     Claim {
         group: "characteristics",
@@ -30,7 +30,7 @@ pub(crate) fn one_by_one() -> Check {
                     for (what, read) in OUTPUTS {
                         let case =
                             || format!("{what}, {name}, {} Pa, {}", point.pressure_pa, point.contraction);
-                        // Forces vanish at the limit, with them their share of the tension.
+                        // Forces vanish at the limit, and so does their contribution to the tension.
                         tally.scaled(read(point), read(&alone), floor(what, &alone), case);
                     }
                 }
@@ -58,7 +58,7 @@ const OUTPUTS: [Output; 9] = [
     ("adiabatic stiffness", |r| r.stiffness_adiabatic_n_per_m),
 ];
 
-/// What a difference counts against at least.
+/// Smallest size to which a difference is related.
 fn floor(what: &str, alone: &Response) -> f64 {
     match what {
         "force" => alone.pressure_pa * alone.max_radius_m * alone.max_radius_m,

@@ -1,7 +1,8 @@
 //! Verification of Bulge: every check with its error and its tolerance.
 //!
-//! A check compares what the crates compute with a closed form, an independent method, an identity of mechanics, the order of an
-//! error, or a published number. Run all of them as a table with `bulge validate`, or as tests with `cargo test -p bulge-validation`.
+//! A check compares results of the crates with a closed form, an independent method, an identity of
+//! mechanics, the order of an error, or a published number. Run all checks as a table with `bulge validate`,
+//! or as tests with `cargo test -p bulge-validation`.
 
 mod braid;
 mod check;
@@ -32,7 +33,7 @@ mod tables;
 
 pub use check::Check;
 
-/// Every check, in the order of the table: from exact solutions to published numbers.
+/// All checks in the order of the table, from exact solutions to published numbers.
 pub const CHECKS: &[fn() -> Check] = &[
     nist::nonlinear_regression,
     closed_form::elliptic_integrals,

@@ -1,4 +1,4 @@
-//! Limits and the orders with which they are approached.
+//! Limiting cases, and the orders with which they are approached.
 
 use bulge_fibre::{Approach, Problem};
 use bulge_muscles::{Length, Parameter, Pressure, Quantity};
@@ -9,7 +9,7 @@ use crate::specimen::{at, braid_25, cylinder_25, pleated, ppam, shot};
 
 const PRESSURE: Pressure = Pressure::bar(3.0);
 
-/// A fibre net with a small angle tends to the pleated muscle with the square of the angle.
+/// As its angle becomes small, a fibre net tends to the pleated muscle with the square of the angle.
 pub(crate) fn small_angle() -> Check {
     Claim {
         group: "limits",
@@ -33,7 +33,7 @@ pub(crate) fn small_angle() -> Check {
     })
 }
 
-/// The clamps' share of the force falls with the length.
+/// The influence of the clamps on the force decreases with the length.
 pub(crate) fn long_braid() -> Check {
     Claim {
         group: "limits",
@@ -117,7 +117,8 @@ pub(crate) fn many_fibres() -> Check {
             }
             tally.relative(found.volume_m3, round.volume_m3, || format!("volume of the circle, n = {n}"));
         }
-        // Triangle, square and hexagon in a unit circle: areas 3 sqrt(3)/4, 2, 3 sqrt(3)/2. Errors count a million times.
+        // Areas of a triangle, a square and a hexagon in a unit circle: 3 sqrt(3)/4, 2, 3 sqrt(3)/2. Errors
+        // are multiplied by a million.
         for (n, area) in [(3, 0.75 * 3.0_f64.sqrt()), (4, 2.0), (6, 1.5 * 3.0_f64.sqrt())] {
             for approach in [Approach::ClosedForm, Approach::Shooting] {
                 let found =
@@ -145,7 +146,8 @@ pub(crate) fn mylar_balloon() -> Check {
         why: "Richardson extrapolation in R/l0 from 1/62.5 to 1/1000, four powers removed",
     }
     .run(|tally| {
-        // Half the fibre length over the equator's radius, and volume over the cube of the former.
+        // Half the fibre length divided by the radius of the equator, and the volume divided by the cube of
+        // half the fibre length.
         let (a_over_r, volume) = (1.311_028_777_146_059_9, 1.218_524_216_118_569_7);
         for approach in [Approach::ClosedForm, Approach::Shooting] {
             let mut levels = Vec::new();
@@ -170,7 +172,7 @@ pub(crate) fn mylar_balloon() -> Check {
     })
 }
 
-/// Limit of values at R/l0 = ..., 4h, 2h, h, free of the terms h, h^2, ....
+/// Limit of values at R/l0 = ..., 4h, 2h, h, in which the terms h, h^2, ... are eliminated.
 fn richardson(values: &[f64]) -> f64 {
     let mut row = values.to_vec();
     for power in 1..values.len() {

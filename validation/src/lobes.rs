@@ -1,4 +1,5 @@
-//! Lobes between the fibres: against the closed form where all of them touch, and against quadratures of the first integral.
+//! Lobes between the fibres, against the closed form if all of them touch, and against quadratures of the
+//! first integral.
 
 use bulge_fibre::{Approach, Problem, closed_form};
 use bulge_muscles::{Length, Muscle, Parameter, Pressure, Quantity};
@@ -11,7 +12,8 @@ use crate::specimen::{pleated, ppam};
 
 const PRESSURE: Pressure = Pressure::bar(2.0);
 
-/// Cloth in plenty: A = n tan(pi/n) (r + s/2)^2/(1 + v tan(pi/n)), v = pi/2 + pi/n, is the area of a muscle of the radius R + s/2.
+/// With plenty of cloth, A = n tan(pi/n) (r + s/2)^2/(1 + v tan(pi/n)), v = pi/2 + pi/n, is the area of a
+/// muscle of the radius R + s/2.
 pub(crate) fn touching() -> Check {
     Claim {
         group: "lobes",
@@ -29,7 +31,7 @@ pub(crate) fn touching() -> Check {
                     .with(Parameter::ClothCircumference, cloth)?;
                 let crest = radius + 0.5 * cloth / n;
                 let (tan, contact) = (f64::tan(PI / n), FRAC_PI_2 + PI / n);
-                // Over pi r^2, the circle for which the closed form has f and v.
+                // Relative to pi r^2, the circle for which the closed form has f and v.
                 let share = n * tan / (1.0 + contact * tan) / PI;
                 for contraction in [1e-4, 0.01, 0.05, 0.15] {
                     let exact = closed_form::solve(contraction, length / crest, 0.0)?;
@@ -49,8 +51,8 @@ pub(crate) fn touching() -> Check {
     })
 }
 
-/// With n T = F + p A(r_mid) straight fibres obey `cos(psi) = 1 - p (A(r_mid) - A(r))/(n T)`: their length and the end distance are integrals
-/// over the radius.
+/// With n T = F + p A(r_mid), straight fibres obey `cos(psi) = 1 - p (A(r_mid) - A(r))/(n T)`. Their length
+/// and the distance between the ends are integrals over the radius.
 pub(crate) fn quadrature() -> Check {
     Claim {
         group: "lobes",
@@ -80,7 +82,7 @@ pub(crate) fn quadrature() -> Check {
     })
 }
 
-/// Half the fibre length and half the end distance.
+/// Half the fibre length and half the distance between the ends.
 fn lengths(muscle: &Muscle, contraction: f64) -> Result<[f64; 2], Trouble> {
     let found = Problem::new(muscle, PRESSURE)?.follow(contraction, Approach::Auto)?;
     let (end, mid) = (muscle.radius().si(), found.mid_radius_m);
@@ -91,7 +93,7 @@ fn lengths(muscle: &Muscle, contraction: f64) -> Result<[f64; 2], Trouble> {
     for panel in 0..panels {
         for (i, sum) in sums.iter_mut().enumerate() {
             *sum += gauss::integrate(|part| {
-                // r = r_mid - (r_mid - R) t^2 takes the square root at mid-length away.
+                // The substitution r = r_mid - (r_mid - R) t^2 removes the square root at mid-length.
                 let t = (f64::from(panel) + part) / f64::from(panels);
                 let missing = (whole - area(muscle, mid - (mid - end) * t * t)) / tension;
                 let (sin, cos) = ((missing * (2.0 - missing)).sqrt(), 1.0 - missing);

@@ -1,4 +1,5 @@
-//! Lobes between the fibres and walls of a thickness: values of an independent program, and the limits in which they vanish or fill the muscle.
+//! Lobes between the fibres and walls with a thickness: values of an independent program, and the limits in
+//! which they vanish or fill the muscle.
 
 use bulge_fibre::{Approach, Problem};
 use bulge_muscles::{
@@ -14,7 +15,7 @@ const LOBES: &str = include_str!("../reference/pleated_lobes.csv");
 const GAS_WALL: &str = include_str!("../reference/braided_gas_wall.csv");
 const PRESSURE: Pressure = Pressure::bar(3.0);
 
-/// Lobes that touch, that part within the muscle, and that are nearly open.
+/// Lobes that touch, lobes that separate within the muscle, and lobes that are nearly open.
 pub(crate) fn lobes() -> Check {
     Claim {
         group: "lobes",
@@ -38,8 +39,9 @@ pub(crate) fn lobes() -> Check {
     })
 }
 
-/// Cloth of one circumference in ever more lobes is a smooth membrane of fibres that it does not touch as long as it is not taut, and that
-/// stops at the radius of the circle that it is when smooth.
+/// Cloth of a constant circumference in more and more lobes tends to a smooth membrane. The fibres of this
+/// membrane are free of the cloth as long as it isn't taut. The cloth stops them at the radius of its circle
+/// when smooth.
 pub(crate) fn many_lobes() -> Check {
     Claim {
         group: "limits",
@@ -63,7 +65,7 @@ pub(crate) fn many_lobes() -> Check {
             for (i, (what, expected)) in
                 [("force", smooth.force_n), ("volume", smooth.volume_polygon_m3)].into_iter().enumerate()
             {
-                // The terms 1/n and 1/n^2 drop out.
+                // This combination eliminates the terms 1/n and 1/n^2.
                 let limit = (8.0 * lobed[2][i] - 6.0 * lobed[1][i] + lobed[0][i]) / 3.0;
                 let gap = lobed[2][i] / expected - 1.0;
                 tally.relative(limit, expected, || {
@@ -71,7 +73,7 @@ pub(crate) fn many_lobes() -> Check {
                 });
             }
         }
-        // Beyond this radius the cloth would have to stretch: the muscle comes near it and stays inside.
+        // Beyond this radius the cloth would have to stretch. The muscle approaches it and stays inside.
         for circumference in [0.2, 0.25, 0.3] {
             let muscle = ppam()?.with(Parameter::ClothCircumference, circumference)?;
             let open = circumference / (2.0 * PI);
@@ -85,7 +87,7 @@ pub(crate) fn many_lobes() -> Check {
     })
 }
 
-/// Clamped braids with the gas on the inner face of the wall.
+/// Clamped braids with the gas at the inner face of the wall.
 pub(crate) fn gas_wall() -> Check {
     Claim {
         group: "braid",
@@ -107,13 +109,13 @@ pub(crate) fn gas_wall() -> Check {
     })
 }
 
-/// A cylinder of 9 mm and an angle.
+/// A cylinder of 9 mm with the given angle.
 fn cylinder(angle: f64) -> Result<Muscle, Trouble> {
     let braided = Braided::new(Length::mm(9.0), Angle::rad(angle))?.with_ends(Ends::Cylinder);
     Ok(Muscle::new("cylinder", Length::mm(200.0), Construction::Braided(braided))?)
 }
 
-/// No wall changes nothing, a wall up to the axis leaves no force at rest.
+/// Without a wall nothing changes; a wall up to the axis leaves no force at rest.
 pub(crate) fn thin_and_thick_wall() -> Check {
     Claim {
         group: "limits",
@@ -136,7 +138,7 @@ pub(crate) fn thin_and_thick_wall() -> Check {
             for contraction in [0.0, 0.1, 0.25] {
                 let bare = at(&muscle, PRESSURE, contraction)?;
                 let found = at(&muscle.with(Parameter::GasWall, 0.0)?, PRESSURE, contraction)?;
-                // Errors count a million times: nothing may change but the last digits.
+                // Errors are multiplied by a million: only the last digits may change.
                 tally.add(1e6 * (found.force_n / bare.force_n - 1.0), || {
                     format!("no wall x 1e6, contraction {contraction}")
                 });

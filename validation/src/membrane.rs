@@ -1,4 +1,4 @@
-//! Membrane finite elements: against closed forms, against shooting, and against the meridian equation.
+//! Membrane finite elements against closed forms, against shooting, and against the meridian equation.
 
 pub(crate) mod cloth;
 pub(crate) mod discs;
@@ -12,7 +12,7 @@ use bulge_membrane::case::{Case, Row};
 
 use crate::check::Trouble;
 
-/// Runs a case and gives its rows.
+/// Runs a case and returns its rows.
 fn rows(text: &str) -> Result<Vec<Row>, Trouble> {
     let case = Case::from_toml(text, "case", None)?;
     let mut rows = Vec::new();
@@ -20,7 +20,7 @@ fn rows(text: &str) -> Result<Vec<Row>, Trouble> {
     Ok(rows)
 }
 
-/// Richardson's value from one mesh and one twice as fine, for errors of fourth order.
+/// Richardson extrapolation from one mesh and one twice as fine, for errors of fourth order.
 fn extrapolated(coarse: f64, fine: f64) -> f64 {
     fine + (fine - coarse) / 15.0
 }

@@ -1,4 +1,5 @@
-//! The drawn meridian: does it obey the first integral, and do its points, slopes, lengths and volume belong together?
+//! The drawn meridian: it must obey the first integral, and its points, slopes, lengths and volume must be
+//! consistent.
 
 use bulge_fibre::{Approach, Given, MeridianPoint, Problem, Shape};
 use bulge_muscles::{Construction, Muscle, Parameter, Pressure, Quantity};
@@ -10,11 +11,11 @@ use crate::sample::Sampler;
 use crate::section::area;
 use crate::specimen::every_kind;
 
-/// Random muscles whose meridian is drawn; of these, one in fifty may be answered by an error.
+/// Number of random muscles whose meridian is drawn. One in fifty of them may end in an error.
 const MUSCLES: usize = 150;
 const PRESSURE: Pressure = Pressure::bar(2.0);
 
-/// `N cos(psi) = F + p A(r)`, from what is reported point by point.
+/// `N cos(psi) = F + p A(r)` from the values reported at each point.
 pub(crate) fn first_integral() -> Check {
     Claim {
         group: "meridian",
@@ -43,7 +44,7 @@ pub(crate) fn first_integral() -> Check {
             let integral = |point: &MeridianPoint| {
                 meridional_force(point) * point.slope_rad.cos() - pressure.si() * area(&muscle, point.r_m)
             };
-            // The force is corrected by the last Newton step (up to 1e-8), the drawn meridian is not.
+            // The force is corrected by the last Newton step (up to 1e-8), but the drawn meridian is not.
             let case = || format!("a tenth of the departure from the force, number {i}: {}", muscle.name());
             tally.add(0.1 * (integral(middle) - shape.response.force_n) / scale, case);
             for point in &shape.meridian {
@@ -58,11 +59,11 @@ pub(crate) fn first_integral() -> Check {
     })
 }
 
-/// A shape at a part of the contraction limit, but never where inextensible fibres would be too short.
+/// A shape at a fraction of the contraction limit, but never where inextensible fibres would be too short.
 fn pulling(muscle: &Muscle, pressure: Pressure, part: f64, points: usize) -> Result<Shape, Trouble> {
     let problem = Problem::new(muscle, pressure)?;
     let limit = problem.contraction_limit(Approach::Auto)?;
-    // A stiff bladder in a steep braid pulls only where it is drawn out.
+    // A stiff bladder in a steep braid pulls only if it is stretched.
     let contraction = if limit > 0.0 { part * limit } else { (2.0 - part) * limit };
     Ok(problem.shape(Given::Contraction(contraction), Approach::Auto, points)?)
 }
@@ -71,7 +72,8 @@ fn meridional_force(point: &MeridianPoint) -> f64 {
     point.membrane_force_n_per_m * 2.0 * PI * point.r_m
 }
 
-/// The drawn polyline of one fibre in space tends to the fibre's stretched length with the square of the spacing.
+/// The length of the drawn polyline of one fibre in space tends to the stretched length of the fibre with the
+/// square of the spacing.
 pub(crate) fn fibre_length() -> Check {
     Claim {
         group: "meridian",
@@ -114,7 +116,7 @@ fn stretched(points: &[MeridianPoint]) -> f64 {
     simpson(points, |point| point.fibre_length_m, |point| 1.0 + point.fibre_strain)
 }
 
-/// Integral of `f` over `x`, fitted by a parabola to each pair of intervals (which need not be equal).
+/// Integral of `f` over `x`, with a parabola through each pair of intervals (which need not be equal).
 fn simpson(
     points: &[MeridianPoint],
     x: impl Fn(&MeridianPoint) -> f64,
@@ -128,7 +130,8 @@ fn simpson(
     points.windows(3).step_by(2).map(piece).sum()
 }
 
-/// Axial length, radius and volume from the drawn slopes and angles are those of points and response.
+/// Axial length, radius and volume, computed from the drawn slopes and angles, equal those of the points and
+/// of the response.
 pub(crate) fn consistency() -> Check {
     Claim {
         group: "meridian",
@@ -140,7 +143,7 @@ pub(crate) fn consistency() -> Check {
     .run(|tally| {
         for (name, muscle, contraction) in every_kind()? {
             let problem = Problem::new(&muscle, PRESSURE)?;
-            // Equally spaced in fibre length, which the closed form is not.
+            // Shooting gives points that are equally spaced in fibre length; the closed form doesn't.
             let approach = if name.starts_with("cylinder") { Approach::Auto } else { Approach::Shooting };
             let shape = problem.shape(Given::Contraction(contraction), approach, 2001)?;
             let points = &shape.meridian;

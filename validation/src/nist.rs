@@ -1,4 +1,5 @@
-//! Nonlinear regression of NIST's Statistical Reference Datasets: the least squares of the fits against certified values.
+//! Nonlinear regression problems of NIST's Statistical Reference Datasets: the least squares of the fits
+//! against certified values.
 
 use bulge_numerics::least_squares::{Bounds, Minimum, Options, Residuals, minimise};
 use bulge_numerics::{Dual, Real};
@@ -8,7 +9,7 @@ use std::ops::Range;
 
 use crate::check::{Check, Claim, Trouble};
 
-/// A name with the file of the numerics' tests.
+/// A problem's name and its file among the tests of the numerics crate.
 macro_rules! problem {
     ($name:literal) => {
         ($name, include_str!(concat!("../reference/nist/", $name, ".dat")))
@@ -50,7 +51,7 @@ const MOST: usize = 9;
 /// Lines before the data.
 const HEADER: usize = 60;
 
-/// A problem as its file states it.
+/// A problem as stated in its file.
 struct Regression {
     name: &'static str,
     starts: [Vec<f64>; 2],
@@ -93,7 +94,7 @@ impl Regression {
         Ok(Self { name, starts: [first, second], certified, deviations, rows })
     }
 
-    /// Response at the predictors x of a row.
+    /// Response for the predictors x of a row.
     fn response<D: Real>(&self, b: &[D], x: &[f64]) -> D {
         let (x, last) = (x[0], x[x.len() - 1]);
         let fall = |rate: D, x: f64| (rate * -x).exp();
@@ -149,7 +150,7 @@ impl Regression {
                 b[0] / b[1] * (away * away * -0.5).exp()
             }
             "Bennett5" => b[0] * (-((b[1] + x).ln() / b[2])).exp(),
-            // No such model: the check fails.
+            // The model is unknown, so the check fails.
             _ => D::from(f64::NAN),
         }
     }
@@ -207,7 +208,7 @@ impl Residuals for Regression {
     }
 }
 
-/// All 27 problems from both starts.
+/// All 27 problems, from both starts.
 pub(crate) fn nonlinear_regression() -> Check {
     Claim {
         group: "least squares",

@@ -1,4 +1,5 @@
-//! The pleated muscle of S1 against its measured force (S1 eq. 31, Table 1): how the error falls when an effect after the other is fitted.
+//! The pleated muscle of S1 against its measured force (S1 eq. 31, Table 1): how the error falls as effects
+//! are fitted one after the other.
 
 use bulge_fibre::{Approach, Parts, Problem};
 use bulge_muscles::{Fibre, Force, Length, LineStiffness, Muscle, Parameter, Pressure, Unfolding};
@@ -13,10 +14,10 @@ const FITS: &str = include_str!("../reference/pleated_measured_fits.csv");
 /// Coefficients f4 to f0 of S1 Table 1: F in N, p in bar, l0 in m, contraction in per cent.
 const TABLE_1: [f64; 5] = [-2.0413, 171.623, -7_178.93, 128_611.6, 146_099.0];
 const LENGTH: f64 = 0.11;
-/// What S1 measured: the tests ran from 100 to 3000 N.
+/// Range of the measurements in S1: the tests ran from 100 to 3000 N.
 const FORCES: [f64; 2] = [100.0, 3000.0];
 const FIBRES: f64 = 40.0;
-/// Where a search starts: far from the ends of all of them.
+/// Start of a search, far from all bounds.
 const START: [(Parameter, f64); 4] = [
     (Parameter::Radius, 0.018),
     (Parameter::FibreStiffness, 15e3),
@@ -24,10 +25,10 @@ const START: [(Parameter, f64); 4] = [
     (Parameter::UnfoldedRadius, 0.052),
 ];
 
-/// One point of S1's fit: pressure \[bar\], contraction, force \[N\].
+/// One point on the fit of S1: pressure \[bar\], contraction, force \[N\].
 type Point = (f64, f64, f64);
 
-/// Contractions of 0.5, 1, 1.5, ... % at 1, 2 and 3 bar, where the force is within what was measured.
+/// Contractions of 0.5, 1, 1.5, ... % at 1, 2 and 3 bar, where the force is within the measured range.
 fn points() -> Vec<Point> {
     let [f4, f3, f2, f1, f0] = TABLE_1;
     let mut points = Vec::new();
@@ -44,7 +45,8 @@ fn points() -> Vec<Point> {
     points
 }
 
-/// Errors of the force in per cent of 3 kN as functions of some numbers of the muscle, each in parts of its start.
+/// Errors of the force in per cent of 3 kN, as functions of some numbers of the muscle, each relative to its
+/// start.
 struct Misfit {
     points: Vec<Point>,
     muscle: Muscle,
@@ -109,7 +111,7 @@ impl Residuals for Misfit {
     }
 }
 
-/// With the dimensions of the drawing, and with the radius that S1 found to fit better.
+/// The dimensions of the drawing, and the radius that fits better according to S1.
 pub(crate) fn stated_radii() -> Check {
     Claim {
         group: "published",
@@ -128,7 +130,8 @@ pub(crate) fn stated_radii() -> Check {
     })
 }
 
-/// Radius, then the fibres' stretch, then cloth that stops the unfolding: 1.51, 0.84 and 0.44 %.
+/// Adds the radius, then the stretch of the fibres, then cloth that stops the unfolding: 1.51, 0.84 and 0.44
+/// %.
 pub(crate) fn fits() -> Check {
     Claim {
         group: "published",
@@ -150,7 +153,7 @@ pub(crate) fn fits() -> Check {
             }
             let rms = (found.cost / misfit.rows() as f64).sqrt();
             tally.relative(rms, row[4], || format!("{rms:.4} % with {free} parameters"));
-            // The file has millimetres and kilonewtons, and the stiffness of all fibres together.
+            // The file has millimetres and kilonewtons, and the total stiffness of all fibres.
             let units = [1e3, 1e-3 * FIBRES, 1e-3, 1e3];
             for (i, (part, (parameter, start))) in found.theta.iter().zip(&misfit.free).enumerate() {
                 let value = part * start * units[i];

@@ -1,4 +1,4 @@
-//! What stands in print, and worked numbers that a right program gives.
+//! Published results, and worked numbers that a correct program must reproduce.
 
 use bulge_fibre::{Approach, Problem};
 use bulge_muscles::{
@@ -8,7 +8,8 @@ use bulge_muscles::{
 use crate::check::{Check, Claim};
 use crate::specimen::{at, braid_25, cylinder_25, pleated, ppam};
 
-/// The muscles of S1, which prints their dimensions but draws their forces: force of both at 1 bar, volume of one.
+/// The muscles of S1, which prints their dimensions but only draws their forces: the force of both at 1 bar,
+/// and the volume of one.
 pub(crate) fn second_generation() -> Check {
     Claim {
         group: "worked numbers",
@@ -39,7 +40,7 @@ pub(crate) fn second_generation() -> Check {
     })
 }
 
-/// Contraction limits of the pleated muscles.
+/// Contraction limits of pleated muscles.
 pub(crate) fn contraction_limits() -> Check {
     Claim {
         group: "worked numbers",
@@ -64,7 +65,7 @@ pub(crate) fn contraction_limits() -> Check {
     })
 }
 
-/// The clamps take a part of the force, the more the shorter the muscle.
+/// The clamps reduce the force, by a larger fraction for shorter muscles.
 pub(crate) fn clamped_braids() -> Check {
     Claim {
         group: "worked numbers",
@@ -115,8 +116,9 @@ pub(crate) fn cylinder_formula() -> Check {
     })
 }
 
-/// Chou's and Hannaford's correction for a wall of constant thickness: `dF = pi p (D0 t (2 sin theta - 1/sin theta) - t^2)`, D0 = 2 r0/sin alpha0,
-/// on the cylinder with the gas at r0 - t.
+/// Correction of Chou and Hannaford for a wall of constant thickness:
+/// `dF = pi p (D0 t (2 sin theta - 1/sin theta) - t^2)`, D0 = 2 r0/sin alpha0, on the cylinder with the gas
+/// at r0 - t.
 pub(crate) fn inner_wall() -> Check {
     Claim {
         group: "published",
@@ -150,7 +152,8 @@ pub(crate) fn inner_wall() -> Check {
     })
 }
 
-/// S1's fit of what it measured: `F = p l0^2 (f4 eps^3 + f3 eps^2 + f2 eps + f1 + f0/eps)`, p in bar, eps in per cent.
+/// S1's fit to its measurements: `F = p l0^2 (f4 eps^3 + f3 eps^2 + f2 eps + f1 + f0/eps)`, p in bar, eps in
+/// per cent.
 pub(crate) fn measured_force() -> Check {
     Claim {
         group: "published",
@@ -172,7 +175,7 @@ pub(crate) fn measured_force() -> Check {
     })
 }
 
-/// S1's fit of its computed volume: `V = l0^3 (v5 eps^5 + ... + v0)` in ml, eps in per cent.
+/// S1's fit to its computed volume: `V = l0^3 (v5 eps^5 + ... + v0)` in ml, eps in per cent.
 pub(crate) fn computed_volume() -> Check {
     Claim {
         group: "published",

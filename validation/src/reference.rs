@@ -1,4 +1,4 @@
-//! The reference values in `reference/`, built in.
+//! The reference values in `reference/`, included in the program.
 
 use crate::check::Trouble;
 
@@ -31,7 +31,7 @@ impl Printed {
         Ok(Self { value, unit })
     }
 
-    /// The relative difference that the printed digits do not explain.
+    /// The part of the relative difference that the printed digits don't explain.
     pub(crate) fn unexplained(&self, got: f64) -> f64 {
         let difference = (got - self.value).abs();
         if difference.is_nan() { difference } else { (difference - self.unit).max(0.0) / self.value.abs() }
@@ -50,7 +50,7 @@ pub(crate) fn rows<const N: usize>(text: &str) -> Result<Vec<[Printed; N]>, Trou
         .collect()
 }
 
-/// The same without the digits.
+/// Rows of a reference file without the accuracy of their digits.
 pub(crate) fn values<const N: usize>(text: &str) -> Result<Vec<[f64; N]>, Trouble> {
     Ok(rows(text)?.into_iter().map(|row| row.map(|printed| printed.value)).collect())
 }

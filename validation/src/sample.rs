@@ -1,4 +1,4 @@
-//! Random muscles for properties that must hold for all of them: the same ones in every run.
+//! Random muscles for properties that must hold for all muscles. They are the same in every run.
 
 use bulge_muscles::{
     Angle, Bladder, Braided, Construction, Fibre, FibreCount, Force, Length, LineStiffness, Muscle,
@@ -55,7 +55,7 @@ impl Sampler {
         Pressure::bar(self.log_between(0.1, 8.0))
     }
 
-    /// A muscle of either kind, within the ranges of the solver, possibly with any of the features.
+    /// A muscle of either kind within the ranges of the solver, with a random selection of features.
     ///
     /// # Errors
     /// Never, unless a range here is wrong.
@@ -71,7 +71,7 @@ impl Sampler {
         let pleated = Construction::Pleated(Pleated::new(Length::m(radius), count)?);
         let mut muscle = Muscle::new("pleated", Length::m(length), pleated)?;
         if self.chance(0.3) {
-            // A strain of about 0.1 % to 10 %: the group p l0^2/(n EA) is its cube for a slack muscle.
+            // The strain is about 0.1 % to 10 %: for a slack muscle the group p l0^2/(n EA) is its cube.
             let total = 8e5 * length * length / self.log_between(1e-5, 1e-2);
             let each = total / muscle.fibres().map_or(1.0, f64::from);
             muscle = muscle.with_fibre(Fibre::new(Force::n(each))?)?;
@@ -80,7 +80,8 @@ impl Sampler {
             muscle = muscle.with(Parameter::PleatDepth, radius * self.between(0.01, 0.3))?;
         }
         if self.chance(0.25) && length < 90.0 * radius {
-            // The fibre would lie along a parallel where r sin(gamma) = R; the bulge of a slender muscle stays below 0.4 l0.
+            // The fibre would lie along a parallel where r sin(gamma) = R; the bulge of a slender muscle
+            // stays below 0.4 l0.
             let most = (0.8 * radius / (radius + 0.4 * length)).asin();
             muscle = muscle.with(Parameter::Misalignment, most * self.between(0.05, 1.0))?;
         }
@@ -115,7 +116,7 @@ impl Sampler {
         Ok(muscle)
     }
 
-    /// Cloth that is slack at the fitting: one that is taut there may not let the muscle bulge at all.
+    /// Cloth that is slack at the fitting. Cloth that is taut there may prevent any bulging.
     fn cloth(&mut self, radius: f64, bulge: f64) -> Result<Unfolding, MuscleError> {
         let unfolded = radius + bulge * self.between(0.02, 2.0);
         let stiffness = LineStiffness::n_per_m(unfolded * 1e5 * self.log_between(0.1, 30.0));

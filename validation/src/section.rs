@@ -1,9 +1,9 @@
-//! Area on which the pressure acts in a cross-section, from the geometry of each muscle alone.
+//! Area of a cross-section on which the pressure acts, from the geometry of each muscle alone.
 
 use bulge_muscles::{Construction, Muscle, Parameter, Quantity};
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// A(r) \[m^2\] where the fibres are at the radius r \[m\].
+/// A(r) \[m^2\] with the fibres at the radius r \[m\].
 pub(crate) fn area(muscle: &Muscle, r: f64) -> f64 {
     match (muscle.construction(), muscle.fibres()) {
         (Construction::Pleated(pleated), Some(n)) => {
@@ -18,10 +18,11 @@ pub(crate) fn area(muscle: &Muscle, r: f64) -> f64 {
     }
 }
 
-/// Area between the axis, two fibres at radius r on planes at +-`half` from the middle, and the arc of cloth of length s between them; if the
-/// arc is too long to keep inside the planes, it touches them, and the rest of the cloth lies on them.
+/// Area between the axis, two fibres at radius r on planes at +-`half` from the middle, and the arc of cloth
+/// of length s between them. If the arc is too long to stay between the planes, it touches them, and the rest
+/// of the cloth lies on them.
 fn panel(half: f64, s: f64, r: f64) -> f64 {
-    // Half-opening of an arc from plane to plane, by bisection: the wider, the longer.
+    // Half-opening of an arc from plane to plane, by bisection: the arc gets longer as it opens.
     let arc = |opening: f64| 2.0 * r * half.sin() * opening / opening.sin();
     let tangent = FRAC_PI_2 + half;
     let (opening, start) = if arc(tangent) < s {
@@ -39,6 +40,6 @@ fn panel(half: f64, s: f64, r: f64) -> f64 {
         (0.5 * (low + high), r)
     };
     let radius = start * half.sin() / opening.sin();
-    // Two triangles to the chord, and the segment beyond it.
+    // Two triangles up to the chord, and the segment beyond it.
     start * start * half.sin() * half.cos() + radius * radius * (opening - 0.5 * (2.0 * opening).sin())
 }

@@ -33,7 +33,7 @@ fn each_inextensible(mut visit: impl FnMut(&Muscle, f64) -> Result<(), Trouble>)
     Ok(())
 }
 
-/// Elastic fibres, also longer than at rest.
+/// Elastic fibres, including muscles longer than at rest.
 pub(crate) fn elastic() -> Check {
     Claim {
         group: "shooting",
@@ -45,7 +45,7 @@ pub(crate) fn elastic() -> Check {
     .run(|tally| each_elastic(|muscle, contraction| compare(tally, muscle, contraction, &WHOLE)))
 }
 
-/// What varies along the fibre.
+/// Quantities that vary along the fibre.
 pub(crate) fn along_the_fibre() -> Check {
     Claim {
         group: "shooting",
@@ -63,7 +63,7 @@ pub(crate) fn along_the_fibre() -> Check {
 fn each_elastic(mut visit: impl FnMut(&Muscle, f64) -> Result<(), Trouble>) -> Result<(), Trouble> {
     for slenderness in SLENDERNESS {
         let plain = pleated(Length::m(slenderness * RADIUS.to_m()), RADIUS, Some(24))?;
-        // The group p sin(2 pi/n) l0^2/(4 EA), which is about the cube of the strain over the slope's.
+        // The group p sin(2 pi/n) l0^2/(4 EA), about the cube of the strain divided by that of the slope.
         for group in [1e-6, 1e-4, 1e-3, 1e-2] {
             let width = (std::f64::consts::TAU / 24.0).sin();
             let stiffness = PRESSURE.to_pa() * width * plain.length().si().powi(2) / (4.0 * group);
@@ -76,7 +76,7 @@ fn each_elastic(mut visit: impl FnMut(&Muscle, f64) -> Result<(), Trouble>) -> R
     Ok(())
 }
 
-/// From stretched by a few times the strain at the rest length to 0.99 of the limit.
+/// Contractions from a length stretched by a few times the strain at the rest length to 0.99 of the limit.
 fn elastic_contractions(muscle: &Muscle) -> Result<Vec<f64>, Trouble> {
     let problem = Problem::new(muscle, PRESSURE)?;
     let limit = problem.contraction_limit(Approach::ClosedForm)?;
@@ -86,7 +86,7 @@ fn elastic_contractions(muscle: &Muscle) -> Result<Vec<f64>, Trouble> {
     Ok(stretched.into_iter().chain([0.0]).chain(contracted).collect())
 }
 
-/// Pleats with a depth, which shift the radius on which the pressure acts.
+/// Pleats with a depth, which changes the radius on which the pressure acts.
 pub(crate) fn pleats() -> Check {
     Claim {
         group: "shooting",
@@ -116,7 +116,8 @@ pub(crate) fn pleats() -> Check {
     })
 }
 
-/// What is compared: a name, the value, and the size as a part of p (l0^2 + R^2), of the value itself or of 1 that it counts against at least.
+/// A compared quantity: its name, its value, and the smallest size to which its error is related: a fraction
+/// of p (l0^2 + R^2), of the value itself, or of 1.
 type Output = (&'static str, fn(&Response) -> f64, Floor);
 
 #[derive(Clone, Copy)]

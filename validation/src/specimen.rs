@@ -1,4 +1,4 @@
-//! The muscles that the checks use, and how they are asked.
+//! The muscles that the checks use, and functions that solve them.
 
 use bulge_fibre::{Approach, Given, Problem, Response};
 use bulge_muscles::{
@@ -8,7 +8,7 @@ use bulge_muscles::{
 
 use crate::check::Trouble;
 
-/// Pleated muscle with straight inextensible fibres; no count: continuous.
+/// Pleated muscle with straight inextensible fibres; without a count they are continuous.
 pub(crate) fn pleated(length: Length, radius: Length, fibres: Option<u32>) -> Result<Muscle, Trouble> {
     let count = fibres.map_or(FibreCount::Continuous, FibreCount::Discrete);
     Ok(Muscle::new("pleated", length, Construction::Pleated(Pleated::new(radius, count)?))?)
@@ -29,7 +29,7 @@ pub(crate) fn braid_25(length: Length) -> Result<Muscle, Trouble> {
     braid(length, Length::mm(10.0), Angle::deg(25.0))
 }
 
-/// The same as the textbook cylinder.
+/// Braid of r0 = 10 mm and 25 degrees as the textbook cylinder.
 pub(crate) fn cylinder_25(length: Length) -> Result<Muscle, Trouble> {
     let braided = Braided::new(Length::mm(10.0), Angle::deg(25.0))?.with_ends(Ends::Cylinder);
     Ok(Muscle::new("cylinder", length, Construction::Braided(braided))?)
@@ -42,7 +42,7 @@ fn counted(length: Length, fitting: Length) -> Result<Muscle, Trouble> {
     Ok(Muscle::new("braid", length, Construction::Braided(braided))?)
 }
 
-/// Muscles of inextensible fibres with pressure alone, with a contraction within the range of each.
+/// Muscles of inextensible fibres loaded by pressure alone, each with a contraction within its range.
 pub(crate) fn pressure_only() -> Result<Vec<(&'static str, Muscle, f64)>, Trouble> {
     let (length, radius) = (Length::mm(110.0), Length::mm(16.0));
     Ok(vec![
@@ -82,7 +82,7 @@ pub(crate) fn pressure_only() -> Result<Vec<(&'static str, Muscle, f64)>, Troubl
     ])
 }
 
-/// Muscles in which fibres, bladder or cloth store energy, with a contraction within the range of each.
+/// Muscles in which fibres, bladder or cloth store energy, each with a contraction within its range.
 pub(crate) fn storing() -> Result<Vec<(&'static str, Muscle, f64)>, Trouble> {
     let rubber = Bladder::new(Pressure::mpa(0.2), Pressure::mpa(0.05), Length::mm(1.5))?;
     let cloth = |radius| Unfolding::new(LineStiffness::kn_per_m(8.0), Length::mm(radius));
@@ -127,22 +127,23 @@ pub(crate) fn storing() -> Result<Vec<(&'static str, Muscle, f64)>, Trouble> {
     ])
 }
 
-/// Both lists.
+/// The muscles of both lists.
 pub(crate) fn every_kind() -> Result<Vec<(&'static str, Muscle, f64)>, Trouble> {
     Ok(pressure_only()?.into_iter().chain(storing()?).collect())
 }
 
-/// How long the steps of differences may be against the usual ones: lobes that are nearly open stiffen within some per mille of contraction.
+/// Factor on the usual steps of differences: lobes that are nearly open stiffen within a few per mille of
+/// contraction.
 pub(crate) fn stride(muscle: &Muscle) -> f64 {
     if muscle.get(Parameter::ClothCircumference).is_some() { 0.1 } else { 1.0 }
 }
 
-/// A muscle at a pressure and a contraction, by whichever method applies.
+/// Solves a muscle at a pressure and a contraction by whichever method applies.
 pub(crate) fn at(muscle: &Muscle, pressure: Pressure, contraction: f64) -> Result<Response, Trouble> {
     Ok(Problem::new(muscle, pressure)?.follow(contraction, Approach::Auto)?)
 }
 
-/// The same by shooting.
+/// Solves a muscle at a pressure and a contraction by shooting.
 pub(crate) fn shot(muscle: &Muscle, pressure: Pressure, contraction: f64) -> Result<Response, Trouble> {
     Ok(Problem::new(muscle, pressure)?.solve(Given::Contraction(contraction), Approach::Shooting)?)
 }

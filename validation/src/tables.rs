@@ -1,4 +1,4 @@
-//! Tables against the closed form that they stand for, and against themselves.
+//! Tables against the closed form that they approximate, and against their own derivatives.
 
 use bulge_fibre::closed_form::{self, ClosedForm};
 use bulge_sweep::{Plan, tabulate};
@@ -16,7 +16,7 @@ range = \"2..100\"
 ";
 /// Points along each axis: fractions of the limit, and values between the ends.
 const POINTS: u32 = 40;
-/// Points that certify the table; the checks below are further ones.
+/// Number of points that certify the table. The checks below use further points.
 const CERTIFIED: u64 = 4096;
 
 fn table() -> Result<Vec<u8>, Trouble> {
@@ -26,7 +26,7 @@ fn table() -> Result<Vec<u8>, Trouble> {
     Ok(tabulate(&plan, &wish, &|_| ())?.bytes)
 }
 
-/// Points of the domain: from a thousandth to nine tenths of the limit, at slendernesses that are no nodes.
+/// Points of the domain: from a thousandth to nine tenths of the limit, at slendernesses that are not nodes.
 fn points(table: &Table<'_>) -> Result<Vec<[f64; 2]>, Trouble> {
     let lookup = table.lookup::<2, 2>()?;
     let mut points = Vec::new();
@@ -41,10 +41,10 @@ fn points(table: &Table<'_>) -> Result<Vec<[f64; 2]>, Trouble> {
     Ok(points)
 }
 
-/// A point, force and volume looked up there, and the closed form.
+/// A point, its force and volume from the table, and the closed form.
 type Compared = ([f64; 2], [Sample<2>; 2], ClosedForm);
 
-/// Every point with what is compared there.
+/// All points with the compared values.
 fn compared() -> Result<Vec<Compared>, Trouble> {
     let bytes = table()?;
     let table = Table::from_bytes(&bytes)?;

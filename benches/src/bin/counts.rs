@@ -1,7 +1,8 @@
-//! Where the time of an equilibrium goes: iterations, evaluations and steps of each method, with the error that they buy.
+//! Cost of an equilibrium: iterations, evaluations and steps of each method, with the resulting error.
 //!
-//! The error is that of the force, against the closed form (shooting of the pleated muscle) or against the reference values of
-//! `validation/reference` (energy minimisation for the braids, 12 digits of elliptic integrals for the closed form).
+//! The error is that of the force. It is relative to the closed form (shooting of the pleated muscle) or to
+//! the reference values of `validation/reference` (energy minimisation for the braids, 12 digits of elliptic
+//! integrals for the closed form).
 
 use bulge_benches::{Failure, SLENDERNESS, bladder, braid, cylinder, median_us, pleated, solve};
 use bulge_fibre::{Approach, Problem};
@@ -10,7 +11,7 @@ use std::hint::black_box;
 const PLEATED: &str = include_str!("../../../validation/reference/pleated_inelastic.csv");
 const BRAIDED: &str = include_str!("../../../validation/reference/braided_clamped_net.csv");
 
-/// The column `wanted` of the first row whose columns have the given values.
+/// The value in the column `wanted` of the first row with the given values in other columns.
 fn look_up(table: &str, keys: &[(&str, f64)], wanted: &str) -> Option<f64> {
     let mut lines = table.lines();
     let header: Vec<&str> = lines.next()?.split(',').collect();

@@ -1,7 +1,9 @@
-//! Times the fit of four effects to 10^4 simulated rows and the comparison on 10^5 (see `bulge_benches::measured`).
+//! Times the fit of four effects to 10^4 simulated rows and the comparison on 10^5 (see
+//! `bulge_benches::measured`).
 //!
-//! `fit [FILE]`: one line per question: name, seconds, and for the fit the four numbers in SI. With a FILE, the rows of the fit are written there
-//! for other programs: pressure, contraction, direction, rate and force, all in SI.
+//! `fit [FILE]` prints one line per task: name, seconds, and for the fit the four numbers in SI. If a FILE is
+//! given, the rows of the fit are written to it for other programs: pressure, contraction, direction, rate
+//! and force, all in SI.
 
 use bulge_benches::Failure;
 use bulge_benches::measured::{TRUTH, columns, effects, muscle};
@@ -15,7 +17,7 @@ use std::time::Instant;
 
 const ROUNDS: usize = 5;
 
-/// Median seconds, and the last answer.
+/// Median seconds, and the last result.
 fn median<T>(rounds: usize, mut run: impl FnMut() -> Result<T, Failure>) -> Result<(f64, T), Failure> {
     let mut times = Vec::new();
     let mut last = None;
@@ -28,7 +30,7 @@ fn median<T>(rounds: usize, mut run: impl FnMut() -> Result<T, Failure>) -> Resu
     Ok((times[rounds / 2], last.ok_or("no round was run")?))
 }
 
-/// The rows with what a model needs to know about the motion.
+/// The rows with the quantities of the motion that a model needs.
 fn table(record: &Record) -> String {
     let mut text = "pressure_pa,contraction,direction,rate_per_s,force_n\n".to_owned();
     for (moment, force) in record.moments().iter().zip(record.force()) {

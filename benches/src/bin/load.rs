@@ -1,7 +1,9 @@
-//! Times reading 10^6 rows from CSV and Parquet, the quality gate, and the search for repeats; and the largest memory of all. Beside it, in the same run,
-//! what the `csv` crate takes to split the same file and to parse its numbers, which is all that a reader can't do without.
+//! Times reading 10^6 rows from CSV and Parquet, the quality gate, and the search for repeats; it also
+//! measures the peak memory. For comparison, the same run times the `csv` crate splitting the same file and
+//! parsing its numbers, which is the minimum for any reader.
 //!
-//! One line per question: name, seconds. The last line is the peak of the resident memory in MiB, where the system tells it.
+//! It prints one line per task: name, seconds. The last line is the peak of the resident memory in MiB, if
+//! the system reports it.
 
 use bulge_benches::measured::{columns, csv};
 use bulge_benches::{Failure, parquet, peak};
@@ -28,7 +30,7 @@ fn ask(path: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The file split into fields, and those of the columns that are numbers parsed: seconds.
+/// Seconds to split the file into fields and to parse those of the numeric columns.
 fn plain(path: &Path) -> Result<f64, Failure> {
     let start = Instant::now();
     let bytes = std::fs::read(path)?;
@@ -45,7 +47,7 @@ fn plain(path: &Path) -> Result<f64, Failure> {
     Ok(start.elapsed().as_secs_f64())
 }
 
-/// Rows per second of the reader and of plain parsing, in turns: the best of five each.
+/// Rows per second of the reader and of plain parsing, alternating; the best of five each.
 fn against_plain(path: &Path) -> Result<(), Failure> {
     let (mut own, mut other) = (f64::INFINITY, f64::INFINITY);
     for _ in 0..5 {
@@ -68,7 +70,8 @@ fn write(folder: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
-/// `load FOLDER` writes the files where they are missing, in one run, and reads them in the next: the memory is then that of reading.
+/// `load FOLDER` writes missing files in one run and reads them in the next, so that the memory is that of
+/// reading alone.
 fn main() -> Result<(), Failure> {
     let folder = std::env::args().nth(1).ok_or("name a folder for the files: load FOLDER")?;
     let folder = Path::new(&folder);
@@ -80,7 +83,7 @@ fn main() -> Result<(), Failure> {
     for name in ["rows.csv", "rows.parquet"] {
         ask(&folder.join(name))?;
     }
-    // After the peak is known.
+    // This follows the memory measurement, so that it doesn't count.
     let peak = peak();
     against_plain(&folder.join("rows.csv"))?;
     if let Some(peak) = peak {

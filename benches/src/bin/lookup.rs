@@ -1,5 +1,5 @@
-//! One lookup of force, volume and gradients beside its direct solution: median nanoseconds over rounds, as JSON for `peers/table.py`, with the
-//! table's file name for it.
+//! Times one lookup of force, volume and gradients and its direct solution. It prints median nanoseconds over
+//! rounds as JSON for `peers/table.py`, with the file name of the table.
 //!
 //! ```sh
 //! cargo run --release -p bulge-benches --bin lookup FOLDER
@@ -17,10 +17,10 @@ use std::time::Instant;
 const FAMILY: &str = include_str!("../../../crates/cli/data/family.toml");
 const POINTS: usize = 4096;
 const ROUNDS: usize = 15;
-/// Passes over the points in a round of lookups.
+/// Passes over the points in one round of lookups.
 const PASSES: usize = 100;
 
-/// Median nanoseconds of one of `count` calls.
+/// Median nanoseconds of a call, in rounds of `count` calls.
 fn median(count: usize, round: impl FnMut()) -> f64 {
     1e3 * median_us(ROUNDS, count, round)
 }

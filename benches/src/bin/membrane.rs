@@ -1,23 +1,25 @@
-//! Times membrane cases of `meshes/`, and says how exact they are and what a Newton iteration is spent on.
+//! Times membrane cases of `meshes/`, and reports their errors and the distribution of the time in a Newton
+//! iteration.
 //!
-//! One line per case: name, unknowns, states, iterations, seconds, then the shares of elements, factors and solving, and the error.
+//! It prints one line per case: name, unknowns, states, iterations, seconds, then the shares of elements,
+//! factors and solving, and the error.
 
 use bulge_benches::Failure;
 use bulge_membrane::case::{Case, Row};
 use std::path::Path;
 use std::time::Instant;
 
-/// A case with changes to its text, and its error from the last row.
+/// A case with changes to its text; its error is computed from the last row.
 struct Question {
     name: &'static str,
     file: &'static str,
     changes: &'static [(&'static str, &'static str)],
     error: fn(&Row) -> String,
-    /// Runs; the shortest counts.
+    /// Number of runs; the shortest counts.
     runs: usize,
 }
 
-/// Shooting at 1e-13.
+/// Results of shooting at 1e-13.
 const TUBE_FORCE: f64 = -4.509_371_885_7;
 const TUBE_RADIUS: f64 = 14.138_745_874_6e-3;
 

@@ -1,5 +1,6 @@
-//! Times the closed form and the shooting on the 1000 contractions that the peers solve too (5 to 40 %, l0/R = 6.875), each from a start
-//! of its own. One line per method: name, microseconds per solve, sum of f over the contractions (S1 eq. 28).
+//! Times the closed form and the shooting on the 1000 contractions that the peers also solve (5 to 40 %, l0/R
+//! = 6.875). Each solve begins without a neighbouring solution. It prints one line per method: name,
+//! microseconds per solve, sum of f over the contractions (S1 eq. 28).
 
 use bulge_benches::{CONTRACTIONS, Failure, SLENDERNESS, contraction, median_us, pleated, solve};
 use bulge_fibre::{Approach, FibreError, closed_form};

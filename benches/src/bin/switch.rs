@@ -1,7 +1,8 @@
-//! Times a diagnosis, and a comparison that is asked again with one effect more or less, on 1200 simulated rows of the clamped braid `dmsp-20-250`: loops at four
-//! pressures, and filling and venting at four lengths. What is hidden: rubber, and the friction that the test can show.
+//! Times a diagnosis, and a comparison that is repeated with one effect more or less. The data are 1200
+//! simulated rows of the clamped braid `dmsp-20-250`: loops at four pressures, and filling and venting at
+//! four lengths. The effects in the data are rubber, and the friction that the test can show.
 //!
-//! `switch`: one line per question: name, and the median of the seconds that it took.
+//! `switch` prints one line per task: name, and the median of its seconds.
 
 use bulge_benches::Failure;
 use bulge_effects::{Catalogue, Effect};

@@ -17,28 +17,28 @@ use bulge_model::MuscleWithEffects;
 use bulge_muscles::{Ends, Pressure, Quantity};
 use std::f64::consts::{PI, TAU};
 
-/// Elements at least.
+/// Least number of elements.
 const ELEMENTS: usize = 200;
-/// Step of contraction: a long braid has more than one equilibrium, and small steps stay on the first branch.
+/// Step of contraction. A long braid has more than one equilibrium, and small steps stay on the first branch.
 const STEP: f64 = 0.025;
-/// Difference of contraction for the derivatives by central differences.
+/// Step of contraction for central differences.
 const DIFFERENCE: f64 = 1e-4;
 
 /// Why elements give no shape of a muscle.
 #[derive(Debug, thiserror::Error)]
 pub enum ElementsError {
-    /// What elements of revolution can't say.
+    /// A property that elements of revolution can't model.
     #[error("membrane elements of revolution know no {0}")]
     Unknown(&'static str),
-    /// Of the meridian, which knows what is possible.
+    /// An error of the meridian, which decides what is possible.
     #[error(transparent)]
     Equilibrium(#[from] FibreError),
-    /// Of the elements.
+    /// An error of the elements.
     #[error("membrane elements: {0}")]
     Elements(#[from] MembraneError),
 }
 
-/// What the elements are made from.
+/// The mesh and the solver of a muscle.
 struct Elements {
     solver: Solver,
     /// Effective pressure \[Pa\], and the ratio of the polygon's area to that of the circle.
@@ -46,14 +46,14 @@ struct Elements {
     share: f64,
     length: f64,
     radius: f64,
-    /// sin(alpha0), number of threads, and nodes of the mesh per point of the meridian.
+    /// sin(alpha0), number of threads, and mesh nodes per point of the meridian.
     sine: f64,
     threads: f64,
     every: usize,
 }
 
-/// The equilibrium of a muscle without other shape effects than those of its kind, ends, fibres and bladder, at a gauge pressure, with this many points of the
-/// meridian.
+/// The equilibrium of a muscle at a gauge pressure, with this many points of the meridian. No shape effects
+/// are included other than those of the kind, the ends, the fibres and the bladder.
 ///
 /// # Errors
 /// [`ElementsError`].
@@ -65,7 +65,8 @@ pub fn shape(
 ) -> Result<Shape, ElementsError> {
     check(extended)?;
     let parts = extended.parts();
-    // The meridian knows what is possible; of a force or a volume it also tells where they are, corrected below.
+    // The meridian decides what is possible. For a given force or volume it also gives the approximate
+    // contraction, which is corrected below.
     let near = Problem::new(parts, pressure)?.solve(given, Approach::Auto)?.contraction;
     let mut elements = Elements::new(parts, pressure, points)?;
     let contraction = match given {
@@ -107,7 +108,8 @@ fn check(extended: &MuscleWithEffects) -> Result<(), ElementsError> {
     }
 }
 
-/// Slope of the meridian at a node, by the parabola of its element; where two meet, the mean of theirs.
+/// Slope of the meridian at a node, from the parabola of its element. Where two elements meet, it is the mean
+/// of both.
 fn slope(places: &[[f64; 3]], node: usize) -> f64 {
     let of = |element: usize, xi: f64| {
         let [a, m, b] = [0, 1, 2].map(|k| places[2 * element + k]);
@@ -157,7 +159,7 @@ impl Elements {
         Load { inflation: Inflation::Pressure(self.pressure), fittings }
     }
 
-    /// From rest to a contraction in small steps.
+    /// Moves from rest to a contraction in small steps.
     fn at(&mut self, contraction: f64) -> Result<State, ElementsError> {
         let mut state = self.solver.at_rest();
         let mut before = Load { inflation: Inflation::Pressure(0.0), fittings: vec![0.0; 2] };
@@ -174,7 +176,7 @@ impl Elements {
         Ok(state)
     }
 
-    /// dF/dl, dV/dl and dF/dp (for gas enclosed) about a state.
+    /// dF/dl, dV/dl and dF/dp (for enclosed gas) at a state.
     fn slopes(&mut self, contraction: f64, state: &State) -> Result<[f64; 3], ElementsError> {
         let mut ends = Vec::new();
         for sign in [-1.0, 1.0] {

@@ -1,6 +1,6 @@
-//! The air in a muscle: closed, flowing in and out through a valve, and what a stroke costs.
+//! The air in a muscle: enclosed, or flowing through a valve, and its consumption in a stroke.
 //!
-//! Dry air as an ideal gas. Pressures `p` are gauge pressures, `P = p + p0` absolute ones.
+//! The gas is dry air, taken as ideal. Pressures `p` are gauge pressures; `P = p + p0` are absolute ones.
 //!
 //! ```text
 //! P (V + Vd) = m R T          R = 287.05 J/(kg K),  gamma = 1.4,  cp = gamma R/(gamma - 1),  cv = R/(gamma - 1)
@@ -14,17 +14,20 @@
 //! | m, T | mass and temperature of the gas in V + Vd | kg, K |
 //! | e, l, F | contraction, length, pull | 1, m, N |
 //!
-//! Two volumes. The gas fills `volume_m3`. What it passes on to the fibres is p dV of `volume_polygon_m3`, the volume between flat cloth, since
-//! F dl = -p dV holds with that one. Both are the same for braids and for continuous fibres. Between n fibres the second is
-//! a = (n/2 pi) sin(2 pi/n) of the first (0.9959 for n = 40): of the work of the gas the part 1 - a doesn't reach the load.
+//! There are two volumes. The gas fills `volume_m3`. Its work on the fibres is p dV of `volume_polygon_m3`,
+//! the volume between flat cloth, because F dl = -p dV holds with that volume. Both are the same for braids
+//! and for continuous fibres. Between n fibres the second is a = (n/2 pi) sin(2 pi/n) times the first (0.9959
+//! for n = 40), so the fraction 1 - a of the work of the gas doesn't reach the load.
 //!
-//! - [`ClosedMuscle`]: the valve shut, P (V + Vd)^n = const; pressure, force, and the contraction under a force.
-//! - [`StiffnessSplit`]: what the geometry and what the enclosed gas gives to dF/dl.
-//! - [`Orifice`]: the flow of a valve after ISO 6358.
+//! - [`ClosedMuscle`]: the valve is shut and P (V + Vd)^n = const. It gives pressure, force, and the
+//!   contraction under a force.
+//! - [`StiffnessSplit`]: the contributions of the geometry and of the enclosed gas to dF/dl.
+//! - [`Orifice`]: the flow of a valve according to ISO 6358.
 //! - [`Filling`]: filling and venting over time, against a [`Load`].
 //! - [`Stroke`]: air, energy and efficiency of a cycle.
 //!
-//! Left out: humidity, real gas (below 10 bar its compressibility differs from 1 by less than 0.5 %), waves in tubes, inertia of the load.
+//! Neglected: humidity, real gas (below 10 bar its compressibility factor differs from 1 by less than 0.5 %),
+//! waves in tubes, and inertia of the load.
 
 mod chamber;
 mod closed;
@@ -60,28 +63,28 @@ pub const CV_AIR: f64 = R_AIR / (GAMMA - 1.0);
 /// Ambient temperature unless stated \[K\].
 pub const AMBIENT_TEMPERATURE_K: f64 = 293.15;
 
-/// Why a question about the air in a muscle has no answer.
+/// Why a computation of the air in a muscle fails.
 #[derive(Debug, thiserror::Error)]
 pub enum GasError {
-    /// A number that can't be.
+    /// An impossible number.
     #[error("{what} is {value}: {instead}")]
     Number {
-        /// What it is.
+        /// Name of the number.
         what: &'static str,
         /// Its value.
         value: f64,
-        /// What to give instead.
+        /// Advice on a valid value.
         instead: &'static str,
     },
-    /// The muscle has no equilibrium there.
+    /// The muscle has no equilibrium at this pressure.
     #[error("at the gauge pressure {pressure_pa} Pa: {error}")]
     Muscle {
         /// Gauge pressure \[Pa\].
         pressure_pa: f64,
-        /// What is wrong.
+        /// The cause.
         error: Box<MuscleWithEffectsError>,
     },
-    /// No contraction at which pull and load are equal.
+    /// Pull and load are equal at no contraction.
     #[error(
         "at the gauge pressure {pressure_pa} Pa the pull equals the load at no contraction (last tried: {:.4} %, load {load_n} N): give the load a support, or one that the muscle can carry",
         100.0 * contraction
@@ -101,27 +104,27 @@ pub enum GasError {
     NoPressure {
         /// The last gauge pressure \[Pa\].
         pressure_pa: f64,
-        /// What stopped the search.
+        /// Why the search stopped.
         reason: String,
     },
-    /// The integration over time came to a halt.
+    /// The integration over time stopped.
     #[error("the filling stopped after {time_s} s at the gauge pressure {pressure_pa} Pa: {reason}")]
     Stopped {
         /// Time \[s\].
         time_s: f64,
         /// Gauge pressure there \[Pa\].
         pressure_pa: f64,
-        /// Why.
+        /// The cause.
         reason: String,
     },
 }
 
-/// A finite number above a bound, or at it.
+/// Checks that a number is finite and at least `low`.
 fn at_least(what: &'static str, value: f64, low: f64, instead: &'static str) -> Result<f64, GasError> {
     if value.is_finite() && value >= low { Ok(value) } else { Err(GasError::Number { what, value, instead }) }
 }
 
-/// A finite number above 0.
+/// Checks that a number is finite and above 0.
 fn positive(what: &'static str, value: f64) -> Result<f64, GasError> {
     if value.is_finite() && value > 0.0 {
         Ok(value)
@@ -142,7 +145,7 @@ mod examples {
         MuscleWithEffects::new(&muscle, &known(&muscle, &Catalogue::builtin()).unwrap()).unwrap()
     }
 
-    /// Inextensible fibres all round: F dl = -p dV with the volume that holds the gas.
+    /// Continuous inextensible fibres: F dl = -p dV holds with the volume that the gas fills.
     pub(super) fn pleated() -> MuscleWithEffects {
         muscle("kind = \"pleated\"\nlength = \"110 mm\"\nradius = \"16 mm\"\nfibres = \"continuous\"")
     }

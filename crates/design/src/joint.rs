@@ -1,10 +1,11 @@
-//! Two antagonistic muscles on a joint: torque and stiffness over angle and both pressures.
+//! A joint with two antagonistic muscles: torque and stiffness as functions of the angle and of both
+//! pressures.
 //!
 //! ```text
 //! torque     M = F1 (-dl1/dtheta) - F2 dl2/dtheta          [N m]; a positive angle shortens the agonist 1
 //! stiffness  K = -dM/dtheta at constant pressures          [N m/rad]
 //! ```
-//! As S1 section 4.1 says, the difference of the pressures sets the angle, and their sum the stiffness.
+//! The difference of the pressures sets the angle, and their sum the stiffness (S1, section 4.1).
 
 mod file;
 mod four_bar;
@@ -25,43 +26,43 @@ use bulge_muscles::Pressure;
 use bulge_numerics::root::illinois;
 use serde::Serialize;
 
-/// Contraction from which on a muscle of fibres that don't stretch is asked: at 0 its force is infinite.
+/// Least contraction of a muscle whose fibres don't stretch, because its force is infinite at 0.
 const LEAST_CONTRACTION: f64 = 1e-4;
-/// Part of a pressure to which the least one is found at which a muscle pulls.
+/// Relative accuracy of the least pressure at which a muscle pulls.
 const PRESSURE_TOLERANCE: f64 = 1e-9;
-/// Pressures are found to this part of their range, and angles to this part of theirs.
+/// Tolerance of pressures and angles relative to their ranges.
 const TOLERANCE: f64 = 1e-12;
 
-/// What is wrong with a muscle of a joint.
+/// The error of a muscle of a joint.
 type Cause = Box<dyn std::error::Error + Send + Sync>;
 
 /// Why a joint has no torque, or no angle.
 #[derive(Debug, thiserror::Error)]
 pub enum JointError {
-    /// No equilibrium of a muscle.
+    /// A muscle has no equilibrium.
     #[error("the {} at the angle {:.4} deg and {pressure_pa} Pa: {error}", side.name(), angle.to_degrees())]
     Muscle {
-        /// Which muscle.
+        /// The muscle.
         side: Side,
         /// Angle \[rad\].
         angle: f64,
         /// Its pressure \[Pa\].
         pressure_pa: f64,
-        /// What is wrong.
+        /// The cause.
         error: Cause,
     },
-    /// An angle that isn't in the joint's range.
+    /// An angle outside the range of the joint.
     #[error(
         "the angle {:.4} deg is outside the range of the joint, {:.4} deg to {:.4} deg",
         angle.to_degrees(), range[0].to_degrees(), range[1].to_degrees()
     )]
     Outside {
-        /// Asked angle \[rad\].
+        /// Requested angle \[rad\].
         angle: f64,
         /// The range \[rad\].
         range: [f64; 2],
     },
-    /// A stiffness that the range of pressures doesn't give at an angle.
+    /// A stiffness that can't be reached at an angle within the range of pressures.
     #[error(
         "no pressures in the joint's range give {stiffness:.4} N m/rad at {:.4} deg: there it is {:.4} to {:.4} N m/rad",
         angle.to_degrees(), range[0], range[1]
@@ -69,12 +70,12 @@ pub enum JointError {
     Stiffness {
         /// Angle \[rad\].
         angle: f64,
-        /// Asked stiffness \[N m/rad\].
+        /// Requested stiffness \[N m/rad\].
         stiffness: f64,
-        /// Least and most \[N m/rad\].
+        /// Smallest and largest stiffness \[N m/rad\].
         range: [f64; 2],
     },
-    /// An angle that no pressures hold.
+    /// An angle that can't be held by any pressures.
     #[error(
         "no pressures in the joint's range hold {:.4} deg under {outside:.4} N m from outside: they can hold {:.4} to {:.4} N m there",
         angle.to_degrees(), range[0], range[1]
@@ -82,25 +83,25 @@ pub enum JointError {
     Held {
         /// Angle \[rad\].
         angle: f64,
-        /// Torque from outside \[N m\].
+        /// External torque \[N m\].
         outside: f64,
-        /// Least and most that can be held \[N m\].
+        /// Smallest and largest torque that can be held \[N m\].
         range: [f64; 2],
     },
-    /// A pressure outside the joint's range.
+    /// A pressure outside the range of the joint.
     #[error("the pressure of the {}, {:.4} bar, is outside the range of the joint, {:.4} to {:.4} bar", side.name(), 1e-5 * pressure_pa, 1e-5 * range[0], 1e-5 * range[1])]
     Pressure {
-        /// Which muscle.
+        /// The muscle.
         side: Side,
         /// Its pressure \[Pa\].
         pressure_pa: f64,
         /// The range \[Pa\].
         range: [f64; 2],
     },
-    /// A closed muscle that has lost its pressure.
+    /// A closed muscle without gauge pressure.
     #[error("the closed {} has no pressure left at {:.4} deg: {pressure_pa:.0} Pa below the air around it; fill it more", side.name(), angle.to_degrees())]
     Empty {
-        /// Which muscle.
+        /// The muscle.
         side: Side,
         /// Angle \[rad\].
         angle: f64,
@@ -136,7 +137,7 @@ pub struct Joint {
 }
 
 impl Joint {
-    /// What turns pull into torque.
+    /// The linkage that converts pull into torque.
     #[must_use]
     pub const fn linkage(&self) -> &Linkage {
         &self.linkage
@@ -151,7 +152,8 @@ impl Joint {
     /// Torque of both muscles \[N m\] at an angle \[rad\] and the pressures of agonist and antagonist \[Pa\], > 0.
     ///
     /// # Errors
-    /// [`JointError::Outside`] its range of angles, or [`JointError::Muscle`] without equilibrium.
+    /// [`JointError::Outside`] for an angle outside the range, or [`JointError::Muscle`] if there is no
+    /// equilibrium.
     pub fn torque(&self, angle: f64, agonist_pa: f64, antagonist_pa: f64) -> Result<f64, JointError> {
         self.inside(angle)?;
         self.moment(angle, [agonist_pa, antagonist_pa])
@@ -167,7 +169,8 @@ impl Joint {
         Ok(-(one.by_angle + other.by_angle))
     }
 
-    /// The range of angles in which both muscles pull at their pressures, with a torque at its ends: that of the joint, or less of it.
+    /// The range of angles in which both muscles pull at their pressures, with the torques at its ends. It is
+    /// the range of the joint or a part of it.
     fn ends(
         &self,
         torque: impl Fn(f64) -> Result<f64, JointError>,
@@ -193,19 +196,20 @@ impl Joint {
             }
         }
         if low >= high {
-            // One of them doesn't pull at any angle at which the other one does.
+            // One muscle doesn't pull at any angle at which the other one does.
             self.pulls(0.5 * (whole[0] + whole[1]), pressures)?;
         }
         Ok(([low, high], [torque(low)?, torque(high)?]))
     }
 
-    /// The least of the joint's pressures at which a muscle pulls at an angle.
+    /// The smallest pressure in the range of the joint at which a muscle pulls at an angle.
     fn least_pressure(&self, muscle: &JointMuscle, angle: f64) -> Result<f64, JointError> {
         let [mut low, mut high] = self.pressure;
         if muscle.pull(angle, low).is_ok() {
             return Ok(low);
         }
         muscle.pull(angle, high)?;
+        // Bisection keeps `high` a pressure at which the muscle pulls.
         while high - low > PRESSURE_TOLERANCE * high {
             let middle = 0.5 * (low + high);
             match muscle.pull(angle, middle) {
@@ -233,7 +237,7 @@ impl Joint {
     }
 }
 
-/// Where a function vanishes between two places, or the first error on the way.
+/// Root of a function between two places, or the first error of the function.
 fn root(
     function: impl Fn(f64) -> Result<f64, JointError>,
     [low, high]: [f64; 2],

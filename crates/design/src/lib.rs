@@ -1,15 +1,20 @@
 //! Design tools for muscles.
 //!
-//! - [`size`] goes from a load over a stroke to muscles, lengths and pressures (S4, "Sizing Fluidic Muscle Using Static Force Model"),
-//! - [`gas`] is a muscle with its valve shut, how fast one fills and what air it uses (S1, section 2.3; ISO 6358),
-//! - [`sensing`] is a muscle that feels its own contraction, by the resistance of a channel of liquid metal around it (S3, section 5),
-//! - [`joint`] is two muscles against each other on a joint: torque, stiffness, and the pressures for both (S1, section 4),
-//! - [`elements`] is the shape of a muscle by membrane elements, beside that of the meridian,
-//! - [`heat`] is how warm a muscle gets that is charged and discharged again and again, with and without an inner pipe (S3, section 4).
+//! - [`size`] finds muscles, lengths and pressures for a load over a stroke (S4, "Sizing Fluidic Muscle Using
+//!   Static Force Model").
+//! - [`gas`] computes closed muscles, filling times and air consumption (S1, section 2.3; ISO 6358).
+//! - [`sensing`] models a muscle that measures its own contraction by the resistance of a channel of liquid
+//!   metal around it (S3, section 5).
+//! - [`joint`] models two antagonistic muscles on a joint: torque, stiffness, and the pressures for both (S1,
+//!   section 4).
+//! - [`elements`] computes the shape of a muscle by membrane elements, as an alternative to its meridian.
+//! - [`heat`] computes the temperature of a muscle under repeated charging and discharging, with and without
+//!   an inner pipe (S3, section 4).
 //!
 //! S3 is "Study on Mechanical Behaviour of Pneumatic Artificial Muscle and Methods to Improve it".
 //!
-//! Deliberately absent: prices, and files but that of a joint. An answer is a value with numbers in it; the command line reads and prints.
+//! Deliberately absent: prices, and file formats other than that of a joint. Functions return values with
+//! numbers; the command line reads files and prints.
 
 pub mod elements;
 pub mod gas;

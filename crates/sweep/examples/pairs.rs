@@ -1,9 +1,10 @@
-//! Force at a million pairs of contraction and slenderness: what the Python package is measured against.
+//! Force at a million pairs of contraction and slenderness. The Python package is measured against it.
 //!
 //! ```text
 //! cargo run --release -p bulge-sweep --example pairs -- PAIRS.f64 [RUNS]
 //! ```
-//! `PAIRS.f64` holds all contractions, then all slendernesses, as little-endian doubles. Prints the seconds of each run, and the sum of the forces.
+//! `PAIRS.f64` holds all contractions, then all slendernesses, as little-endian doubles. The program prints
+//! the seconds of each run, and the sum of the forces.
 
 use bulge_fibre::Approach;
 use bulge_muscles::preset;

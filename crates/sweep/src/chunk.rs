@@ -1,4 +1,5 @@
-//! One chunk of a sweep: its points computed, and as the bytes of a Parquet file or of CSV. A pure function of the plan and the chunk's number.
+//! One chunk of a sweep: its points, and their encoding as Parquet or CSV. The bytes are a pure function of
+//! the plan and the number of the chunk.
 
 use bulge_fibre::RangeEnd;
 use parquet::basic::{Compression, Encoding, LogicalType, Repetition, Type as Physical};
@@ -20,8 +21,8 @@ use crate::family_error::FamilyError;
 use crate::plan::Plan;
 use crate::points::finite;
 
-/// Points of a part of a chunk: so many that the muscle which two parts have in common costs little, so few that a chunk of muscles that take an
-/// integration each has some for every thread.
+/// Points of a part of a chunk. The number is large enough that a muscle shared by two parts costs little. It
+/// is small enough that a chunk of muscles that need an integration has parts for every thread.
 const PART: u64 = 256;
 
 /// The points of a chunk, column by column.
@@ -29,12 +30,13 @@ const PART: u64 = 256;
 pub struct Chunk {
     /// Number of the first point.
     pub first: u64,
-    /// Values of the axes in SI, in the order of the plan. A contraction that follows the limit of a muscle which has none, or one below the
-    /// axis, stays where the axis begins.
+    /// Values of the axes in SI, in the order of the plan. On an axis up to the limit, the contraction is set
+    /// to the lower end if the muscle has no limit or a limit below that end.
     pub axes: Vec<Vec<f64>>,
-    /// Values of the outputs in SI, in the order of the plan; meaningless where [`Chunk::infeasible`] gives a reason.
+    /// Values of the outputs in SI, in the order of the plan. They are meaningless where
+    /// [`Chunk::infeasible`] gives a reason.
     pub outputs: Vec<Vec<f64>>,
-    /// Why a point has no equilibrium, by its place in the chunk, in rising order.
+    /// Reasons of the points without equilibrium, with their index in the chunk, in rising order.
     pub infeasible: Vec<(usize, String)>,
 }
 
@@ -47,7 +49,7 @@ pub struct Column {
     pub unit: String,
 }
 
-/// A family laid out as points: what chunks are computed from.
+/// A family and the layout of its points, from which chunks are computed.
 #[derive(Debug)]
 pub struct Computer<'a> {
     plan: &'a Plan,
@@ -55,14 +57,14 @@ pub struct Computer<'a> {
     family: Family,
 }
 
-/// The muscle of the last point, which its neighbours share.
+/// The muscle of the last point. Neighbouring points share it.
 struct Last {
     number: u64,
     member: Result<(Member, Option<RangeEnd>), String>,
 }
 
 impl<'a> Computer<'a> {
-    /// For a plan with a design.
+    /// Prepares the computation of a plan that has a design.
     ///
     /// # Errors
     /// If the muscle file states an effect that doesn't exist.
@@ -70,7 +72,7 @@ impl<'a> Computer<'a> {
         Ok(Self { plan, layout, family: Family::new(plan)? })
     }
 
-    /// The points of a range of numbers.
+    /// Computes the points of a range of numbers.
     #[must_use]
     pub fn chunk(&self, points: Range<u64>) -> Chunk {
         let count = usize::try_from(points.end - points.start).unwrap_or(0);
@@ -88,7 +90,8 @@ impl<'a> Computer<'a> {
             self.layout.place(number, &mut place);
             let follows = place.iter().any(|at| matches!(at, Coordinate::OfLimit { .. }));
             let member = self.layout.member(number);
-            // The limit is needed to know the contraction, the muscle doesn't depend on it; where there is none the axis stays at its beginning.
+            // The contraction depends on the limit, but the muscle doesn't depend on the contraction. Without
+            // a limit the axis stays at its lower end.
             for (x, at) in point.iter_mut().zip(&place) {
                 *x = if let Coordinate::OfLimit { from, .. } = at { *from } else { at.value(1.0) };
             }
@@ -122,7 +125,8 @@ impl<'a> Computer<'a> {
         chunk
     }
 
-    /// The same in parts that other threads may take over; outputs where there is no equilibrium, which mean nothing, may differ.
+    /// Computes a chunk in parts that other threads may take over. Outputs at points without equilibrium are
+    /// meaningless and may differ from those of [`Self::chunk`].
     #[must_use]
     pub(crate) fn shared_chunk(&self, points: Range<u64>) -> Chunk {
         let parts = points.end.saturating_sub(points.start).div_ceil(PART);
@@ -158,7 +162,7 @@ impl<'a> Computer<'a> {
         self.family.member(point).and_then(of).map_err(|error: FamilyError| error.to_string())
     }
 
-    /// The columns of the data set, in order: number of the point, axes, outputs, reason.
+    /// Columns of the data set in order: number of the point, axes, outputs, reason.
     #[must_use]
     pub fn columns(&self) -> Vec<Column> {
         let column = |name: String, unit: String| Column { name, unit };
@@ -169,11 +173,12 @@ impl<'a> Computer<'a> {
         columns
     }
 
-    /// A chunk as a Parquet file: `index` int64, the axes as required doubles, the outputs as optional doubles, `infeasible` as optional text.
+    /// A chunk as a Parquet file: `index` int64, the axes as required doubles, the outputs as optional
+    /// doubles, `infeasible` as optional text.
     /// Metadata: `bulge.columns` (names and units), `bulge.sweep` (`about`).
     ///
     /// # Errors
-    /// What the Parquet library says.
+    /// If the Parquet library fails.
     pub fn parquet(&self, chunk: &Chunk, about: &str) -> Result<Vec<u8>, ParquetError> {
         let columns = self.columns();
         let (axes, outputs) = (chunk.axes.len(), chunk.outputs.len());
@@ -200,7 +205,8 @@ impl<'a> Computer<'a> {
         ];
         let properties = WriterProperties::builder()
             .set_compression(Compression::SNAPPY)
-            // Numbers hardly repeat; the number of a point is the last one plus 1.
+            // Numbers hardly repeat, so a dictionary wouldn't help. Point numbers rise by 1, so deltas pack
+            // well.
             .set_dictionary_enabled(false)
             .set_column_encoding(ColumnPath::from("index"), Encoding::DELTA_BINARY_PACKED)
             .set_column_dictionary_enabled(ColumnPath::from("infeasible"), true)
@@ -242,7 +248,7 @@ impl<'a> Computer<'a> {
         Ok(bytes)
     }
 
-    /// A chunk as CSV with a heading, `name [unit]`; empty cells where there is no equilibrium.
+    /// A chunk as CSV with a header of `name [unit]`. Cells are empty where there is no equilibrium.
     #[must_use]
     pub fn csv(&self, chunk: &Chunk) -> String {
         let heading = |column: &Column| match column.unit.as_str() {
@@ -270,7 +276,7 @@ impl<'a> Computer<'a> {
     }
 }
 
-/// An axis that follows the limit must begin below it.
+/// Refuses an axis up to the limit that begins at or beyond it.
 fn begins_below(place: &[Coordinate], limit: Option<f64>) -> Result<(), String> {
     for at in place {
         if let (Coordinate::OfLimit { from, .. }, Some(limit)) = (at, limit)

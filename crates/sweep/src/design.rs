@@ -1,4 +1,5 @@
-//! Which points a sweep has: each a pure function of its number, so that any chunk can be computed anywhere and again.
+//! The points of a sweep. Each is a pure function of its number, so any chunk can be computed on any machine,
+//! and computed again with the same result.
 
 use bulge_numerics::Random;
 use std::f64::consts::FRAC_PI_2;
@@ -7,26 +8,29 @@ use crate::permutation::Permutation;
 use crate::plan::{Design, End, Plan, Quantity, Range, Spacing};
 use crate::sobol::Sobol;
 
-/// Where a point lies on an axis.
+/// Position of a point on an axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Coordinate {
-    /// At this value in SI.
+    /// A value in SI.
     Value(f64),
-    /// Between a value in SI and the contraction at which the muscle's force vanishes.
+    /// A position between a value in SI and the contraction at which the force of the muscle vanishes.
     OfLimit {
         /// The lower end.
         from: f64,
-        /// How far from it, before it is stretched: 0 at the lower end, 1 at the limit.
+        /// Fraction of the way from the lower end, before spacing is applied: 0 at the lower end, 1 at the
+        /// limit.
         fraction: f64,
-        /// How it is stretched.
+        /// Spacing applied to the fraction.
         spacing: Spacing,
     },
 }
 
 impl Coordinate {
-    /// The value in SI, with the contraction at which the force vanishes; a [`Coordinate::Value`] doesn't depend on it.
+    /// The value in SI, given the contraction `limit` at which the force vanishes. A [`Coordinate::Value`]
+    /// doesn't depend on it.
     ///
-    /// Exactly `from` at the fraction 0, and exactly `limit` at 1. NaN for logarithmic spacing up to a limit <= 0.
+    /// The value is exactly `from` at the fraction 0, and exactly `limit` at 1. It is NaN for logarithmic
+    /// spacing up to a limit <= 0.
     #[must_use]
     pub fn value(self, limit: f64) -> f64 {
         match self {
@@ -37,7 +41,8 @@ impl Coordinate {
 }
 
 impl Plan {
-    /// Number of points of the design; 0 if only a table is wanted, or if an axis of a grid doesn't say how many. At most 2^128 - 1.
+    /// Number of points of the design. It is 0 if only a table is wanted, or if an axis of a grid doesn't
+    /// state its number of points. At most 2^128 - 1.
     #[must_use]
     pub fn points(&self) -> u128 {
         match self.design {
@@ -84,7 +89,7 @@ enum Sampler {
     Grid {
         /// The axes from the fastest to the slowest, each with its number of values.
         order: Vec<(usize, u64)>,
-        /// How many neighbours differ in the contraction only.
+        /// Number of consecutive points that differ only in the contraction.
         run: u64,
     },
     Random {
@@ -94,7 +99,7 @@ enum Sampler {
     LatinHypercube {
         points: u64,
         seed: u64,
-        /// Of each axis.
+        /// One permutation of the layers for each axis.
         layers: Vec<Permutation>,
     },
 }
@@ -122,9 +127,10 @@ impl Layout {
         Some(Self { ranges, sampler })
     }
 
-    /// Where the point with the number `index` lies on each axis, in the order of the plan; numbers count from 0 to [`Plan::points`] - 1.
+    /// Position on each axis, in the order of the plan, of the point number `index`. Numbers count from 0 to
+    /// [`Plan::points`] - 1.
     ///
-    /// `out` takes as many axes as it has places for.
+    /// Only as many axes are filled as `out` has elements.
     pub fn place(&self, index: u64, out: &mut [Coordinate]) {
         let mut fill = |fractions: &mut dyn Iterator<Item = f64>| {
             for ((place, range), fraction) in out.iter_mut().zip(&self.ranges).zip(fractions) {
@@ -145,7 +151,7 @@ impl Layout {
                 let mut random = Random::new(*seed, index);
                 fill(&mut std::iter::repeat_with(|| random.uniform()));
             }
-            // Without the corner, which is the point 0.
+            // The point 0 of the sequence is the corner; it is left out.
             Sampler::Sobol(sobol) => fill(&mut sobol.point(index.saturating_add(1))),
             Sampler::LatinHypercube { points, seed, layers } => {
                 let mut random = Random::new(*seed, index);
@@ -155,14 +161,15 @@ impl Layout {
         }
     }
 
-    /// The number of the muscle and pressure at a point, that is of the combination of all axes but the contraction: neighbours on a grid share it.
+    /// Number of the muscle and pressure at a point, that is, of the combination of all axes except the
+    /// contraction. Neighbours on a grid share it.
     #[must_use]
     pub fn member(&self, index: u64) -> u64 {
         if let Sampler::Grid { run, .. } = &self.sampler { index / run } else { index }
     }
 }
 
-/// How many values a grid takes from an axis.
+/// Number of values that a grid takes from an axis.
 fn count(range: &Range) -> u64 {
     match range {
         Range::Between { points, .. } => points.unwrap_or(0),
@@ -170,7 +177,7 @@ fn count(range: &Range) -> u64 {
     }
 }
 
-/// The value number `step` of `count` on a grid.
+/// Value number `step` of the `count` values of an axis on a grid.
 pub(crate) fn at_step(range: &Range, step: u64, count: u64) -> Coordinate {
     match range {
         Range::List(values) => {
@@ -187,7 +194,7 @@ pub(crate) fn at_step(range: &Range, step: u64, count: u64) -> Coordinate {
     }
 }
 
-/// The value at a fraction in \[0, 1) of an axis.
+/// Value at a fraction in \[0, 1) of an axis.
 fn at_fraction(range: &Range, fraction: f64) -> Coordinate {
     match *range {
         Range::List(ref values) => {
@@ -204,14 +211,15 @@ fn at_fraction(range: &Range, fraction: f64) -> Coordinate {
     }
 }
 
-/// The value at t = step/steps of a range, spaced:
+/// Value at t = step/steps of a range with the given spacing:
 ///
 /// ```text
 /// linear:     from + t (to - from)
 /// log:        from (to/from)^t
 /// chebyshev:  from + (1 - cos(pi t))/2 (to - from)
 /// ```
-/// Counted from the nearer end: so both ends are exact, the points are symmetric, and steps of a whole number end on whole numbers.
+/// The fraction is counted from the nearer end. Both ends are therefore exact, the points are symmetric, and
+/// whole-number steps end on whole numbers.
 fn between([from, to]: [f64; 2], spacing: Spacing, step: f64, steps: f64) -> f64 {
     if 2.0 * step <= steps {
         from_end(from, to, spacing, step, steps)

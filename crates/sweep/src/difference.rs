@@ -1,9 +1,9 @@
-//! What differs between the plan of a folder and that of a sweep that wants to go on there.
+//! Differences between the plan stored in a folder and the plan of a sweep that is to be resumed there.
 
-/// Most lines of a difference that are shown.
+/// Largest number of differing lines that are shown from each text.
 const MOST_SHOWN: usize = 12;
 
-/// Lines of two texts that differ, with their keys in sight.
+/// The lines in which two texts differ; each is shown with its key.
 pub(crate) fn difference(before: &str, now: &str) -> String {
     let (old, new): (Vec<&str>, Vec<&str>) = (before.lines().collect(), now.lines().collect());
     let same = old.iter().zip(&new).take_while(|(a, b)| a == b).count();

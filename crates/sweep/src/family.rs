@@ -1,4 +1,4 @@
-//! The family of muscles that the axes of a plan span: the muscle at a point of the axes, and its outputs.
+//! The family of muscles spanned by the axes of a plan: the muscle at a point of the axes, and its outputs.
 
 use bulge_effects::{Group, Known, known};
 use bulge_fibre::{Approach, FibreError, Given, Gradient, Problem, RangeEnd, Response};
@@ -10,7 +10,7 @@ use crate::family_error::FamilyError;
 use crate::output::{Output, Variable};
 use crate::plan::{Plan, Quantity};
 
-/// A base muscle and what its axes vary.
+/// A base muscle and the quantities that the axes vary.
 #[derive(Debug, Clone)]
 pub struct Family {
     muscle: Muscle,
@@ -25,12 +25,12 @@ pub struct Family {
 #[derive(Debug, Clone)]
 pub struct Member {
     problem: Problem,
-    /// As stated.
+    /// The muscle as stated in its file.
     muscle: Muscle,
-    /// The effects that are stated, and the muscle with them, if there are any.
+    /// The stated effects and the muscle with them; none if no effects are stated.
     extended: Option<(Vec<Known>, MuscleWithEffects)>,
     approach: Approach,
-    /// p l0^2 a and l0^3: what makes force and volume dimensionless.
+    /// Divisors that make force and volume dimensionless: p l0^2 a and l0^3.
     scales: [f64; 2],
 }
 
@@ -53,7 +53,7 @@ impl Family {
         Ok(family)
     }
 
-    /// A muscle at a pressure \[Pa\], with what is varied of it: for points that no plan lays out.
+    /// The family of a muscle at a pressure \[Pa\] with the given axes, for points without a plan.
     ///
     /// # Errors
     /// As [`Family::new`].
@@ -76,7 +76,7 @@ impl Family {
         Ok(family)
     }
 
-    /// Refuses axes of effects that are no part of the muscle.
+    /// Refuses axes that vary an effect which is not part of the muscle.
     fn check_effects(&self) -> Result<(), FamilyError> {
         for axis in &self.axes {
             let Quantity::Effect { effect, .. } = axis else { continue };
@@ -90,7 +90,7 @@ impl Family {
         Ok(())
     }
 
-    /// Whether two points of the axes are the same muscle at the same pressure: they differ in the contraction alone.
+    /// Whether two points differ only in the contraction, so that muscle and pressure are the same.
     #[must_use]
     pub fn is_same_member(&self, point: &[f64], other: &[f64]) -> bool {
         let same = |((axis, a), b): ((&Quantity, &f64), &f64)| {
@@ -99,7 +99,7 @@ impl Family {
         self.axes.iter().zip(point).zip(other).all(same)
     }
 
-    /// Place of the contraction among the axes.
+    /// Index of the contraction among the axes.
     #[must_use]
     pub fn contraction_axis(&self) -> Option<usize> {
         self.axes.iter().position(|axis| *axis == Quantity::Contraction)
@@ -111,7 +111,7 @@ impl Family {
         self.contraction_axis().and_then(|axis| point.get(axis).copied()).or(self.contraction).unwrap_or(0.0)
     }
 
-    /// The muscle at a point of the axes, in SI; the contraction takes no part.
+    /// The muscle at a point of the axes, in SI. The contraction has no influence on it.
     ///
     /// # Errors
     /// If a value is out of range.
@@ -120,7 +120,7 @@ impl Family {
         Member::new(muscle, effects, pressure, self.approach)
     }
 
-    /// The muscle with the axes' values, its effects with theirs, and the pressure.
+    /// The muscle and its effects with the values of the axes, and the pressure.
     fn varied(&self, point: &[f64]) -> Result<(Muscle, Vec<Known>, f64), FamilyError> {
         let (mut muscle, mut effects, mut pressure) =
             (self.muscle.clone(), self.effects.clone(), self.pressure);
@@ -163,11 +163,12 @@ impl Family {
         Ok((muscle, effects, pressure))
     }
 
-    /// Outputs and their derivatives by the axes at a point: `gradients[o * axes + i]`. Exact for force and volume (dimensionless or not), by
-    /// differences of the outputs for the others and where effects add to the force.
+    /// Outputs and their derivatives by the axes at a point: `gradients[o * axes + i]`. They are exact for
+    /// force and volume (dimensionless or not). They are differences of the outputs for all others, and where
+    /// effects add to the force.
     ///
     /// # Errors
-    /// If there is no equilibrium, or none beside it.
+    /// If there is no equilibrium at the point or next to it.
     pub fn gradients(
         &self,
         point: &[f64],
@@ -206,7 +207,7 @@ impl Family {
         Ok(())
     }
 
-    /// Derivatives of force and volume by an axis other than the contraction, and those of the logarithms of their scales.
+    /// Derivatives of force, volume and the logarithms of their scales by an axis (not the contraction).
     fn along(&self, axis: usize, value: f64, member: &Member, exact: &Gradient) -> ([f64; 2], [f64; 2]) {
         let muscle = &member.muscle;
         let has = |quantity: &Quantity| self.axes.contains(quantity);
@@ -257,7 +258,7 @@ impl Family {
         (along, growth)
     }
 
-    /// The same by central differences of fourth order.
+    /// Outputs and their derivatives as in `gradients`, but by central differences of fourth order.
     fn differences(
         &self,
         point: &[f64],
@@ -290,8 +291,8 @@ impl Member {
         pressure: f64,
         approach: Approach,
     ) -> Result<Self, FamilyError> {
-        // The scales are those of the muscle as stated, whatever effects make of its length or its number of fibres: who multiplies back knows no
-        // other.
+        // The scales are those of the stated muscle, even if effects change its length or its number of
+        // fibres: a user who multiplies back knows only the stated values.
         let length = muscle.length().si();
         let factor = match muscle.fibres().filter(|_| muscle.is_pleated()) {
             Some(n) => f64::from(n) / TAU * (TAU / f64::from(n)).sin(),
@@ -329,7 +330,7 @@ impl Member {
         }
     }
 
-    /// Where the equilibria that pull end as the muscle contracts: its force vanishes, or its fibres slacken before.
+    /// End of the range in which the muscle pulls: the force vanishes, or the fibres slacken before.
     ///
     /// # Errors
     /// If it isn't found.
@@ -340,7 +341,7 @@ impl Member {
         }
     }
 
-    /// Outputs at a contraction, followed beyond the limit.
+    /// Outputs at a contraction, which may lie beyond the limit.
     ///
     /// # Errors
     /// If there is no equilibrium.
@@ -357,7 +358,7 @@ impl Member {
     /// Outputs at a contraction at which the muscle pulls.
     ///
     /// # Errors
-    /// If there is no equilibrium, or the muscle would have to push or its fibres be slack: the limit is named.
+    /// If there is no equilibrium, or if the muscle would push or its fibres slacken (naming the limit).
     pub fn pulling(
         &self,
         contraction: f64,
@@ -380,7 +381,7 @@ impl Member {
         self.outputs_of(&response, outputs, values)
     }
 
-    /// What is said of slack fibres, with the limit of the range.
+    /// Adds the limit of the range to an error about slack fibres.
     fn with_limit(&self, contraction: f64, error: FamilyError) -> FamilyError {
         let is_unnamed = matches!(error, FamilyError::Equilibrium(FibreError::Slack { limit: None, .. }));
         match is_unnamed.then(|| self.range_end()) {
@@ -393,7 +394,7 @@ impl Member {
         let Some((_, extended)) = &self.extended else {
             return Ok(self.problem.follow(contraction, self.approach)?);
         };
-        // The contraction is that from the stated length, which effects may have changed.
+        // The given contraction refers to the stated length, which effects may have changed.
         let own = match extended.given(Given::Contraction(contraction)) {
             Given::Length(length) => 1.0 - length / self.problem.parts().length,
             _ => contraction,
@@ -414,7 +415,7 @@ impl Member {
         } else {
             None
         };
-        // The contraction is that from the stated length.
+        // The contraction refers to the stated length.
         let length = match &self.extended {
             Some(_) => self.muscle.length().si(),
             None => response.length_m / (1.0 - response.contraction),
@@ -429,7 +430,7 @@ impl Member {
         };
         let parts = self.problem.parts();
         let radius = parts.fitting.unwrap_or(parts.radius);
-        // Circular volume over that of the sections that carry the pressure.
+        // Circular volume divided by the volume of the sections that carry the pressure.
         let circular = response.volume_m3 / response.volume_polygon_m3;
         for (value, output) in values.iter_mut().zip(outputs) {
             *value = match *output {
@@ -457,7 +458,7 @@ impl Member {
         Ok(())
     }
 
-    /// Derivatives of force and volume by a number of the stated muscle, whose effects follow it: differences of fourth order.
+    /// Derivatives of force and volume by a number of the stated muscle, by differences of fourth order.
     fn by_stated(
         &self,
         effects: &[Known],
@@ -467,7 +468,7 @@ impl Member {
         let (muscle, pressure) = (&self.muscle, self.problem.pressure().si());
         let value = match variable {
             Variable::Pressure => Some(pressure),
-            // Whole numbers have no differences.
+            // A whole number can't be varied by a small step.
             Variable::Parameter(Parameter::Fibres) => None,
             Variable::Parameter(parameter) => muscle.get(parameter),
         };
@@ -489,7 +490,7 @@ impl Member {
     }
 }
 
-/// Derivatives of force and volume by a variable; none if the muscle doesn't have it.
+/// Derivatives of force and volume by a variable; none if the muscle doesn't have that variable.
 fn by_variable(gradient: &Gradient, muscle: &Muscle, variable: Variable) -> Option<[f64; 2]> {
     match variable {
         Variable::Pressure => Some(gradient.by_pressure),

@@ -1,4 +1,4 @@
-//! Why a point of a family has no equilibrium, or a plan no family.
+//! Errors of a family: a point without equilibrium, or a plan without a family.
 
 use bulge_fibre::FibreError;
 use bulge_model::{ModelError, MuscleWithEffectsError};
@@ -10,7 +10,7 @@ pub enum FamilyError {
     /// No equilibrium.
     #[error(transparent)]
     Equilibrium(#[from] FibreError),
-    /// A value that the muscle can't have.
+    /// A value that is impossible for the muscle.
     #[error(transparent)]
     Muscle(#[from] MuscleError),
     /// An effect that can't act.
@@ -22,7 +22,7 @@ pub enum FamilyError {
     /// An effect that the muscle file states in a wrong way.
     #[error(transparent)]
     File(#[from] FileError),
-    /// A derivative by something that the muscle doesn't have.
+    /// A derivative with respect to a quantity that the muscle doesn't have.
     #[error("this muscle has no `{name}` to differentiate by: give it one first, with `Muscle::with`")]
     NoVariable {
         /// Name of the variable.
@@ -31,7 +31,7 @@ pub enum FamilyError {
     /// An elastic group for a muscle without a number of fibres.
     #[error("the elastic group p sin(2 pi/n) R^2/EA needs a number of fibres n")]
     NoFibreNumber,
-    /// An output of inextensible fibres that has no table from a contraction of 0.
+    /// An output of inextensible fibres that can't be tabulated from a contraction of 0.
     #[error(
         "a table of `{output}` can't begin at a contraction of 0, where the force of inextensible fibres is infinite: begin at \"0.5 %..limit\", say, or leave `{output}` out"
     )]
@@ -39,7 +39,7 @@ pub enum FamilyError {
         /// Its name.
         output: String,
     },
-    /// An axis of an effect that is no part of the muscle.
+    /// An axis that varies an effect which is not part of the muscle.
     #[error(
         "the effect `{effect}` belongs to a rig or to one specimen: a sweep of the muscle leaves it out, so it can't be an axis"
     )]
@@ -56,7 +56,7 @@ pub enum FamilyError {
 }
 
 impl FamilyError {
-    /// Whose fault it is: that of an equilibrium the same as of one shape.
+    /// Who is at fault. An equilibrium error has the same fault as for a single shape.
     #[must_use]
     pub fn fault(&self) -> Fault {
         match self {

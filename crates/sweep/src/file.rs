@@ -1,4 +1,4 @@
-//! Sweep files: TOML into a plan, with the place and the cure for everything that is wrong.
+//! Sweep files: reads TOML into a plan. Every error states the place of the mistake and how to correct it.
 
 mod axes;
 mod check;
@@ -22,19 +22,19 @@ use check::Family;
 use crate::output::Output;
 use crate::plan::{Design, Plan, Quantity, Range, catalogue};
 
-/// What messages call the file.
+/// Name of the file in messages.
 const KIND: FileKind = FileKind { name: "sweep", file: "sweep.toml", line: "pressure = \"1 bar\"" };
-/// The file of one's own effects.
+/// The file of effects defined by the user.
 const EFFECTS: FileKind =
     FileKind { name: "effects", file: "effects.toml", line: "[effects.hose-stiffness]" };
-/// Gauge pressure where nothing is stated \[Pa\].
+/// Gauge pressure if none is stated \[Pa\].
 const USUAL_PRESSURE: f64 = 1e5;
-/// Points of a chunk where the closed form applies, and where each takes an integration.
+/// Points of a chunk: where the closed form applies, and where each point takes an integration.
 const USUAL_CHUNK: u64 = 65_536;
 const SHOOTING_CHUNK: u64 = 2048;
-/// Most points of a chunk, which is held in memory.
+/// Most points of a chunk, because a chunk is held in memory.
 const MOST_CHUNK: u64 = 1 << 24;
-/// Most points of a design: at a million a second, nine years.
+/// Most points of a design. At a million points per second they take nine years.
 const MOST_POINTS: u64 = 1 << 48;
 
 /// A sweep file with every key.
@@ -73,7 +73,7 @@ form = \"fastest\"                # or \"smallest\", \"splines\", \"chebyshev\"
 checks = 131072                 # points off the grid that certify it, 100000 or more
 ";
 
-/// Keys of the file, with an example of each.
+/// Keys of the file, each with an example.
 const TOP: Keys = &[
     ("name", "name = \"pleated family\""),
     ("muscle", "muscle = \"ppam-2-r16\""),
@@ -90,7 +90,7 @@ const TOP: Keys = &[
     ("table", "[table]"),
 ];
 
-/// The designs as a file names them.
+/// Designs under the names used in a file.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Kind {
     Grid,
@@ -100,18 +100,20 @@ enum Kind {
 }
 
 impl Plan {
-    /// Reads a sweep file; [`SWEEP_EXAMPLE`] has every key. The muscle file that it names stands beside it.
+    /// Reads a sweep file; [`SWEEP_EXAMPLE`] shows every key. The muscle file that it names is looked up
+    /// beside it.
     ///
     /// # Errors
-    /// If the file can't be read, is larger than 1 MiB, is not UTF-8 or is no valid sweep, or if its muscle can't be read. The message is complete.
+    /// If the file can't be read, is larger than 1 MiB, is not UTF-8 or is no valid sweep, or if its muscle
+    /// can't be read. The message is complete.
     pub fn read(path: impl AsRef<Path>) -> Result<Self, FileError> {
         let path = path.as_ref();
         let (text, origin) = (KIND.read(path)?, path.display().to_string());
         Self::from_toml(&text, &origin, path.parent())
     }
 
-    /// Reads a sweep from TOML text; `origin` is what messages call the text, usually a file name, and `folder` is where the muscle file lies, if not
-    /// in the current one.
+    /// Reads a sweep from TOML text. Messages call the text `origin`, usually a file name. The muscle file is
+    /// looked up in `folder`, or in the current folder if none is given.
     ///
     /// ```
     /// use bulge_sweep::{Plan, SWEEP_EXAMPLE};
@@ -123,15 +125,17 @@ impl Plan {
     /// ```
     ///
     /// # Errors
-    /// With the place and the cure, if the text is no valid sweep or its muscle can't be read.
+    /// If the text is no valid sweep or its muscle can't be read. The error states the place and the
+    /// correction.
     pub fn from_toml(text: &str, origin: &str, folder: Option<&Path>) -> Result<Self, FileError> {
         plan(&Document::parse(KIND, text, origin)?.settings("the sweep", TOP), folder, None)
     }
 
-    /// The same for a muscle that is there already, whatever file the text names: for processes that don't see that file.
+    /// Reads a sweep of the given muscle, whatever muscle file the text names. This is for processes that
+    /// don't see that file.
     ///
     /// # Errors
-    /// With the place and the cure, if the text is no valid sweep of the muscle.
+    /// If the text is no valid sweep of the muscle. The error states the place and the correction.
     pub fn with_muscle(text: &str, origin: &str, muscle: &Muscle) -> Result<Self, FileError> {
         plan(&Document::parse(KIND, text, origin)?.settings("the sweep", TOP), None, Some(muscle))
     }
@@ -175,7 +179,7 @@ fn plan(settings: &Settings<'_>, folder: Option<&Path>, muscle: Option<&Muscle>)
     })
 }
 
-/// The text of the file of effects that the sweep names, and what messages call it.
+/// Text of the effects file that the sweep names, and the name of that file in messages.
 fn own_effects(
     settings: &Settings<'_>,
     folder: Option<&Path>,
@@ -211,7 +215,7 @@ fn pressure(settings: &Settings<'_>, axes: &[Placed<'_>]) -> Result<f64, FileErr
     Err(settings.error(settings.value_span("pressure"), what, "write such as `pressure = \"1 bar\"`"))
 }
 
-/// Refuses a value for what an axis varies.
+/// Refuses a value of a quantity that an axis varies.
 fn refuse_twice(
     settings: &Settings<'_>,
     name: &str,
@@ -225,7 +229,7 @@ fn refuse_twice(
     Err(settings.error(settings.key_span(name), what, format!("delete `{name}`, or `[axes.{name}]`")))
 }
 
-/// The contraction where no axis varies it.
+/// The contraction if no axis varies it.
 fn contraction(
     settings: &Settings<'_>,
     family: &Family<'_, '_>,
@@ -257,7 +261,7 @@ fn contraction(
             "the contraction {lowest} is not possible: it must be between -1 and 1"
         )));
     }
-    // A table may be made of what stays finite there.
+    // A table may consist of outputs that stay finite at 0.
     let may_be_zero = axis.is_some() && !has_points;
     if family.is_singular() && (lowest < 0.0 || (lowest == 0.0 && !may_be_zero)) {
         return Err(refused(format!(
@@ -335,7 +339,7 @@ fn grid(settings: &Settings<'_>, axes: &[Placed<'_>]) -> Result<Design, FileErro
     Err(settings.error(settings.value_span("axes"), what, instead))
 }
 
-/// A design whose points lie anywhere in the ranges of the axes.
+/// A design whose points lie anywhere within the ranges of the axes.
 fn scattered(settings: &Settings<'_>, axes: &[Placed<'_>], kind: Kind) -> Result<Design, FileError> {
     for placed in axes {
         match placed.axis.range {

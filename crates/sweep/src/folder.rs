@@ -1,4 +1,4 @@
-//! The folder of a sweep: files that appear whole and stay, and what they promise.
+//! The folder of a sweep: its files appear only when complete, and each chunk has a record with its hashes.
 //!
 //! ```text
 //! plan.json               what is swept, with everything that decides the numbers
@@ -8,8 +8,9 @@
 //! manifest.json           written at the end: all chunks
 //! .lock                   held by every process at work: only who is alone removes what a killed one left
 //! ```
-//! Every file is written under another name, forced to the disk, renamed, and its folder forced to the disk. What a crash or a power loss leaves is
-//! either the whole file or none; a chunk whose file doesn't have the hash of its promise is computed again.
+//! Every file is written under another name, forced to the disk and renamed; then its folder is forced to the
+//! disk. After a crash or a power loss a file is therefore either complete or absent. A chunk is computed
+//! again if its file doesn't have the hash in its promise.
 
 use bulge_muscles::output::{UNFINISHED, sync};
 use serde::{Deserialize, Serialize};
@@ -18,16 +19,16 @@ use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
-/// What a finished chunk promises.
+/// The promise of a finished chunk.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ChunkManifest {
     /// Number of the chunk.
     pub chunk: u64,
     /// Number of its first point.
     pub first: u64,
-    /// How many points it has.
+    /// Number of its points.
     pub points: u64,
-    /// How many of them have no equilibrium.
+    /// Number of these without equilibrium.
     pub infeasible: u64,
     /// SHA-256 of its Parquet file.
     pub sha256: String,
@@ -38,18 +39,18 @@ pub struct ChunkManifest {
     pub plan: String,
 }
 
-/// How a chunk stands.
+/// State of a chunk.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum Standing {
-    /// Done, and its files are what it promises.
+    /// Done, and its files match its promise.
     Done(ChunkManifest),
     /// Not done.
     Absent,
-    /// Done once, but a file is damaged, missing, or of another plan.
+    /// Done earlier, but a file is damaged, missing, or of another plan.
     Damaged(String),
 }
 
-/// A folder that a sweep is written to.
+/// The folder into which a sweep is written.
 #[derive(Debug, Clone)]
 pub(crate) struct Folder(PathBuf);
 
@@ -58,17 +59,17 @@ impl Folder {
         Self(path.to_owned())
     }
 
-    /// Creates it with its folders.
+    /// Creates the folder and its subfolders.
     pub(crate) fn create(&self, csv: bool) -> io::Result<()> {
         for name in ["points", "chunks"].into_iter().chain(csv.then_some("csv")) {
             fs::create_dir_all(self.0.join(name))?;
         }
-        // What may be new: the folders, and the folder in its own.
+        // The subfolders may be new, and so may the folder itself within its parent.
         sync(&self.0)?;
         self.0.canonicalize()?.parent().map_or(Ok(()), sync)
     }
 
-    /// Whether it holds chunks of some sweep.
+    /// Whether the folder holds chunks of any sweep.
     pub(crate) fn has_chunks(&self) -> bool {
         let finished = |entry: io::Result<fs::DirEntry>| {
             entry.is_ok_and(|entry| !entry.file_name().to_string_lossy().starts_with(UNFINISHED))
@@ -78,9 +79,12 @@ impl Folder {
             .any(|name| fs::read_dir(self.0.join(name)).is_ok_and(|mut entries| entries.any(finished)))
     }
 
-    /// A lock on the folder, and whether this process is alone in it. Who is alone holds the lock alone, until [`Self::share`]: nobody begins to
-    /// write while unfinished files are removed. All others share it; they wait for whoever is alone. The system lets go of it when a process
-    /// ends, however it ends. None where the file system has no locks.
+    /// Locks the folder, and tells whether this process is alone in it.
+    ///
+    /// A process that is alone holds the lock exclusively until [`Self::share`], so no other process begins
+    /// to write while unfinished files are removed. All others share the lock, and wait for an exclusive
+    /// holder. The system releases the lock when a process ends, for whatever reason. The returned lock
+    /// is none where the file system has no locks.
     pub(crate) fn lock(&self) -> io::Result<(Option<File>, bool)> {
         let file = File::options().create(true).truncate(false).write(true).open(self.0.join(".lock"))?;
         let is_alone = file.try_lock().is_ok();
@@ -88,7 +92,7 @@ impl Folder {
         Ok((is_held.then_some(file), is_alone))
     }
 
-    /// Lets others in.
+    /// Lets other processes in.
     pub(crate) fn share(lock: &File) -> io::Result<()> {
         lock.unlock()?;
         lock.lock_shared()
@@ -114,7 +118,7 @@ impl Folder {
         self.0.join("chunks").join(format!("{chunk:06}.json"))
     }
 
-    /// Removes what a killed process left half-written.
+    /// Removes unfinished files that a killed process left.
     pub(crate) fn sweep_up(&self) -> io::Result<()> {
         for name in ["", "points", "chunks", "csv"] {
             let Ok(entries) = fs::read_dir(self.0.join(name)) else { continue };
@@ -131,7 +135,7 @@ impl Folder {
         Ok(())
     }
 
-    /// Whether a chunk is done under a plan, all files read and hashed.
+    /// State of a chunk under a plan. All its files are read and hashed.
     pub(crate) fn standing(&self, chunk: u64, plan: &str, csv: bool) -> io::Result<Standing> {
         let path = self.promise(chunk);
         let text = match fs::read(&path) {
@@ -167,7 +171,7 @@ impl Folder {
     }
 }
 
-/// SHA-256 of bytes in hexadecimal digits.
+/// SHA-256 of the bytes, in hexadecimal digits.
 pub(crate) fn hash(bytes: &[u8]) -> String {
     hexadecimal(&Sha256::digest(bytes))
 }

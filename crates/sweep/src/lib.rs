@@ -1,4 +1,4 @@
-//! Parallel, resumable parameter sweeps of pneumatic muscles, and certified tables from them.
+//! Parameter sweeps of pneumatic muscles, parallel and resumable, and certified tables built from them.
 
 mod chunk;
 mod design;

@@ -1,9 +1,9 @@
-//! What is computed at each point, with names and units.
+//! Outputs computed at each point, with names and units.
 
 use bulge_muscles::Parameter;
 use serde::Serialize;
 
-/// What force and volume are differentiated by, besides the contraction.
+/// Variable with respect to which force and volume are differentiated, besides the contraction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Variable {
     /// Gauge pressure \[Pa\].
@@ -13,7 +13,7 @@ pub enum Variable {
 }
 
 impl Variable {
-    /// All of them: the pressure, then the parameters in their order.
+    /// All variables: the pressure, then the parameters in their order.
     pub fn all() -> impl Iterator<Item = Self> {
         std::iter::once(Self::Pressure).chain(Parameter::ALL.into_iter().map(Self::Parameter))
     }
@@ -43,7 +43,7 @@ pub enum Output {
     VolumePolygon,
     /// Largest radius \[m\].
     MaxRadius,
-    /// Largest radius over that at the fittings \[-\].
+    /// Largest radius divided by the radius at the fittings \[-\].
     RadiusRatio,
     /// Largest tension of a fibre \[N\].
     FibreTension,
@@ -72,7 +72,7 @@ pub enum Output {
 }
 
 impl Output {
-    /// All but the derivatives by variables of the muscle.
+    /// All outputs except the derivatives by variables of the muscle.
     pub const PLAIN: [Self; 17] = [
         Self::ForceF,
         Self::VolumeV,
@@ -93,13 +93,13 @@ impl Output {
         Self::VolumeByContraction,
     ];
 
-    /// All of them.
+    /// All outputs.
     pub fn all() -> impl Iterator<Item = Self> {
         let by = Variable::all().flat_map(|variable| [Self::ForceBy(variable), Self::VolumeBy(variable)]);
         Self::PLAIN.into_iter().chain(by)
     }
 
-    /// The output of that name.
+    /// The output with the given name.
     #[must_use]
     pub fn named(name: &str) -> Option<Self> {
         Self::all().find(|output| output.name() == name)

@@ -1,14 +1,15 @@
-//! A keyed permutation of the numbers below n that is evaluated one number at a time, without memory.
+//! A keyed permutation of the numbers below n. It is evaluated one number at a time and needs no memory.
 
-/// Rounds of the network; four already hide the order, and the small networks of a handful of points need more.
+/// Rounds of the network. Four already hide the order, but the small networks of a few points need more.
 const ROUNDS: usize = 8;
-/// What the counter of SplitMix64 grows by: 2^64 over the golden ratio.
+/// Increment of the counter of SplitMix64: 2^64 divided by the golden ratio.
 const GOLDEN: u64 = 0x9E37_79B9_7F4A_7C15;
 
 /// A bijection of the numbers below `size`, chosen by a key.
 ///
-/// A Feistel network of two equal halves permutes the numbers below the next power of 4; a number that leaves the range is permuted again until
-/// it returns, which it does (Black and Rogaway, Ciphers with arbitrary finite domains, CT-RSA 2002). That takes less than 4 turns on average.
+/// A Feistel network of two equal halves permutes the numbers below the next power of 4. A number outside the
+/// range is permuted again until it falls inside, which always happens (Black and Rogaway, Ciphers with
+/// arbitrary finite domains, CT-RSA 2002). This takes fewer than 4 turns on average.
 #[derive(Debug, Clone)]
 pub(crate) struct Permutation {
     size: u64,
@@ -17,7 +18,7 @@ pub(crate) struct Permutation {
 }
 
 impl Permutation {
-    /// The permutation with the number `index` of a seed; `size` at most 2^62.
+    /// The permutation number `index` of a seed; `size` is at most 2^62.
     pub(crate) fn new(size: u64, seed: u64, index: u64) -> Self {
         let bits = u64::BITS - size.saturating_sub(1).leading_zeros();
         let mut state = mixed(seed).wrapping_add(mixed(index ^ GOLDEN));
@@ -28,7 +29,7 @@ impl Permutation {
         Self { size, half_bits: bits.div_ceil(2).max(1), keys }
     }
 
-    /// Where `number` goes; a number beyond the size is taken modulo it.
+    /// Image of `number`; a number beyond the size is taken modulo the size.
     pub(crate) fn of(&self, number: u64) -> u64 {
         if self.size <= 1 {
             return 0;
@@ -54,7 +55,8 @@ impl Permutation {
     }
 }
 
-/// The finaliser of SplitMix64 (Steele, Lea and Flood, Fast splittable pseudorandom number generators, OOPSLA 2014).
+/// The finaliser of SplitMix64 (Steele, Lea and Flood, Fast splittable pseudorandom number generators, OOPSLA
+/// 2014).
 fn mixed(word: u64) -> u64 {
     let word = (word ^ word >> 30).wrapping_mul(0xBF58_476D_1CE4_E5B9);
     let word = (word ^ word >> 27).wrapping_mul(0x94D0_49BB_1331_11EB);
@@ -93,7 +95,8 @@ mod tests {
         }
     }
 
-    /// Over many keys each number goes everywhere equally often, and two indices of one seed are independent.
+    /// Over many keys each number is mapped everywhere equally often, and two indices of one seed are
+    /// independent.
     #[test]
     fn keys_are_independent() {
         let (size, keys) = (5_u64, 20_000);
@@ -112,7 +115,7 @@ mod tests {
         assert!(pairs.iter().flatten().all(|n| n.abs_diff(800) < 139), "{pairs:?}");
     }
 
-    /// Neighbours are torn apart: their order afterwards is as likely up as down.
+    /// The order of neighbours is lost: after the permutation it is as likely to rise as to fall.
     #[test]
     fn order_is_lost() {
         let size = 10_000;

@@ -1,4 +1,5 @@
-//! What is swept: axes, design, outputs and table, as a sweep file states them. Plain values, read by [`Plan::read`] and run by [`crate::run`].
+//! The plan of a sweep: axes, design, outputs and table, as a sweep file states them. Plans are plain values;
+//! [`Plan::read`] reads them and [`crate::run`] runs them.
 
 use bulge_effects::{Catalogue, user};
 use bulge_fibre::Approach;
@@ -7,7 +8,7 @@ use serde::Serialize;
 
 use crate::output::Output;
 
-/// What an axis varies.
+/// Quantity varied by an axis.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Quantity {
@@ -15,13 +16,13 @@ pub enum Quantity {
     Contraction,
     /// Gauge pressure \[Pa\].
     Pressure,
-    /// l0/R: the radius changes, the length stays \[-\].
+    /// Slenderness l0/R \[-\]: the radius changes, the length stays constant.
     Slenderness,
-    /// p sin(2 pi/n) R^2/EA of one fibre: the fibre stiffness follows from it \[-\].
+    /// Elastic group p sin(2 pi/n) R^2/EA of one fibre \[-\]: it determines the fibre stiffness.
     ElasticGroup,
-    /// A number of the muscle, SI.
+    /// A parameter of the muscle, in SI.
     Parameter(Parameter),
-    /// A number of an effect that the muscle file states, SI.
+    /// A number of an effect that the muscle file states, in SI.
     Effect {
         /// Name of the effect.
         effect: String,
@@ -31,14 +32,14 @@ pub enum Quantity {
 }
 
 impl Quantity {
-    /// What a name of a sweep file varies, if the muscle has it.
+    /// The quantity that a name in a sweep file varies; none if the muscle doesn't have it.
     #[must_use]
     pub fn named(name: &str, muscle: &Muscle) -> Option<Self> {
         crate::file::quantity(name, muscle).map(|(quantity, _, _)| quantity)
     }
 }
 
-/// How the points of a grid lie between the ends, and how fractions of a random design are stretched.
+/// Spacing of the points of a grid between the ends of an axis, and of the fractions of a random design.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Spacing {
@@ -46,7 +47,7 @@ pub enum Spacing {
     Linear,
     /// Equal ratios; both ends > 0.
     Log,
-    /// Chebyshev points of the second kind (Gauss-Lobatto): the ends and cosines between them.
+    /// Chebyshev points of the second kind (Gauss-Lobatto): both ends, and cosines between them.
     Chebyshev,
 }
 
@@ -56,33 +57,33 @@ pub enum Spacing {
 pub enum End {
     /// A value in SI.
     Value(f64),
-    /// The contraction at which this muscle's force vanishes; of the contraction alone.
+    /// The contraction at which the force of the muscle vanishes. Only for the contraction axis.
     Limit,
 }
 
-/// Where the values of an axis come from.
+/// Source of the values of an axis.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Range {
-    /// From an end to the other. `points` is needed by grids, and absent where only a table is wanted.
+    /// Values between two ends. Grids need `points`; it is absent if only a table is wanted.
     Between {
         /// Lower end in SI.
         from: f64,
         /// Upper end.
         to: End,
-        /// How many values.
+        /// Number of values.
         points: Option<u64>,
-        /// How they are spaced.
+        /// Their spacing.
         spacing: Spacing,
     },
-    /// These, in SI.
+    /// A list of values in SI.
     List(Vec<f64>),
 }
 
 /// One axis.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Axis {
-    /// What it varies.
+    /// The varied quantity.
     pub quantity: Quantity,
     /// Its name in columns and tables.
     pub name: String,
@@ -92,40 +93,41 @@ pub struct Axis {
     pub range: Range,
 }
 
-/// Which points.
+/// Arrangement of the points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Design {
-    /// Every combination of the axes' values; the contraction varies fastest, then the axes from the last to the first.
+    /// All combinations of the values of the axes. The contraction varies fastest, then the axes from the
+    /// last to the first.
     Grid,
-    /// Independent uniform points.
+    /// Independent, uniformly distributed points.
     Random {
-        /// How many.
+        /// Number of points.
         points: u64,
         /// Seed.
         seed: u64,
     },
     /// Sobol's low-discrepancy sequence (without its first point, the corner).
     Sobol {
-        /// How many.
+        /// Number of points.
         points: u64,
     },
-    /// A Latin hypercube: of `points` equal layers of every axis each holds one point.
+    /// A Latin hypercube: every axis is divided into `points` equal layers, and each layer holds one point.
     LatinHypercube {
-        /// How many.
+        /// Number of points.
         points: u64,
         /// Seed.
         seed: u64,
     },
 }
 
-/// What form of table is wanted.
+/// Requested form of a table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum TableForm {
-    /// Cubic B-splines where they fit the size limit, else Chebyshev polynomials.
+    /// Cubic B-splines if they fit the size limit, otherwise Chebyshev polynomials.
     Fastest,
-    /// Whichever is smaller.
+    /// The smaller of the two.
     Smallest,
     /// Cubic B-splines.
     Splines,
@@ -133,7 +135,7 @@ pub enum TableForm {
     Chebyshev,
 }
 
-/// What a table must reach.
+/// Requirements on a table.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct TableRequirements {
     /// Outputs of the table.
@@ -142,11 +144,11 @@ pub struct TableRequirements {
     pub tolerance: f64,
     /// Largest relative error of the gradients.
     pub gradient: f64,
-    /// Most bytes.
+    /// Largest size in bytes.
     pub max_bytes: u64,
     /// Its form.
     pub form: TableForm,
-    /// How many points off the grid certify it.
+    /// Number of points off the grid at which the table is certified.
     pub checks: u64,
 }
 
@@ -155,41 +157,41 @@ pub struct TableRequirements {
 pub struct Plan {
     /// Its name.
     pub name: String,
-    /// The muscle that is varied.
+    /// The base muscle.
     pub muscle: Muscle,
-    /// Effects of one's own that the muscle may state, as the TOML of their file.
+    /// Effects defined by the user, which the muscle may state, as the TOML text of their file.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub own_effects: Option<String>,
     /// Gauge pressure \[Pa\] where no axis varies it.
     pub pressure_pa: f64,
     /// Contraction where no axis varies it.
     pub contraction: Option<f64>,
-    /// How equilibria are computed.
+    /// Method for the equilibria.
     #[serde(skip)]
     pub approach: Approach,
     /// The axes in the order of the file.
     pub axes: Vec<Axis>,
-    /// Which points; none if only a table is wanted.
+    /// Arrangement of the points; none if only a table is wanted.
     pub design: Option<Design>,
-    /// What is computed at each.
+    /// Outputs computed at each point.
     pub outputs: Vec<Output>,
-    /// Points of one chunk.
+    /// Number of points of a chunk.
     pub chunk: u64,
     /// The table, if one is wanted.
     pub table: Option<TableRequirements>,
 }
 
 impl Plan {
-    /// The effects that the muscle may state: those of the catalogue, and one's own.
+    /// The effects that the muscle may state: those of the catalogue and those of the user.
     ///
     /// # Errors
-    /// If one's own are no effects, or have names of the catalogue.
+    /// If the text of the user's effects defines no effects, or uses names of the catalogue.
     pub fn catalogue(&self) -> Result<Catalogue, FileError> {
         catalogue(self.own_effects.as_deref(), "effects")
     }
 }
 
-/// The catalogue with the effects of a file; `origin` is what messages call it.
+/// The catalogue with the effects of a file. Messages call that file `origin`.
 pub(crate) fn catalogue(own: Option<&str>, origin: &str) -> Result<Catalogue, FileError> {
     let mut catalogue = Catalogue::builtin();
     for effect in own.map_or(Ok(Vec::new()), |text| user::from_toml(text, origin))? {

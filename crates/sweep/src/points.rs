@@ -1,4 +1,5 @@
-//! A family at any points that somebody has: on all cores, in their order, each either with its outputs or with the reason why it has none.
+//! Evaluates a family at arbitrary points on all cores. The results keep the order of the points; each point
+//! has either its outputs or the reason why it has none.
 
 use bulge_muscles::Fault;
 use rayon::prelude::*;
@@ -8,15 +9,16 @@ use crate::family::{Family, Member};
 use crate::family_error::FamilyError;
 use crate::output::Output;
 
-/// Points of one task: long enough (half a millisecond of the closed form) to hide what a task costs, short enough to share and to stop.
+/// Points of one task. It is long enough (half a millisecond of the closed form) to hide the cost of a task,
+/// and short enough to share and to stop.
 const BLOCK: usize = 512;
 
 /// Values of an axis at all points.
 #[derive(Debug, Clone, Copy)]
 pub enum Values<'a> {
-    /// One for all.
+    /// One value for all points.
     Same(f64),
-    /// One each.
+    /// One value for each point.
     Each(&'a [f64]),
 }
 
@@ -32,22 +34,22 @@ impl Values<'_> {
 /// Why a point has no outputs.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Reason {
-    /// Its place.
+    /// Index of the point.
     pub row: usize,
-    /// Whose fault it is.
+    /// Who is at fault.
     pub fault: Fault,
-    /// In a sentence.
+    /// The reason in a sentence.
     pub says: String,
 }
 
 /// Outputs at points.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Points {
-    /// Values in SI, one list for every output; NaN where a point has none.
+    /// Values in SI, one list for each output; NaN where a point has none.
     pub outputs: Vec<Vec<f64>>,
-    /// Points that have no equilibrium at which the muscle pulls.
+    /// Number of points without an equilibrium at which the muscle pulls.
     pub infeasible: usize,
-    /// Why, for the first of them, in the order of their places.
+    /// Reasons for the first of these points, in the order of the points.
     pub reasons: Vec<Reason>,
 }
 
@@ -57,9 +59,12 @@ impl Points {
     }
 }
 
-/// Outputs of a family at `count` points: `axes` has the values of its axes, in their order. Points that follow each other with the same muscle
-/// share its preparation. `told` hears, from several threads, how many points have been added to those that are done,
-/// also before each block. Of the points without equilibrium the first `most` have reasons: sentences take more time and memory than numbers.
+/// Outputs of a family at `count` points; `axes` holds the values of its axes, in their order. Consecutive
+/// points with the same muscle share its preparation.
+///
+/// `told` receives the number of points that were finished since the last call. It is called from several
+/// threads, and also before each block. Only the first `most` points without equilibrium get a reason,
+/// because sentences take more time and memory than numbers.
 #[must_use]
 pub fn evaluate(
     family: &Family,
@@ -72,7 +77,8 @@ pub fn evaluate(
     let blocks: Vec<Points> = (0..count.div_ceil(BLOCK))
         .into_par_iter()
         .map(|i| {
-            // A caller that has given up unwinds from here: what has not begun is then never begun.
+            // If the caller has given up, this call unwinds, and the blocks that have not begun are never
+            // computed.
             told(0);
             let rows = i * BLOCK..((i + 1) * BLOCK).min(count);
             let done = rows.len();
@@ -137,7 +143,7 @@ fn block(
     points
 }
 
-/// Refuses a value that is none.
+/// Refuses outputs that are not finite.
 pub(crate) fn finite(values: &[f64], outputs: &[Output]) -> Result<(), String> {
     match values.iter().zip(outputs).find(|(value, _)| !value.is_finite()) {
         Some((value, output)) => Err(format!("`{}` is {value}", output.name())),
@@ -158,7 +164,7 @@ mod tests {
         Family::of(&preset("ppam-2-r16").unwrap(), Vec::new(), 1e5, Approach::Auto, axes).unwrap()
     }
 
-    /// Each point on its own says the same, to the bit, whatever stands before it.
+    /// A point evaluated on its own gives the same bits, whatever points precede it.
     #[test]
     fn points_are_those_of_the_family() {
         let family = family();
@@ -185,7 +191,8 @@ mod tests {
     fn points_without_equilibrium_say_why() {
         let axes = [Values::Each(&[0.2, 0.6, 1.2, 0.1]), Values::Same(6.875)];
         let points = evaluate(&family(), &axes, 4, &[Output::Force], 20, &|_| ());
-        // As of one shape: beyond the limit there is none, and no muscle contracts by more than its length.
+        // The faults are those of a single shape: no equilibrium beyond the limit, and no contraction by more
+        // than the length.
         let faults: Vec<Fault> = points.reasons.iter().map(|reason| reason.fault).collect();
         assert_eq!(faults, [Fault::NoSolution, Fault::Input]);
         let axes = [Values::Each(&[0.2, 0.6, f64::NAN, 0.1]), Values::Same(6.875)];

@@ -1,4 +1,4 @@
-//! Running a sweep: chunks in parallel, each written whole, and only those that aren't there yet.
+//! Runs a sweep: chunks are computed in parallel and written whole; finished chunks are skipped.
 
 use bulge_muscles::output;
 use parquet::errors::ParquetError;
@@ -22,56 +22,56 @@ use crate::plan::Plan;
 /// Format of the folder.
 const SCHEMA: &str = "bulge.sweep/1";
 
-/// How a sweep is run.
+/// Options of a run.
 #[derive(Debug, Clone, Default)]
 pub struct RunOptions {
-    /// These chunks only; all if none. Several processes may run chunks of one sweep in one folder.
+    /// Only these chunks; all if none. Several processes may run chunks of one sweep in one folder.
     pub chunks: Option<Range<u64>>,
-    /// Goes on with what is in the folder.
+    /// Resumes the sweep that is in the folder.
     pub resume: bool,
     /// Writes each chunk as CSV as well.
     pub csv: bool,
-    /// Folders of the same sweep, whose chunks are taken over first.
+    /// Folders of the same sweep; their chunks are taken over first.
     pub merge: Vec<PathBuf>,
 }
 
-/// How far a run is.
+/// Progress of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Progress {
-    /// Points that are done, with those that were there.
+    /// Finished points, including those found in the folder.
     pub done: u64,
-    /// Points of chunks that were there already: they took no time.
+    /// Points of chunks that were found in the folder. They took no time.
     pub there: u64,
-    /// Points of this run.
+    /// All points of this run.
     pub all: u64,
 }
 
-/// What a run did.
+/// Result of a run.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Summary {
     /// Points of the chunks of this run.
     pub points: u64,
-    /// Of these without equilibrium.
+    /// Number of these points without equilibrium.
     pub infeasible: u64,
     /// Chunks of this run.
     pub chunks: u64,
-    /// Of these computed now; the others were there.
+    /// Number of these chunks that were computed now; the others were found in the folder.
     pub computed: u64,
-    /// What was damaged, and is computed again.
+    /// Damaged files, whose chunks were computed again.
     pub damaged: Vec<String>,
-    /// Whether all chunks of the sweep are there: the manifest is written.
+    /// Whether all chunks of the sweep are there and the manifest is written.
     pub is_complete: bool,
 }
 
-/// Why a sweep stops. What is written stays, and `resume` goes on from there.
+/// Why a sweep stops. Finished chunks stay, and `resume` continues from them.
 #[derive(Debug, thiserror::Error)]
 pub enum SweepError {
     /// A file that can't be read or written.
     #[error("{}: {source}; chunks that are finished stay, and `--resume` goes on from them", path.display())]
     File {
-        /// Which.
+        /// The file.
         path: PathBuf,
-        /// Why.
+        /// The cause.
         source: io::Error,
     },
     /// The folder holds another sweep.
@@ -82,7 +82,7 @@ pub enum SweepError {
         /// Lines that differ: `-` in the folder, `+` now.
         difference: String,
     },
-    /// The folder's plan is no JSON.
+    /// The plan in the folder is not JSON.
     #[error("{} is damaged: take another folder, or delete this one", path.display())]
     DamagedPlan {
         /// The plan.
@@ -100,36 +100,36 @@ pub enum SweepError {
         /// The folder.
         path: PathBuf,
     },
-    /// A folder to be merged holds no such sweep.
+    /// A folder to be merged holds no sweep.
     #[error("{} holds no sweep: it has no plan.json", path.display())]
     NoSweep {
         /// The folder.
         path: PathBuf,
     },
-    /// Chunks beyond the last one.
+    /// The requested chunks lie beyond the last one.
     #[error("chunks {}..{} are asked for: this sweep has the chunks 0..{all}", asked.start, asked.end)]
     NoSuchChunks {
-        /// Asked for.
+        /// Requested chunks.
         asked: Range<u64>,
-        /// How many there are.
+        /// Number of chunks of the sweep.
         all: u64,
     },
     /// The plan has no points.
     #[error("this sweep has no points: give every axis such as `points = 101`")]
     NoPoints,
-    /// The family of the plan.
+    /// The family of the plan fails.
     #[error(transparent)]
     Family(#[from] FamilyError),
-    /// The Parquet library.
+    /// The Parquet library fails.
     #[error("a chunk can't be written as Parquet: {0}")]
     Parquet(#[from] ParquetError),
-    /// The plan as JSON.
+    /// The plan can't be written as JSON.
     #[error("the plan can't be written as JSON: {0}")]
     Json(#[from] serde_json::Error),
 }
 
 impl Plan {
-    /// Everything that decides the numbers of the points, as JSON: what is hashed, and compared when a sweep goes on.
+    /// Everything that determines the numbers of the points, as JSON. It is hashed, and compared on resuming.
     ///
     /// # Errors
     /// If a number of the plan has no JSON.
@@ -150,7 +150,7 @@ impl Plan {
     }
 }
 
-/// Makes a folder ready for a sweep, or says why it can't be: for whoever hands its chunks to other processes.
+/// Prepares a folder for a sweep whose chunks are then given to other processes.
 ///
 /// # Errors
 /// [`SweepError`].
@@ -158,7 +158,7 @@ pub fn begin(plan: &Plan, path: &Path, options: &RunOptions) -> Result<(), Sweep
     open(&Folder::new(path), path, &plan.canonical()?, options).map(drop)
 }
 
-/// Runs a sweep into a folder. `told` hears how far it is, from several threads.
+/// Runs a sweep into a folder. `told` receives the progress; it is called from several threads.
 ///
 /// # Errors
 /// [`SweepError`].
@@ -170,7 +170,7 @@ pub fn run(
 ) -> Result<Summary, SweepError> {
     let layout = Layout::new(plan).ok_or(SweepError::NoPoints)?;
     let all = plan.chunks();
-    // The last of equal parts may reach beyond the last chunk.
+    // If a sweep is split into equal parts, the last part may reach beyond the last chunk.
     let asked = options.chunks.clone().unwrap_or(0..all);
     let chunks = asked.start..asked.end.min(all);
     if chunks.is_empty() {
@@ -222,14 +222,14 @@ pub fn run(
     Ok(summary)
 }
 
-/// Everything that the chunks of a run share.
+/// Data shared by all chunks of a run.
 struct Run<'a> {
     plan: &'a Plan,
     computer: Computer<'a>,
     folder: Folder,
     key: String,
     csv: bool,
-    /// Chunks that have not begun.
+    /// Number of chunks that have not begun.
     waiting: AtomicU64,
     done: AtomicU64,
     there: AtomicU64,
@@ -239,7 +239,7 @@ struct Run<'a> {
 }
 
 impl Run<'_> {
-    /// Tells of points computed now, and of points that were there.
+    /// Reports points computed now and points found in the folder.
     fn tell(&self, computed: u64, there: u64) {
         let more = computed + there;
         let done = self.done.fetch_add(more, Ordering::Relaxed) + more;
@@ -247,9 +247,9 @@ impl Run<'_> {
         (self.told)(Progress { done, there, all: self.all });
     }
 
-    /// A chunk that is there, or is computed now.
+    /// A chunk that is found in the folder, or is computed now.
     fn chunk(&self, number: u64) -> Result<(ChunkManifest, bool), SweepError> {
-        // A caller that has given up unwinds from here, and the chunks that have not begun are left.
+        // If the caller has given up, this call unwinds and the remaining chunks never begin.
         self.tell(0, 0);
         let waiting = self.waiting.fetch_sub(1, Ordering::Relaxed).saturating_sub(1);
         let path = self.folder.promise(number);
@@ -265,10 +265,10 @@ impl Run<'_> {
                 }
             }
         }
-        // A CSV file that was damaged, or isn't asked for this time, must not stay as it was.
+        // A CSV file that was damaged or isn't requested this time must not stay as it was.
         let csv = self.csv || self.folder.csv(number).exists();
         let points = points_of_chunk(self.plan, number);
-        // Only the last chunks, which leave threads idle, are shared: a thread that waits for others begins another chunk, and holds both.
+        // Only the last chunks are shared. Earlier, a waiting thread would begin another chunk and hold both.
         let threads = rayon::current_num_threads() as u64;
         let chunk = if waiting < threads && threads > 1 {
             self.computer.shared_chunk(points)
@@ -286,12 +286,12 @@ impl Run<'_> {
     }
 }
 
-/// One chunk as bytes, for stores other than a folder: the same as [`run`] writes.
+/// One chunk as bytes, for storage other than a folder. The bytes are the same as those that [`run`] writes.
 #[derive(Debug, Clone)]
 pub struct Piece {
     /// The Parquet file `points/000000.parquet`.
     pub parquet: Vec<u8>,
-    /// The CSV file `csv/000000.csv`, if it was asked for.
+    /// The CSV file `csv/000000.csv`, if it was requested.
     pub csv: Option<String>,
     /// The promise `chunks/000000.json`, which must be written last.
     pub promise: ChunkManifest,
@@ -300,7 +300,7 @@ pub struct Piece {
 /// One chunk of a plan as bytes.
 ///
 /// # Errors
-/// [`SweepError`], but for those of files.
+/// [`SweepError`], except errors of files.
 pub fn piece(plan: &Plan, number: u64, csv: bool) -> Result<Piece, SweepError> {
     let layout = Layout::new(plan).ok_or(SweepError::NoPoints)?;
     let all = plan.chunks();
@@ -309,7 +309,7 @@ pub fn piece(plan: &Plan, number: u64, csv: bool) -> Result<Piece, SweepError> {
     }
     let key = hash(plan.canonical()?.as_bytes());
     let computer = Computer::new(plan, &layout)?;
-    // On one thread: whoever asks for pieces shares them out itself.
+    // On one thread, because the caller distributes the pieces itself.
     let chunk = computer.chunk(points_of_chunk(plan, number));
     make(&computer, &chunk, &key, number, csv)
 }
@@ -336,7 +336,7 @@ fn make(
     Ok(Piece { parquet, csv, promise })
 }
 
-/// The text of `manifest.json`: the end of a sweep whose chunks are all there.
+/// The text of `manifest.json`, which ends a sweep whose chunks are all there.
 ///
 /// # Errors
 /// If a promise has no JSON.
@@ -351,8 +351,8 @@ pub fn manifest(plan: &Plan, promises: &[ChunkManifest]) -> Result<String, Sweep
     Ok(serde_json::to_string_pretty(&document)? + "\n")
 }
 
-/// Writes the manifest of a sweep whose chunks were all run, or found whole, by other processes just now: by their promises, without reading the
-/// chunks again. None if a promise is missing or of another sweep; then [`run`] says and does what is needed.
+/// Writes the manifest from the promises of all chunks, without reading the chunks again: for chunks that
+/// other processes have just finished. None if a promise is missing or of another sweep; then use [`run`].
 ///
 /// # Errors
 /// [`SweepError`].
@@ -404,7 +404,7 @@ fn write(path: &Path, bytes: &[u8]) -> Result<(), SweepError> {
     output::write(path, bytes).map_err(at(path))
 }
 
-/// Makes the folder ready, or says why it can't be this sweep's.
+/// Prepares the folder, or refuses it for this sweep.
 fn open(
     folder: &Folder,
     path: &Path,
@@ -414,7 +414,7 @@ fn open(
     folder.create(options.csv).map_err(at(path))?;
     let plan = folder.plan();
     let (lock, is_alone) = folder.lock().map_err(at(path))?;
-    // Other processes may be at work on other chunks.
+    // Other processes may be working on other chunks; their unfinished files must stay.
     let sweep_up = || if is_alone { folder.sweep_up().map_err(at(path)) } else { Ok(()) };
     match fs::read_to_string(&plan) {
         Ok(before) if before == canonical => {
@@ -435,7 +435,7 @@ fn open(
         Err(error) if error.kind() == io::ErrorKind::NotFound && folder.has_chunks() => {
             return Err(SweepError::Foreign { path: path.to_owned() });
         }
-        // A process may have been killed before the plan was there.
+        // A process may have been killed before it wrote the plan.
         Err(error) if error.kind() == io::ErrorKind::NotFound => {
             sweep_up()?;
             write(&plan, canonical.as_bytes())?;
@@ -448,7 +448,7 @@ fn open(
     Ok(lock)
 }
 
-/// Takes over the chunks of another folder of the same sweep that are done and whole.
+/// Takes over all finished, undamaged chunks from another folder of the same sweep.
 fn merge(
     folder: &Folder,
     from: &Path,
@@ -489,7 +489,7 @@ fn merge(
             fs::create_dir_all(folder.csv(chunk).with_file_name("")).map_err(at(&folder.csv(chunk)))?;
             files.push((other.csv(chunk), folder.csv(chunk)));
         }
-        // The promise last: it makes the chunk count.
+        // The promise is copied last, because a chunk counts as finished once its promise is there.
         files.push((other.promise(chunk), folder.promise(chunk)));
         for (source, target) in files {
             let bytes = fs::read(&source).map_err(at(&source))?;

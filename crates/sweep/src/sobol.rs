@@ -1,13 +1,14 @@
-//! Sobol's sequence in up to 16 dimensions, any point of it without the ones before.
+//! Sobol's sequence in up to 16 dimensions. Any point can be computed without the points before it.
 
-/// Bits of a coordinate: a double holds each multiple of 2^-52 below 1 exactly.
+/// Bits of a coordinate. A double holds each multiple of 2^-52 below 1 exactly.
 const BITS: usize = 52;
 /// Most dimensions.
 pub(crate) const DIMENSIONS: usize = 16;
 
-/// Of each dimension after the first: the inner coefficients of its primitive polynomial as bits, and its first direction numbers, as many as
-/// the polynomial's degree. S. Joe and F. Y. Kuo, Constructing Sobol sequences with better two-dimensional projections, SIAM J. Sci. Comput. 30
-/// (2008) 2635; file `new-joe-kuo-6.21201`.
+/// For each dimension after the first: the inner coefficients of its primitive polynomial as bits, and its
+/// first direction numbers, as many as the degree of the polynomial. Source: S. Joe and F. Y. Kuo,
+/// Constructing Sobol sequences with better two-dimensional projections, SIAM J. Sci. Comput. 30 (2008) 2635;
+/// file `new-joe-kuo-6.21201`.
 const POLYNOMIALS: [(u64, &[u64]); DIMENSIONS - 1] = [
     (0, &[1]),
     (1, &[1, 3]),
@@ -26,23 +27,23 @@ const POLYNOMIALS: [(u64, &[u64]); DIMENSIONS - 1] = [
     (16, &[1, 3, 1, 13, 27, 49]),
 ];
 
-/// The sequence in some dimensions.
+/// Sobol's sequence in a number of dimensions.
 #[derive(Debug, Clone)]
 pub(crate) struct Sobol {
-    /// Of each dimension the direction numbers v_1, v_2, ... in units of 2^-52.
+    /// For each dimension, the direction numbers v_1, v_2, ... in units of 2^-52.
     directions: Vec<[u64; BITS]>,
 }
 
 impl Sobol {
-    /// The sequence in so many dimensions, at most [`DIMENSIONS`].
+    /// The sequence in the given number of dimensions, at most [`DIMENSIONS`].
     pub(crate) fn new(dimensions: usize) -> Self {
         let first = std::array::from_fn(|bit| 1 << (BITS - 1 - bit));
         let others = POLYNOMIALS.iter().map(|(inner, start)| directions(*inner, start));
         Self { directions: std::iter::once(first).chain(others).take(dimensions).collect() }
     }
 
-    /// The point with the number `index` in the order of Gray's code (Antonov and Saleev 1979), each coordinate in \[0, 1); number 0 is the corner.
-    /// The points repeat after 2^52.
+    /// The point number `index` in the order of the Gray code (Antonov and Saleev 1979), each coordinate in
+    /// \[0, 1). Number 0 is the corner. The points repeat after 2^52.
     pub(crate) fn point(&self, index: u64) -> impl Iterator<Item = f64> {
         let gray = index ^ index >> 1;
         self.directions.iter().map(move |directions| {
@@ -53,7 +54,8 @@ impl Sobol {
     }
 }
 
-/// The direction numbers of a primitive polynomial of degree s with inner coefficients a_1 ... a_(s-1) (eq. 3 of Joe and Kuo, in units of 2^-52):
+/// The direction numbers of a primitive polynomial of degree s with inner coefficients a_1 ... a_(s-1) (eq. 3
+/// of Joe and Kuo, in units of 2^-52):
 ///
 /// ```text
 /// v_k = a_1 v_(k-1) xor ... xor a_(s-1) v_(k-s+1) xor v_(k-s) xor v_(k-s)/2^s
@@ -77,8 +79,8 @@ fn directions(inner: u64, start: &[u64]) -> [u64; BITS] {
 mod tests {
     use super::*;
 
-    /// Coordinates in units of 2^-52 from scipy 1.17.1, `scipy.stats.qmc.Sobol(16, scramble=False, bits=52)`, which takes the same direction
-    /// numbers in the same order.
+    /// Coordinates in units of 2^-52 from scipy 1.17.1, `scipy.stats.qmc.Sobol(16, scramble=False, bits=52)`,
+    /// which uses the same direction numbers in the same order.
     const PINNED: [(u64, [u64; DIMENSIONS]); 3] = [
         (
             6,
@@ -157,8 +159,9 @@ mod tests {
         assert!(Sobol::new(3).point(0).eq([0.0; 3]));
     }
 
-    /// Property of every (t, s)-net in base 2: 2^k points from a multiple of 2^k on hit each of 2^k layers of each axis once; in the first two
-    /// dimensions (t = 0) also each box of any shape.
+    /// Property of every (t, s)-net in base 2: 2^k points from a multiple of 2^k on hit each of the 2^k
+    /// layers of each axis once. In the first two dimensions (t = 0) they also hit each elementary box of any
+    /// shape once.
     #[test]
     fn points_are_stratified() {
         let sobol = Sobol::new(DIMENSIONS);
@@ -180,7 +183,7 @@ mod tests {
         }
     }
 
-    /// The m of v_k = m 2^-k are odd, so no direction number is a sum of others.
+    /// Every m in v_k = m 2^-k is odd, so no direction number is a sum of others.
     #[test]
     fn directions_are_independent() {
         for v in &Sobol::new(DIMENSIONS).directions {

@@ -1,8 +1,9 @@
-//! Certified tables: from a field of smooth outputs, of a family of muscles or of a joint, to the bytes that `bulge_table` looks up, and from these to other
-//! forms ([`export`]).
+//! Certified tables. They turn a field of smooth outputs, of a family of muscles or of a joint, into the
+//! bytes that `bulge_table` looks up, and these into other forms ([`export`]).
 //!
-//! The solver is followed by Chebyshev polynomials in coordinates that fit the domain; from these come splines or shorter polynomials of any
-//! size, and the smallest that meets the tolerance is measured against the solver.
+//! Chebyshev polynomials first follow the solver, in coordinates that fit the domain. Splines or shorter
+//! polynomials of any size are derived from them. The smallest ones that meet the tolerance are then measured
+//! against the solver.
 
 mod bound;
 mod build;

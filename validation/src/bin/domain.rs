@@ -1,13 +1,14 @@
-//! The domain map as a table: `cargo run --release -p bulge-validation --bin domain -- 100000 [SEED]`, with what went wrong beneath;
-//! or some of its questions one by one: `domain 51553..51554 [SEED]`.
+//! Prints the domain map as a table, followed by the failed cases:
+//! `cargo run --release -p bulge-validation --bin domain -- 100000 [SEED]`. It can also list some of the
+//! questions one by one: `domain 51553..51554 [SEED]`.
 
 use bulge_validation::domain::{Count, found_by_integrals, listed, map};
 use std::ops::Range;
 use std::process::ExitCode;
 
-/// Questions where none are stated.
+/// Default number of questions.
 const COUNT: usize = 100_000;
-/// Questions of which those that are solved are searched for by the first integrals.
+/// Number of questions whose solutions are also searched for by the first integrals.
 const SEARCHED: usize = 150;
 
 fn main() -> ExitCode {

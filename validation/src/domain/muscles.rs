@@ -1,4 +1,4 @@
-//! The muscles of the domain map: 15 kinds over the ranges that are promised.
+//! The muscles of the domain map: 15 kinds over the supported ranges.
 
 use bulge_fibre::{BRAID_ANGLE, BRAIDED_SLENDERNESS, PLEATED_SLENDERNESS};
 use bulge_muscles::{
@@ -10,16 +10,17 @@ use crate::sample::Sampler;
 
 /// Range of the gauge pressure \[Pa\].
 const PRESSURE: [f64; 2] = [1e3, 1.5e6];
-/// Range of the strain by which pressure stretches fibres: about p R l0/(n EA), or 2 pi p r0^2/(n EA sin^2(alpha0)) of a braid.
+/// Range of the strain of the fibres due to pressure: about p R l0/(n EA), or 2 pi p r0^2/(n EA
+/// sin^2(alpha0)) for a braid.
 const STRETCH: [f64; 2] = [1e-6, 5e-2];
-/// Range of K/(p R) of cloth, in a pleated muscle and in a braid.
+/// Range of K/(p R) of the cloth in a pleated muscle and in a braid.
 const CLOTH: [[f64; 2]; 2] = [[1e-2, 1e6], [1e-2, 1e3]];
-/// Range of c10 t/(p r0) of a bladder.
+/// Range of c10 t/(p r0) of the bladder.
 const RUBBER: [f64; 2] = [1e-4, 1e2];
 /// A kind of muscle.
 pub(super) type Kind = (&'static str, fn(&mut Sampler) -> Result<Muscle, MuscleError>);
 
-/// What is drawn, by name.
+/// The kinds of muscles, by name.
 pub(super) const KINDS: [Kind; 15] = [
     ("pleated", |s| pleated(s, &[])),
     ("pleated, elastic", |s| pleated(s, &[Extra::Elastic])),
@@ -38,7 +39,7 @@ pub(super) const KINDS: [Kind; 15] = [
     ("cylinder", cylinder),
 ];
 
-/// What a muscle may have besides its fibres.
+/// Features of a muscle besides its fibres.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Extra {
     Elastic,
@@ -49,7 +50,8 @@ enum Extra {
     Fitting,
 }
 
-/// The pressure \[Pa\] at which a muscle is asked: part of its name, as groups of stiffness over pressure are drawn.
+/// The pressure \[Pa\] at which a muscle is evaluated. It is stored in the name, because ratios of stiffness
+/// to pressure are drawn.
 pub(super) fn reference(muscle: &Muscle) -> f64 {
     muscle.name().parse().unwrap_or(1e5)
 }
@@ -79,7 +81,7 @@ fn lobes(sampler: &mut Sampler) -> Result<Muscle, MuscleError> {
     lobed(sampler, &[])
 }
 
-/// Cloth from just wider than the fibres at the fittings to plenty.
+/// Cloth from slightly wider than the fibres at the fittings to plenty.
 fn lobed(sampler: &mut Sampler, extras: &[Extra]) -> Result<Muscle, MuscleError> {
     let pressure = sampler.log_between(PRESSURE[0], PRESSURE[1]);
     let radius = sampler.log_between(0.002, 0.05);
@@ -105,7 +107,7 @@ fn anything_braided(sampler: &mut Sampler) -> Result<Muscle, MuscleError> {
     braid(sampler, &extras)
 }
 
-/// Each with the probability one half.
+/// Selects each with a probability of one half.
 fn some(sampler: &mut Sampler, all: &[Extra]) -> Vec<Extra> {
     all.iter().copied().filter(|_| sampler.chance(0.5)).collect()
 }
@@ -140,7 +142,8 @@ fn cylinder(sampler: &mut Sampler) -> Result<Muscle, MuscleError> {
     finished(sampler, muscle, &extras, 0.5 * radius)
 }
 
-/// With what has a stiffness: elastic fibres, a bladder, and cloth that comes taut within twice the `room`.
+/// Adds the features with a stiffness: elastic fibres, a bladder, and cloth that comes taut within twice the
+/// `room`.
 fn finished(
     sampler: &mut Sampler,
     mut muscle: Muscle,

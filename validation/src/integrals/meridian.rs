@@ -1,6 +1,7 @@
 //! One meridian by quadrature of its two first integrals, from mid-length to the fitting.
 //!
-//! With D = N - F - A, which is 0 at mid-length, 1 - cos(psi) = D/N =: g. In the distance rho from the radius at mid-length
+//! D = N - F - A is 0 at mid-length, and 1 - cos(psi) = D/N =: g. With the distance rho from the radius at
+//! mid-length,
 //!
 //! ```text
 //! S = integral drho/(sigma sin(psi))        x = integral drho/tan(psi)        V = integral A drho/tan(psi)
@@ -9,7 +10,7 @@
 
 use super::net::Net;
 
-/// Nodes and weights of Gauss' rule with ten points on (0, 1).
+/// Nodes and weights of the Gauss rule with ten points on (0, 1).
 const GAUSS: [(f64, f64); 10] = [
     (0.013_046_735_741_414_128, 0.033_335_672_154_344_07),
     (0.067_468_316_655_507_73, 0.074_725_674_575_290_3),
@@ -22,31 +23,32 @@ const GAUSS: [(f64, f64); 10] = [
     (0.932_531_683_344_492_2, 0.074_725_674_575_290_3),
     (0.986_953_264_258_585_9, 0.033_335_672_154_344_07),
 ];
-/// Part of the radius within which D is taken from its series.
+/// Fraction of the radius within which D is taken from its series.
 const SERIES: f64 = 1e-4;
 /// Longest piece in u.
 const PIECE: f64 = 1.2;
-/// Halvings towards fittings on which fibres nearly lie along the circumference.
+/// Number of halvings towards fittings at which the fibres lie nearly along the circumference.
 const HALVINGS: u32 = 12;
-/// Part of the way below which a saddle is a cosh exactly.
+/// Fraction of the way below which a saddle is taken as an exact cosh.
 const SADDLE: f64 = 1e-10;
 
-/// A meridian and what belongs to it; dimensionless.
+/// A dimensionless meridian with its integrals.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Meridian {
-    /// Fibre length over the one asked for, as a logarithm; infinite where the meridian doesn't reach the fitting.
+    /// Logarithm of the fibre length divided by the required one; infinite if the meridian doesn't reach the
+    /// fitting.
     pub(super) excess: f64,
     /// Axial distance from the fitting to mid-length.
     pub(super) half_length: f64,
     pub(super) half_volume: f64,
     pub(super) force: f64,
-    /// A at mid-length: with |F| the scale of forces.
+    /// A at mid-length. With |F| it gives the scale of forces.
     pub(super) area: f64,
-    /// The least tension on the way.
+    /// The smallest tension along the way.
     pub(super) least_tension: f64,
 }
 
-/// Mid-length: its radius, on which side of the fittings', tension, and d_1.
+/// State at mid-length: radius, side relative to the radius of the fittings, tension, and d_1.
 #[derive(Debug, Clone, Copy)]
 struct Middle {
     radius: f64,
@@ -56,7 +58,8 @@ struct Middle {
 }
 
 impl Middle {
-    /// The middle of a radius with the second parameter: ln(curvature) of a bulge, ln(T - T of the cylinder) of a waist.
+    /// The state at a radius with the second parameter, which is ln(curvature) for a bulge and ln(T - T of
+    /// the cylinder) for a waist.
     fn new(net: &Net, radius: f64, second: f64) -> Option<Self> {
         let side = (radius - net.end).signum();
         if side > 0.0 {
@@ -76,7 +79,7 @@ impl Middle {
     }
 }
 
-/// D and its slope at the start of a stretch of one law.
+/// A stretch of the meridian with one law, for D and its slope.
 struct Stretch<'a> {
     net: &'a Net,
     middle: Middle,
@@ -84,7 +87,8 @@ struct Stretch<'a> {
     /// F and H.
     force: f64,
     conserved: f64,
-    /// d_1, d_2, d_3 at mid-length, and the distance within which they serve; none beyond the first stretch.
+    /// d_1, d_2, d_3 at mid-length, and the distance within which the series is used. Only the first stretch
+    /// has one.
     series: [f64; 3],
     within: f64,
 }
@@ -101,7 +105,7 @@ impl Stretch<'_> {
         Some(self.middle.side * (self.net.area_r(r) - local.hoop))
     }
 
-    /// The series about mid-length by central differences of the slope.
+    /// Adds the series at mid-length, by central differences of the slope.
     fn with_series(mut self) -> Option<Self> {
         let mut step = SERIES * self.middle.radius;
         let [before, after] = loop {
@@ -133,7 +137,7 @@ impl Stretch<'_> {
     }
 }
 
-/// The meridian with a radius and the second parameter at mid-length; none where there is none with these.
+/// The meridian with a radius and the second parameter at mid-length; none if there is no such meridian.
 pub(super) fn meridian(net: &Net, radius: f64, second: f64) -> Option<Meridian> {
     let middle = Middle::new(net, radius, second)?;
     let size = (radius - net.end).abs();
@@ -149,7 +153,7 @@ pub(super) fn meridian(net: &Net, radius: f64, second: f64) -> Option<Meridian> 
         series: [0.0; 3],
         within: 0.0,
     };
-    // Cloth changes the law on the way, but neither H nor F.
+    // Cloth changes the law along the way, but neither H nor F.
     let kink =
         net.taut_radius().map(|taut| middle.side * (radius - taut)).filter(|rho| *rho > 0.0 && *rho < size);
     let first = stretch(taut).with_series()?;
@@ -158,7 +162,7 @@ pub(super) fn meridian(net: &Net, radius: f64, second: f64) -> Option<Meridian> 
     let mut sum = Sum { least: middle.tension, guess: middle.tension, ..Sum::default() };
     let mut from = 0.0;
     if d_2 > 0.0 && scale < 1e-4 * SADDLE * size {
-        // Up to there D is that of a cosh.
+        // Up to this distance, D is that of a cosh.
         let to = SADDLE * size.min(kink.unwrap_or(size));
         let fibre = (2.0 * (1.0 + to / scale)).ln() * (local.force / d_2).sqrt() / local.sigma;
         let x = fibre * local.sigma;
@@ -173,7 +177,7 @@ pub(super) fn meridian(net: &Net, radius: f64, second: f64) -> Option<Meridian> 
         let to = end(last);
         let pieces = ((to - from) / PIECE).ceil().max(2.0);
         let whole = (to - from) / pieces;
-        // Where the fibres lie nearly along the circumference the last piece is halved towards its end.
+        // If the fibres lie nearly along the circumference, the last piece is halved towards its end.
         let mut left = from;
         let mut halvings = if net.is_steep() { HALVINGS } else { 0 };
         while left < to - 1e-12 * (to - from) {
@@ -220,7 +224,7 @@ pub(super) fn meridian(net: &Net, radius: f64, second: f64) -> Option<Meridian> 
     })
 }
 
-/// The integrals so far.
+/// Values of the integrals so far.
 #[derive(Debug, Clone, Copy, Default)]
 struct Sum {
     fibre: f64,

@@ -1,40 +1,42 @@
-//! The fibre net of a muscle, written down once more: stored energy, meridional force and hoop term at a radius.
+//! The fibre net of a muscle, implemented a second time: stored energy, meridional force and hoop term at a
+//! radius.
 //!
 //! ```text
 //! w = c T^2/2 + B W(sigma/cos(alpha0), r/r0) + sigma u(r)        (1 + c T)^2 = sigma^2 + q^2 r^2        c = p R^2/(n EA)
 //! N = dw/dsigma        h = (1/sigma) dw/dr        H = sigma N - w
 //! ```
 //!
-//! Lengths are in R (r0 of a braid), forces in p R^2.
+//! Lengths are in units of R (r0 for a braid), forces in p R^2.
 
 use bulge_muscles::{Construction, FibreCount, Muscle, Parameter, Pressure, Quantity};
 use std::f64::consts::{PI, TAU};
 
 use crate::section;
 
-/// Part of the radius over which the slope of a lobed cross-section's area is taken.
+/// Fraction of the radius as a step for the slope of the area of a lobed cross-section.
 const LOBED_STEP: f64 = 1e-6;
-/// Newton iterations for a tension.
+/// Most Newton iterations for a tension.
 const ITERATIONS: u32 = 60;
 
-/// Squared sine of the fibres' angle at the fittings from which on sigma and the rubber change much on the last part of the way.
+/// Squared sine of the angle of the fibres at the fittings above which sigma and the rubber change much on
+/// the last part of the way.
 const STEEP: f64 = 0.8;
 
-/// What the pressure acts on.
+/// Cross-section on which the pressure acts.
 #[derive(Debug, Clone)]
 enum Area {
     /// a pi (r + depth)^2
     Round { factor: f64, depth: f64 },
-    /// From the geometry of the lobes: the muscle and its R \[m\].
+    /// From the geometry of the lobes; holds the muscle and its R \[m\].
     Lobed(Box<Muscle>, f64),
 }
 
-/// A muscle under pressure, dimensionless.
+/// A muscle under pressure in dimensionless form.
 #[derive(Debug, Clone)]
 pub(super) struct Net {
     /// Radius at the fittings.
     pub(super) end: f64,
-    /// Fibre length from a fitting to mid-length, at rest.
+    /// Unstretched fibre length from a fitting to mid-length.
     pub(super) half: f64,
     /// Cosine of the angle at rest.
     pub(super) cos_rest: f64,
@@ -48,7 +50,7 @@ pub(super) struct Net {
     cloth: Option<[f64; 2]>,
 }
 
-/// The net at a radius with a tension.
+/// The net at a radius and a tension.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Local {
     pub(super) sigma: f64,
@@ -133,7 +135,7 @@ impl Net {
         }
     }
 
-    /// Area of the reported volume: of circles, or of the lobes.
+    /// Area for the reported volume, of circles or of lobes.
     pub(super) fn volume_area(&self, r: f64) -> f64 {
         match &self.area {
             Area::Round { depth, .. } => PI * (r + depth).powi(2),
@@ -141,13 +143,13 @@ impl Net {
         }
     }
 
-    /// The radius where cloth comes taut.
+    /// The radius at which the cloth comes taut.
     pub(super) fn taut_radius(&self) -> Option<f64> {
         self.cloth.map(|[_, taut]| taut)
     }
 
-    /// The radius beyond which cloth alone carries the pressure, that at which fibres without stretch lie along the circumference, and that at which lobes form a
-    /// circle.
+    /// The radius beyond which the cloth alone carries the pressure, the radius at which inextensible fibres
+    /// lie along the circumference, and the radius at which lobes form a circle.
     pub(super) fn limits(&self) -> [Option<f64>; 3] {
         let held = match (&self.area, self.cloth) {
             // factor 2 pi (r + depth) = 2 scale (r - r_u)
@@ -174,7 +176,7 @@ impl Net {
         self.compliance == 0.0
     }
 
-    /// Whether fibres nearly lie along the circumference at the fittings.
+    /// Whether the fibres lie nearly along the circumference at the fittings.
     pub(super) fn is_steep(&self) -> bool {
         (self.turn * self.end).powi(2) > STEEP
     }
@@ -207,12 +209,12 @@ impl Net {
         self.cloth.is_some_and(|[_, taut]| r > taut)
     }
 
-    /// sigma^2; negative at radii that the fibres don't reach.
+    /// sigma^2. It is negative at radii that the fibres don't reach.
     fn square(&self, r: f64, tension: f64) -> f64 {
         (1.0 + self.compliance * tension).powi(2) - (self.turn * r).powi(2)
     }
 
-    /// The net at a radius with a tension; `taut`: by the law with the cloth.
+    /// The net at a radius and a tension. If `taut`, the law includes the cloth.
     pub(super) fn local(&self, r: f64, tension: f64, taut: bool) -> Option<Local> {
         let (c, stretch) = (self.compliance, 1.0 + self.compliance * tension);
         let square = self.square(r, tension);
@@ -232,7 +234,7 @@ impl Net {
         Some(Local { sigma, force, hoop, conserved: sigma * force - stored, force_t, hoop_t })
     }
 
-    /// The tension at which H has a value, from a guess.
+    /// The tension at which H has the given value, starting from a guess.
     pub(super) fn tension(&self, r: f64, conserved: f64, taut: bool, guess: f64) -> Option<f64> {
         if self.is_inextensible() {
             let sigma = self.square(r, 0.0).sqrt();
@@ -256,7 +258,8 @@ impl Net {
         (off.abs() <= 1e-11 * conserved.abs()).then_some(tension)
     }
 
-    /// The tension at which A' - h = `curvature` N: what pressure leaves to the curvature of the meridian.
+    /// The tension at which A' - h = `curvature` N, that is, the load that the hoop term leaves to the
+    /// curvature of the meridian.
     pub(super) fn balancing(&self, r: f64, curvature: f64) -> Option<f64> {
         let taut = self.is_taut(r);
         let area_r = self.area_r(r);
@@ -302,7 +305,8 @@ impl Net {
 }
 
 impl Net {
-    /// Radius and tension of a cylinder whose fibres have the meridional stretch `sigma`, with a tension of `more` than stretches them to that.
+    /// Radius and tension of a cylinder whose fibres have the meridional stretch `sigma`. The tension exceeds
+    /// the one needed for this stretch by `more`.
     pub(super) fn of_sigma(&self, sigma: f64, more: f64) -> Option<(f64, f64)> {
         let least = if sigma > 1.0 { (sigma - 1.0) / self.compliance } else { 0.0 };
         let tension = least + more;

@@ -1,5 +1,6 @@
-//! All equilibria of a muscle on a dense grid: at every radius at mid-length (or length of a cylinder) all curvatures there with which the fibres have their
-//! length, and between neighbours that lie on either side of what is asked for the equilibrium.
+//! Searches all equilibria of a muscle on a dense grid. For each radius at mid-length (or length of a
+//! cylinder) it finds all curvatures with which the fibres have their length. Between neighbours on either
+//! side of the required quantity it finds the equilibrium.
 
 use bulge_fibre::Given;
 use bulge_muscles::{Construction, Ends, Muscle, Pressure, Quantity};
@@ -7,18 +8,19 @@ use bulge_muscles::{Construction, Ends, Muscle, Pressure, Quantity};
 use super::meridian::{Meridian, meridian};
 use super::net::Net;
 
-/// Second parameters at which fibre lengths are looked at, as steps from a first one: a long braid has e^-150 in its middle.
+/// Second parameters at which fibre lengths are evaluated, as steps from a first one. A long braid has e^-150
+/// in its middle.
 const SECOND: [(f64, f64, u32); 3] = [(-690.0, 20.0, 33), (-30.0, 0.75, 52), (9.0, 1.5, 8)];
-/// Distances of grid radii from where something changes: e^-step of the way.
+/// Distances of grid radii from places where something changes: e^-step of the way.
 const CLOSE: (f64, u32) = (0.4, 50);
-/// Even parts of the way.
+/// Number of equal parts of the way.
 const EVEN: u32 = 40;
-/// Halvings of an interval at the edge of what exists, and on the way to a root.
+/// Halvings of an interval at the edge of existence, and on the way to a root.
 const EDGE: u32 = 24;
 const ROOT: u32 = 200;
-/// Distance from what is asked for, in parts of its scale, up to which a least one may hide two equilibria.
+/// Distance from the required quantity, relative to its scale, below which a minimum may hide two equilibria.
 const MISSED: f64 = 0.05;
-/// Error of a fibre length that is one, as a logarithm, and of what is asked for, in parts of its scale.
+/// Accepted error of a fibre length, as a logarithm, and of the required quantity, relative to its scale.
 const LENGTH: f64 = 1e-9;
 const ASKED: f64 = 1e-7;
 
@@ -35,7 +37,7 @@ pub struct State {
     pub taut: bool,
 }
 
-/// What is asked for, dimensionless, with its scale.
+/// The required quantity in dimensionless form, with its scale.
 #[derive(Debug, Clone, Copy)]
 enum Asked {
     HalfLength(f64),
@@ -43,7 +45,8 @@ enum Asked {
     HalfVolume(f64),
 }
 
-/// A point on the way: the first parameter, the second one with which it is a muscle, and the muscle.
+/// A point of the search: the first parameter, the second parameter for which a muscle exists, and the
+/// muscle.
 #[derive(Debug, Clone, Copy)]
 struct Point {
     first: f64,
@@ -51,22 +54,23 @@ struct Point {
     found: Meridian,
 }
 
-/// The way that is searched.
+/// The path that is searched.
 struct Way<'a> {
     net: &'a Net,
     cylinder: bool,
     asked: Asked,
 }
 
-/// Whether the search can tell that there is none. Where lobes or cloth limit the radius of straight fibres the middle lies closer to that limit than numbers
-/// tell, and its radius is no parameter.
+/// Whether the search can prove that there is no equilibrium. If lobes or cloth limit the radius of straight
+/// fibres, the radius in the middle is closer to that limit than numbers resolve, and is no suitable
+/// parameter.
 #[must_use]
 pub fn can_exclude(muscle: &Muscle) -> bool {
     let net = Net::new(muscle, Pressure::bar(1.0));
     net.turn > 0.0 || (net.taut_radius().is_none() && net.limits()[2].is_none())
 }
 
-/// All equilibria that a dense grid leads to; `given`: none for that without a force.
+/// All equilibria that are found from a dense grid. If `given` is none, those without force.
 #[must_use]
 pub fn states(muscle: &Muscle, pressure: Pressure, given: Option<Given>) -> Vec<State> {
     let net = Net::new(muscle, pressure);
@@ -106,7 +110,7 @@ impl Way<'_> {
         if self.cylinder { cylinder(self.net, first, second) } else { meridian(self.net, first, second) }
     }
 
-    /// First parameters: close to everything where something changes, and evenly between.
+    /// First parameters: dense near all places where something changes, and evenly spaced between them.
     fn grid(&self) -> Vec<f64> {
         let net = self.net;
         let (low, high) = if self.cylinder {
@@ -140,14 +144,14 @@ impl Way<'_> {
         grid
     }
 
-    /// The radius of the cylinder of inextensible fibres at the contraction that is asked for.
+    /// The radius of the cylinder of inextensible fibres at the required contraction.
     fn cylinder_radius(&self) -> Option<f64> {
         let Asked::HalfLength(half) = self.asked else { return None };
         let sigma = half / self.net.half;
         (self.net.turn > 0.0 && sigma < 1.0).then(|| (1.0 - sigma * sigma).sqrt() / self.net.turn)
     }
 
-    /// The second parameters with which a first one is a muscle.
+    /// The second parameters for which a muscle exists with a first one.
     fn points(&self, first: f64) -> Vec<Point> {
         let seconds = SECOND
             .iter()
@@ -161,7 +165,7 @@ impl Way<'_> {
                 Some((before, Some(excess))) if here.is_some_and(|here| (here > 0.0) != (excess > 0.0)) => {
                     points.extend(self.length(first, [before, second], excess > 0.0));
                 }
-                // An edge of what exists may hide a length.
+                // A root of the length may be hidden at an edge of existence.
                 Some((before, Some(excess))) if here.is_none() => {
                     points.extend(self.edge(first, [before, second], excess));
                 }
@@ -170,7 +174,7 @@ impl Way<'_> {
                 }
                 _ => {}
             }
-            // Two lengths between the last three may not show in their signs.
+            // Two roots between the last three points may not show in the signs.
             if let ([Some((a, Some(left))), Some((_, Some(middle)))], right) = ([before, last], here)
                 && middle > 0.0
                 && middle < left
@@ -183,7 +187,8 @@ impl Way<'_> {
         points
     }
 
-    /// The two lengths about the shortest fibre between two second parameters, if that is too short.
+    /// The two roots of the length next to the shortest fibre between two second parameters, if that fibre is
+    /// too short.
     fn pair(&self, first: f64, [a, b]: [f64; 2]) -> Vec<Point> {
         let excess = |second: f64| self.at(first, second).map_or(f64::INFINITY, |found| found.excess);
         let (mut low, mut high) = (a, b);
@@ -202,7 +207,8 @@ impl Way<'_> {
         Vec::new()
     }
 
-    /// From where there is a muscle towards where there is none: whether the excess changes its sign on the way.
+    /// Moves from a parameter with a muscle towards one without. Returns the point at which the fibres have
+    /// their length if the excess changes its sign on the way.
     fn edge(&self, first: f64, [mut good, mut bad]: [f64; 2], excess: f64) -> Option<Point> {
         for _ in 0..EDGE {
             let middle = 0.5 * (good + bad);
@@ -217,13 +223,13 @@ impl Way<'_> {
         None
     }
 
-    /// The second parameter between two with which the fibres have their length.
+    /// The second parameter between two others at which the fibres have their length.
     fn length(&self, first: f64, [mut low, mut high]: [f64; 2], low_is_long: bool) -> Option<Point> {
         let mut best: Option<Point> = None;
         let mut sides: [Option<f64>; 2] = [None; 2];
         for step in 0..ROOT {
             let even = 0.5 * (low + high);
-            // Every third step halves: regula falsi alone may creep.
+            // Every third step bisects, because regula falsi alone may converge slowly.
             let second = match sides {
                 [Some(a), Some(b)] if step % 3 != 2 => {
                     low + (high - low) * (a / (a - b)).clamp(1e-3, 1.0 - 1e-3)
@@ -269,7 +275,7 @@ impl Way<'_> {
         found
     }
 
-    /// More rows at the edges of what exists and where what is asked for is nearly met.
+    /// Adds rows at the edges of existence and where the required quantity is almost met.
     fn refine(&self, rows: &mut Vec<(f64, Vec<Point>)>) {
         let mut more = Vec::new();
         for pair in rows.windows(2) {
@@ -307,7 +313,7 @@ impl Way<'_> {
         rows.sort_by(|a, b| a.0.total_cmp(&b.0));
     }
 
-    /// Towards the least distance from what is asked for, between three rows.
+    /// Minimises the distance from the required quantity between three rows.
     fn lowest(&self, [mut a, mut b, mut c]: [f64; 3], mut least: f64, more: &mut Vec<(f64, Vec<Point>)>) {
         for _ in 0..2 * EDGE {
             let left = b - a > c - b;
@@ -324,7 +330,7 @@ impl Way<'_> {
         }
     }
 
-    /// The equilibrium between two points on either side of what is asked for.
+    /// The equilibrium between two points on either side of the required quantity.
     fn between(&self, mut a: Point, mut b: Point) -> Option<Point> {
         for step in 0..ROOT {
             let offs = [self.off(&a.found), self.off(&b.found)];
@@ -354,7 +360,7 @@ impl Way<'_> {
         (self.off(&best.found).abs() < ASKED).then_some(best)
     }
 
-    /// As [`Way::points`], first looked for around the second parameters of two neighbours.
+    /// Like [`Way::points`], but searches near the second parameters of two neighbours first.
     fn points_near(&self, first: f64, a: f64, b: f64) -> Vec<Point> {
         let room = (b - a).abs() + 1e-9;
         let ends = [a.min(b) - room, a.max(b) + room];
@@ -372,8 +378,9 @@ fn nearest(points: &[Point], second: f64) -> Option<Point> {
     points.iter().copied().min_by(|a, b| (a.second - second).abs().total_cmp(&(b.second - second).abs()))
 }
 
-/// A cylinder whose fibres have the meridional stretch `sigma` and the tension exp(`second`) beyond what stretches them to that. In place of a length it misses the
-/// balance of the pressure and the hoop term.
+/// A cylinder whose fibres have the meridional stretch `sigma`, with a tension that exceeds the one needed
+/// for this stretch by exp(`second`). Its excess is that of the pressure over the hoop term instead of that
+/// of a length.
 fn cylinder(net: &Net, sigma: f64, second: f64) -> Option<Meridian> {
     let (radius, tension) = net.of_sigma(sigma, second.exp())?;
     let local = net.local(radius, tension, net.is_taut(radius))?;

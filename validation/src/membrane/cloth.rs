@@ -9,7 +9,7 @@ use super::rig::{order, plane, solver, to};
 use super::rows;
 use crate::check::{Check, Claim, Trouble};
 
-/// Force of N fibres without stretch on flat facets without stiffness: R = 16, l0 = 110 mm, 20 %, 3 bar.
+/// Force of N inextensible fibres with flat facets without stiffness: R = 16, l0 = 110 mm, 20 %, 3 bar.
 fn facets_force(fibres: u32, elements: usize) -> Result<f64, Trouble> {
     let muscle = Pleated {
         fibres: fibres as usize,
@@ -67,7 +67,7 @@ pub(crate) fn facets() -> Check {
     })
 }
 
-/// How fast their error falls.
+/// Order of the error of flat facets.
 pub(crate) fn facets_order() -> Check {
     Claim {
         group: "membrane",
@@ -124,7 +124,8 @@ pub(crate) fn sectors() -> Check {
     })
 }
 
-/// An airbag from flat, one eighth of 40 x 40 cells: volume, height of its middle, how far a corner comes in, and stress in the middle.
+/// An airbag inflated from flat, as one eighth with 40 x 40 cells: volume, height of its middle, inward
+/// displacement of a corner, and stress in the middle.
 fn airbag_of(thickness: f64) -> Result<[f64; 4], Trouble> {
     let text = format!(
         "[mesher]\nkind = \"square\"\nside = \"848.53 mm\"\ncells = [40, 40]\n[[material]]\nname = \"foil\"\nlaw = \"st-venant\"\nthickness = \"{thickness} m\"\nyoung = \"588 MPa\"\npoisson = 0.4\n[[part]]\ngroup = \"cloth\"\nkind = \"membrane\"\nmaterial = \"foil\"\n[[step]]\npressure = \"5 kPa\"\n"
@@ -139,7 +140,7 @@ fn airbag_of(thickness: f64) -> Result<[f64; 4], Trouble> {
     let group = &fields.groups[0];
     let at = group.cells.chunks_exact(3).position(|cell| cell.contains(&u32::try_from(middle).unwrap_or(0)));
     let sheet = &group.sheets[0][at.ok_or("no element is in the middle")?];
-    // Second Piola-Kirchhoff stress from the force per present length.
+    // Second Piola-Kirchhoff stress, from the force per current length.
     let stress = sheet.force[0] * sheet.stretch[1] / sheet.stretch[0] / thickness;
     Ok([row.volume, fields.places[middle][2], fields.displacements[corner][0], stress])
 }
@@ -168,17 +169,17 @@ pub(crate) fn airbag() -> Check {
     })
 }
 
-/// A panel of unit height, width and stiffness bent so far that a band of it is slack: M/(P h), largest stress and curvature, all without
-/// dimensions.
+/// A panel of unit height, width and stiffness that is bent until a band of it is slack: M/(P h), largest
+/// stress and curvature, all dimensionless.
 fn panel(band: f64, cells: usize) -> Result<[f64; 3], Trouble> {
-    // Its ends stay plane: z = 1 + k (x - b) there, which the mesh has from the start, the pattern not.
-    // Small, as the theory has it: stresses are linear in strain.
+    // The ends stay plane: z = 1 + k (x - b). The mesh has this shape from the start, but the pattern
+    // doesn't. The curvature is small because in the theory stresses are linear in strain.
     let curvature = 1e-7;
     let place = |u: f64, v: f64| [u, 0.0, v * (1.0 + curvature * (u - band))];
     let pattern = |u: f64, v: f64| [u, v];
     let mut mesh =
         grid(&Surface { place: &place, pattern: Some(&pattern), cells: [cells; 2], is_quadratic: false });
-    // One corner stays where it is; all else is free to move across as the panel bends.
+    // One corner is fixed; all other nodes may move laterally as the panel bends.
     mesh.blocks.push(Block {
         group: "corner".to_owned(),
         kind: CellKind::Point,
@@ -208,7 +209,7 @@ fn panel(band: f64, cells: usize) -> Result<[f64; 3], Trouble> {
     let (mut force, mut moment, mut top) = (0.0, 0.0, 0.0);
     for (cell, (sheet, area)) in group.cells.chunks_exact(3).zip(group.sheets[0].iter().zip(&group.areas)) {
         let x = cell.iter().map(|node| mesh.nodes[*node as usize][0]).sum::<f64>() / 3.0;
-        // Per length of the pattern across, of which wrinkles take some away.
+        // The force is per length of the pattern across, which wrinkles shorten.
         let pull = sheet.force[0] * sheet.stretch[1] * area;
         force += pull;
         moment += pull * (x - 0.5);
@@ -216,7 +217,7 @@ fn panel(band: f64, cells: usize) -> Result<[f64; 3], Trouble> {
             top += pull * cells as f64;
         }
     }
-    // From the middle of the outermost cells to the edge, in proportion.
+    // Linear extrapolation from the middle of the outermost cells to the edge.
     let edge = top * (1.0 - band) / (1.0 - band - 0.5 / cells as f64);
     Ok([moment / force, edge / force, curvature / (2.0 * force)])
 }
@@ -242,7 +243,7 @@ pub(crate) fn wrinkled_panel() -> Check {
     })
 }
 
-/// How fast its errors fall.
+/// Order of the errors of the wrinkled panel.
 pub(crate) fn wrinkled_panel_order() -> Check {
     Claim {
         group: "membrane",

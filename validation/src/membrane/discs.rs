@@ -1,4 +1,4 @@
-//! Flat discs, held at the rim or joined with another: elements of revolution.
+//! Flat discs by elements of revolution, held at the rim or joined to another disc.
 
 use bulge_membrane::mesher::{Grading, revolved};
 use bulge_membrane::{
@@ -9,14 +9,14 @@ use core::f64::consts::{FRAC_PI_2, TAU};
 use super::rig::{extreme, order, plane, rubber, solver, to};
 use crate::check::{Check, Claim, Trouble};
 
-/// A disc of radius 1, from its rim to its middle.
+/// A disc of radius 1, meshed from its rim to its middle.
 fn disc(part: Part, rim: Support, elements: usize) -> Result<Solver, Trouble> {
     let mesh = revolved(|t| [1.0 - t, 0.0], elements, true, Grading::Even);
     let along = if rim == Support::Fixed { 1.0 } else { 2.0 };
     solver(&mesh, &[("wall", part)], &[("first", rim), ("last", Support::Axis)], &[], [1.0, along])
 }
 
-/// How high the middle stands.
+/// Height of the middle.
 fn height(disc: &mut Solver, state: &State) -> f64 {
     disc.fields(state).places.last().map_or(f64::NAN, |place| place[2])
 }
@@ -43,7 +43,7 @@ pub(crate) fn hencky() -> Check {
             let rest = disc.at_rest();
             let state = to(&mut disc, &rest, Inflation::Pressure(p), &[])?;
             let sheets = &disc.fields(&state).groups[0].sheets[0];
-            // From the middles of the outermost elements to the rim.
+            // Extrapolation from the middles of the outermost elements to the rim.
             let rim = 1.5 * sheets[0].force[0] - 0.5 * sheets[1].force[0];
             let case = |what: &str| format!("{what}, nu = {poisson}");
             tally.relative(height(&mut disc, &state), kw * p.cbrt(), || case("height"));
@@ -86,7 +86,7 @@ pub(crate) fn rubber_discs() -> Check {
             let rest = disc.at_rest();
             let mut state = to(&mut disc, &rest, Inflation::Pressure(0.1), &[])?;
             for [pressure, wanted] in table {
-                // The volume at which the middle is as high, by secants.
+                // The volume at which the middle has the wanted height, by secants.
                 let (mut a, mut there) = (state.volume, height(&mut disc, &state));
                 let mut volume = a * wanted / there;
                 for _ in 0..12 {
@@ -114,7 +114,7 @@ pub(crate) fn rubber_discs() -> Check {
 /// Volume and thickness of the Mylar balloon of two discs of radius 1.
 const MYLAR: [f64; 2] = [1.218_524_216_118_569_7, 0.913_893_162_088_927_2];
 
-/// Two discs without stretch along their radii, joined at their rims.
+/// Two discs that are inextensible along their radii and joined at their rims.
 pub(crate) fn mylar() -> Check {
     Claim {
         group: "membrane",
@@ -136,8 +136,8 @@ pub(crate) fn mylar() -> Check {
     })
 }
 
-/// One of `around` sectors of a flat disc of radius 1, with rings that crowd at the rim, each of two triangles on both sides of the sector's middle.
-/// Groups: foil, rim, first, last.
+/// One of `around` sectors of a flat disc of radius 1. Its rings are denser at the rim, and each has two
+/// triangles on both sides of the middle of the sector. Groups: foil, rim, first, last.
 fn sector(around: f64, rings: usize) -> Mesh {
     let mut nodes = vec![[0.0; 3]];
     let mut cells = Vec::new();
@@ -172,20 +172,20 @@ fn sector(around: f64, rings: usize) -> Mesh {
     Mesh { numbers: (0..nodes.len() as u64).collect(), nodes, blocks }
 }
 
-/// A film under the pressure 1 that carries only where it is taut.
+/// A film under the pressure 1 that carries load only where it is taut.
 fn film() -> Sheet {
     let law = Law::SaintVenantKirchhoff { stiffness: 1e4, poisson: 0.3 };
     Sheet { cloth: Cloth::Isotropic(law), wrinkles: true, residual: 1e-6 }
 }
 
-/// Volume and thickness of the balloon at rest, blown up.
+/// Volume and thickness of the inflated balloon, starting from rest.
 fn inflated(mut balloon: Solver, middle: usize) -> Result<[f64; 2], Trouble> {
     let rest = balloon.at_rest();
     let state = to(&mut balloon, &rest, Inflation::Pressure(1.0), &[])?;
     Ok([state.volume, 2.0 * balloon.fields(&state).places[middle][2]])
 }
 
-/// By triangles: `rings` of them in one of 3.2 times as many sectors.
+/// The balloon by triangles: `rings` rings in one of 3.2 times as many sectors.
 fn of_triangles(rings: usize) -> Result<[f64; 2], Trouble> {
     let around = 3.2 * rings as f64;
     let turn = TAU / around;
@@ -198,7 +198,8 @@ fn of_triangles(rings: usize) -> Result<[f64; 2], Trouble> {
     inflated(solver(&sector(around, rings), &[("foil", part)], &supports, &[], [around, 2.0])?, 0)
 }
 
-/// The same of triangles in space. In a narrow sector, since a whole disc of slack cloth has lobed equilibria beside the one of revolution.
+/// The Mylar balloon by triangles in space. A narrow sector is used because a whole disc of slack cloth has
+/// lobed equilibria besides the one of revolution.
 pub(crate) fn mylar_of_triangles() -> Check {
     Claim {
         group: "membrane",
@@ -217,7 +218,7 @@ pub(crate) fn mylar_of_triangles() -> Check {
     })
 }
 
-/// How fast the volume comes near that of the same film revolved.
+/// Order with which the volume tends to that of the same film by elements of revolution.
 pub(crate) fn order_of_mylar() -> Check {
     Claim {
         group: "membrane",

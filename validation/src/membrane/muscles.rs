@@ -1,4 +1,4 @@
-//! Muscles of revolution: fibres without stretch, with and without a bladder.
+//! Muscles of revolution with inextensible fibres, with and without a bladder.
 
 use bulge_fibre::closed_form;
 use bulge_membrane::case::Row;
@@ -8,7 +8,8 @@ use super::{RUBBER, extrapolated, rows};
 use crate::check::{Check, Claim, Trouble};
 use crate::reference::values;
 
-/// Forces and volumes of a tube of threads without stretch (and perhaps rubber) at contractions, extrapolated from two meshes.
+/// Forces and volumes of a tube of inextensible threads (optionally with rubber) at contractions,
+/// extrapolated from two meshes.
 fn net(
     cells: usize,
     size: [f64; 2],
@@ -35,7 +36,7 @@ fn net(
         .collect())
 }
 
-/// Fibres along the meridian: the pleated muscle.
+/// Fibres along the meridian, as in the pleated muscle.
 pub(crate) fn pleated() -> Check {
     Claim {
         group: "membrane",
@@ -90,7 +91,7 @@ pub(crate) fn braided() -> Check {
     })
 }
 
-/// The same on a bladder of rubber.
+/// The same braid on a rubber bladder.
 pub(crate) fn braided_with_bladder() -> Check {
     Claim {
         group: "membrane",
@@ -116,7 +117,7 @@ pub(crate) fn braided_with_bladder() -> Check {
     })
 }
 
-/// A muscle whose valve is shut.
+/// A muscle with a closed valve.
 pub(crate) fn gas() -> Check {
     Claim {
         group: "membrane",
@@ -148,7 +149,7 @@ pub(crate) fn gas() -> Check {
     })
 }
 
-/// F = d(U - pV)/dl, in every kind of mesh.
+/// F = d(U - pV)/dl in every kind of mesh.
 pub(crate) fn virtual_work() -> Check {
     Claim {
         group: "membrane",

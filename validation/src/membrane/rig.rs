@@ -1,4 +1,4 @@
-//! What the cases that no file describes are put together with.
+//! Helpers for the cases that are not described by a file.
 
 use bulge_membrane::{
     Cloth, Copies, Fitting, Gas, Inflation, Law, Load, Mesh, Part, RingLayer, Sheet, Solver, State,
@@ -7,7 +7,7 @@ use bulge_membrane::{
 
 use crate::check::{Tally, Trouble};
 
-/// A membrane of revolution of rubber.
+/// A rubber membrane of revolution.
 pub(super) fn rubber(law: Law) -> Part {
     let sheet = Sheet { cloth: Cloth::Isotropic(law), wrinkles: false, residual: 0.0 };
     Part::Revolved { layers: vec![RingLayer::Sheet { sheet, fullness: 1.0 }] }
@@ -21,7 +21,7 @@ fn named<T: Clone>(all: &[(&str, T)]) -> Vec<(String, T)> {
     all.iter().map(|(name, value)| ((*name).to_owned(), value.clone())).collect()
 }
 
-/// Parts and supports by the groups of the mesh; copies around and along.
+/// A solver from parts and supports by the groups of the mesh; copies around and along.
 pub(super) fn solver(
     mesh: &Mesh,
     parts: &[(&str, Part)],
@@ -33,7 +33,7 @@ pub(super) fn solver(
     Ok(Solver::new(structure, Copies { around, along }, Tolerance::default())?)
 }
 
-/// From one state to another.
+/// Moves from one state to another.
 pub(super) fn to(
     solver: &mut Solver,
     from: &State,
@@ -52,7 +52,8 @@ pub(super) fn to(
     Ok(solver.follow(&before, from, &load, |_, _| ())?)
 }
 
-/// Where f is largest or smallest near x, and what it is there: by Newton's method on slopes by differences of fourth order.
+/// Position and value of the extremum of f near x, by Newton's method with slopes by differences of fourth
+/// order.
 pub(super) fn extreme(
     mut x: f64,
     mut f: impl FnMut(f64) -> Result<f64, Trouble>,
@@ -71,7 +72,7 @@ pub(super) fn extreme(
     Ok([x, f(x)?])
 }
 
-/// Counts the order at which errors fall over meshes each twice as fine as the one before.
+/// Tallies the order of the errors over meshes that are each twice as fine as the previous one.
 pub(super) fn order(tally: &mut Tally, name: &str, errors: &[f64], expected: f64) {
     for pair in errors.windows(2) {
         let observed = (pair[0] / pair[1]).log2();

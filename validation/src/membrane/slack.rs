@@ -1,4 +1,4 @@
-//! Where the fibres of a braid become slack over its rubber: by shooting and by elements.
+//! The contraction at which the fibres of a braid become slack on its rubber: by shooting and by elements.
 
 use bulge_fibre::{Approach, FibreError, Problem};
 use bulge_membrane::mesher::{Grading, revolved};
@@ -11,13 +11,13 @@ use bulge_muscles::{Angle, Bladder, Length, Pressure};
 use crate::check::{Check, Claim, Trouble};
 use crate::specimen::braid;
 
-/// Half-length elements, quadratic.
+/// Quadratic elements on half the length.
 const ELEMENTS: usize = 160;
-/// Fibres; their sum counts.
+/// Number of fibres. Only their sum matters.
 const FIBRES: f64 = 60.0;
-/// Steps on the way there.
+/// Number of steps up to the border.
 const STEPS: u32 = 8;
-/// Contractions before the border at which the tension is taken, to be drawn on to nothing as a parabola.
+/// Distances before the border at which the tension is taken. A parabola extrapolates it to zero.
 const BEFORE: [f64; 3] = [6e-4, 4e-4, 2e-4];
 
 /// A clamped braid of 25 degrees, r0 = 10 mm, with a wall of 1 mm.
@@ -29,7 +29,7 @@ struct Braid {
 }
 
 impl Braid {
-    /// Where shooting ceases to find taut fibres.
+    /// The contraction from which on shooting finds no taut fibres.
     fn border(&self) -> Result<f64, Trouble> {
         let bladder =
             Bladder::new(Pressure::mpa(self.c10_mpa), Pressure::mpa(self.c01_mpa), Length::mm(1.0))?;
@@ -48,7 +48,7 @@ impl Braid {
         Ok(taut)
     }
 
-    /// The least tension of the fibres by elements at contractions \[N\].
+    /// The smallest tension of the fibres at contractions, by elements \[N\].
     fn tensions(&self, contractions: &[f64]) -> Result<Vec<f64>, Trouble> {
         let (length, radius) = (1e-3 * self.length_mm, 0.01);
         let law = Law::MooneyRivlin { c1: 1e3 * self.c10_mpa, c2: 1e3 * self.c01_mpa };
@@ -82,7 +82,8 @@ impl Braid {
     }
 }
 
-/// The contraction at which fibres are named slack is the one at which the tension in the elements ends.
+/// The contraction at which fibres are reported slack is that at which their tension vanishes in the
+/// elements.
 pub(crate) fn border() -> Check {
     Claim {
         group: "membrane",
@@ -104,7 +105,7 @@ pub(crate) fn border() -> Check {
             let tensions = braid.tensions(&places)?;
             let tensions = &tensions[tensions.len() - 3..];
             let [a, b, c] = [0, 1, 2].map(|i| tensions[i]);
-            // The parabola through the last of three evenly spaced values, from there on in steps.
+            // The parabola through three evenly spaced values, extrapolated from the last one, in steps.
             let (slope, bend) = (0.5 * (a - 4.0 * b + 3.0 * c), a - 2.0 * b + c);
             let steps = 2.0 * c / (-slope + (slope * slope - 2.0 * bend * c).sqrt());
             let off = (BEFORE[1] - BEFORE[2]) * steps - BEFORE[2];

@@ -1,4 +1,4 @@
-//! Spheres of rubber, by elements of revolution and by triangles.
+//! Rubber spheres by elements of revolution and by triangles.
 
 use bulge_membrane::mesher::{Grading, Surface, grid, revolved};
 use bulge_membrane::{Block, CellKind, Cloth, Gas, Inflation, Law, Mesh, Part, Sheet, Solver, Support};
@@ -9,7 +9,7 @@ use super::rig::{extreme, order, plane, rubber, solver, to};
 use super::{RUBBER, rows};
 use crate::check::{Check, Claim, Trouble};
 
-/// A sphere of R = 100 mm: pR/(mu H) = 2 (1/l - 1/l^7), beyond its limit point too.
+/// A sphere of R = 100 mm: pR/(mu H) = 2 (1/l - 1/l^7), also beyond its limit point.
 pub(crate) fn sphere() -> Check {
     Claim {
         group: "membrane",
@@ -43,7 +43,7 @@ fn neo_hooke(l: f64) -> f64 {
     2.0 * (1.0 / l - l.powi(-7))
 }
 
-/// Half a sphere of radius 1 on its middle plane.
+/// Half a sphere of radius 1, supported on its middle plane.
 fn half(law: Law, elements: usize, is_quadratic: bool) -> Result<Solver, Trouble> {
     let circle = |t: f64| [(FRAC_PI_2 * t).cos(), (FRAC_PI_2 * t).sin()];
     let mesh = revolved(circle, elements, is_quadratic, Grading::Even);
@@ -51,7 +51,7 @@ fn half(law: Law, elements: usize, is_quadratic: bool) -> Result<Solver, Trouble
     solver(&mesh, &[("wall", rubber(law))], &supports, &[], [1.0, 2.0])
 }
 
-/// Where the pressure of a balloon is largest and smallest.
+/// The largest and the smallest pressure of a balloon.
 pub(crate) fn limit_points() -> Check {
     Claim {
         group: "membrane",
@@ -62,7 +62,7 @@ pub(crate) fn limit_points() -> Check {
     }
     .run(|tally| {
         let mooney = Law::MooneyRivlin { c1: 0.25, c2: 0.025 };
-        // Stretch and pressure at the limit, and a stretch to start from.
+        // Stretch and pressure at the limit point, and a stretch to start from.
         let cases = [
             (NEO_HOOKE, 7.0_f64.powf(1.0 / 6.0), 1.239_462_902_399_12, 1.36),
             (mooney, 1.476_069_847_46, 0.745_308_777_84, 1.45),
@@ -84,7 +84,7 @@ pub(crate) fn limit_points() -> Check {
     })
 }
 
-/// A sphere with a closed amount of gas.
+/// A sphere with an enclosed amount of gas.
 pub(crate) fn gas() -> Check {
     Claim {
         group: "membrane",
@@ -101,7 +101,7 @@ pub(crate) fn gas() -> Check {
             let once = Gas::filling(start.volume, start.pressure, 2.0, gamma);
             let gas = Gas { constant: 2.0 * once.constant, ..once };
             let state = to(&mut sphere, &start, Inflation::Gas(gas), &[])?;
-            // The gas alone pushes more than the rubber at 1, less at 3.
+            // The gas alone exceeds the rubber at a stretch of 1 and is weaker at 3.
             let lacks = |l: f64| neo_hooke(l) + 2.0 - gas.constant * (SPHERE * l.powi(3)).powf(-gamma);
             let (mut low, mut high) = (1.0, 3.0);
             for _ in 0..60 {
@@ -115,7 +115,8 @@ pub(crate) fn gas() -> Check {
     })
 }
 
-/// An eighth of a sphere of radius 1 in n^2 triangles, n even: half of a grid over a square. Groups: as the grid's, and `equator`.
+/// An eighth of a sphere of radius 1 in n^2 triangles, n even: half of a grid on a square. Groups: those of
+/// the grid, and `equator`.
 fn octant(n: usize, is_quadratic: bool) -> Mesh {
     let place = |u: f64, v: f64| {
         let w = 1.0 - u - v;
@@ -161,7 +162,7 @@ fn of_triangles(n: usize, is_quadratic: bool) -> Result<Solver, Trouble> {
     )
 }
 
-/// Pressures of a sphere at rising stretches.
+/// Pressures of a sphere at increasing stretches.
 fn pressures(mut sphere: Solver, stretches: &[f64]) -> Result<Vec<f64>, Trouble> {
     let rest = sphere.at_rest();
     let mut state = to(&mut sphere, &rest, Inflation::Pressure(0.7), &[])?;
@@ -204,10 +205,10 @@ pub(crate) fn triangles() -> Check {
     })
 }
 
-/// A sphere from a number of elements, quadratic or not.
+/// Makes a sphere from a number of elements, which are quadratic or not.
 type Make = fn(usize, bool) -> Result<Solver, Trouble>;
 
-/// How fast the error falls.
+/// Order of the error.
 pub(crate) fn orders() -> Check {
     Claim {
         group: "membrane",

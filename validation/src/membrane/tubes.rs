@@ -1,4 +1,4 @@
-//! Tubes of rubber: clamped, by shooting; open and closed cylinders, in closed form.
+//! Rubber tubes: clamped ones against shooting, open and closed cylinders against closed forms.
 
 use bulge_membrane::mesher::{Grading, revolved};
 use bulge_membrane::{Fitting, Inflation, Law, Solver, Support};
@@ -15,7 +15,7 @@ fn tube(cells: usize, order: usize, steps: &str) -> String {
     )
 }
 
-/// Pressure \[kPa\], force \[N\], volume \[mm^3\] of the clamped tube of rubber.
+/// Pressure \[kPa\], force \[N\], volume \[mm^3\] of the clamped rubber tube.
 const TUBE: [[f64; 3]; 6] = [
     [5.0, -0.065_359_811_2, 20_087.860_728_58],
     [10.0, -0.267_583_632_1, 21_548.794_575_73],
@@ -25,7 +25,7 @@ const TUBE: [[f64; 3]; 6] = [
     [32.353_062_0, -12.533_616_51, 68_311.883_8],
 ];
 
-/// A clamped tube of rubber, R = 10, L = 60, H = 1 mm.
+/// A clamped rubber tube, R = 10, L = 60, H = 1 mm.
 pub(crate) fn clamped_tube() -> Check {
     Claim {
         group: "membrane",
@@ -47,7 +47,7 @@ pub(crate) fn clamped_tube() -> Check {
     })
 }
 
-/// How fast the error of the tube's force falls.
+/// Order of the error of the force of the tube.
 pub(crate) fn orders() -> Check {
     Claim {
         group: "membrane",
@@ -79,7 +79,7 @@ pub(crate) fn limit_point() -> Check {
         why: "200 quadratic elements: fourth order",
     }
     .run(|tally| {
-        // In mm and N.
+        // Lengths in mm, forces in N.
         let mesh = revolved(|t| [10.0, 60.0 * t], 200, true, Grading::Ends(3.0));
         let ends = [("first", Support::Fitting { fitting: 0 }), ("last", Support::Fitting { fitting: 1 })];
         let parts = [("wall", rubber(Law::NeoHooke { shear: 0.4 }))];
@@ -94,7 +94,8 @@ pub(crate) fn limit_point() -> Check {
     })
 }
 
-/// A cylinder of radius 1 and length 2 without stress, drawn to 2 lz in the mesh; its ends stay plane, and one of them rises if it is free.
+/// A stress-free cylinder of radius 1 and length 2, stretched to 2 lz in the mesh. Its ends stay plane, and
+/// one of them moves axially if it is free.
 fn cylinder(lz: f64, is_closed: bool) -> Result<Solver, Trouble> {
     let mut mesh = revolved(|t| [1.0, 2.0 * lz * t], 4, true, Grading::Even);
     let nodes = &mesh.nodes;
@@ -102,13 +103,13 @@ fn cylinder(lz: f64, is_closed: bool) -> Result<Solver, Trouble> {
         wall.pattern = Some(wall.cells.iter().map(|node| [1.0, nodes[*node][2] / lz]).collect());
     }
     let level = plane([0.0, 0.0, 1.0]);
-    // A plane that every meridian lies in holds nothing, and says that the end is closed.
+    // A plane in which every meridian lies constrains nothing, but marks the end as closed.
     let last = if is_closed { plane([0.0, 1.0, 0.0]) } else { level.clone() };
     let parts = [("wall", rubber(Law::NeoHooke { shear: 1.0 }))];
     solver(&mesh, &parts, &[("first", level), ("last", last)], &[], [1.0, 1.0])
 }
 
-/// Cylinders that stay cylinders.
+/// Cylinders that remain cylindrical.
 pub(crate) fn cylinders() -> Check {
     Claim {
         group: "membrane",

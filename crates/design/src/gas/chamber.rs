@@ -1,4 +1,4 @@
-//! What the gas is in: a muscle on its load with the dead volume of its tubes, or a rigid vessel.
+//! The chamber of the gas: a muscle on its load with the dead volume of its tubes, or a rigid vessel.
 //!
 //! ```text
 //! F(p, e) = load(e)              gives e(p) of a muscle on a load, quasi-static
@@ -16,26 +16,28 @@ use super::muscle::{Lowest, failed, follow, is_scale_free, load_at};
 use super::surroundings::Surroundings;
 use super::{GasError, at_least, positive};
 
-/// Below this gauge pressure \[Pa\] the shape of a muscle is that at this pressure: at none there is no equilibrium to solve.
+/// Least gauge pressure \[Pa\] at which a muscle is solved, because there is no equilibrium at zero pressure.
+/// Below it, the shape is that at this pressure.
 ///
-/// Its force is in proportion to the pressure if nothing but the pressure shapes it, and else that at this pressure.
+/// The force is proportional to the pressure if nothing but the pressure shapes the muscle, and otherwise
+/// that at this pressure.
 pub const LEAST_PRESSURE_PA: f64 = 100.0;
 
-/// Tolerance of contractions: of a Newton step, whose end is exact to its square.
+/// Tolerance of a Newton step of the contraction. The error after the step is of the order of its square.
 const CONTRACTION_TOLERANCE: f64 = 1e-9;
-/// Solves for a load that falls with the contraction.
+/// Most solves for a load that decreases with the contraction.
 const MOST_SOLVES: u32 = 300;
-/// Pressures without equilibrium that a search for the pressure may meet.
+/// Most pressures without equilibrium that a search for the pressure may meet.
 const MOST_FAILURES: u32 = 16;
 
-/// What a muscle pulls on.
+/// Load of a muscle.
 #[derive(Clone, Copy)]
 pub enum Load<'a> {
-    /// Held at this contraction.
+    /// The muscle is held at this contraction.
     Held(f64),
     /// A constant force \[N\].
     Force(f64),
-    /// A spring that the muscle draws out: preload + rate l0 (e - from).
+    /// A spring that the muscle stretches: preload + rate l0 (e - from).
     Spring {
         /// Force at the contraction `from` \[N\].
         preload_n: f64,
@@ -72,7 +74,7 @@ pub struct Inside {
     pub force_n: f64,
     /// Volume of the muscle, or of the vessel \[m^3\].
     pub volume_m3: f64,
-    /// The same with the dead volume \[m^3\].
+    /// This volume and the dead volume \[m^3\].
     pub gas_volume_m3: f64,
 }
 
@@ -89,13 +91,14 @@ enum Body<'a> {
     Muscle { muscle: &'a MuscleWithEffects, load: Load<'a>, support: Option<f64> },
 }
 
-/// What the gas is in.
+/// Chamber of the gas.
 #[derive(Debug, Clone, Copy)]
 pub struct Chamber<'a> {
     body: Body<'a>,
     surroundings: Surroundings,
     approach: Approach,
-    /// Where something holds a muscle with a bladder: from where its fibres are taut.
+    /// For a muscle with a bladder that is held or supported: the lowest pressure at which its fibres are
+    /// taut.
     lowest: Option<Lowest>,
 }
 
@@ -133,7 +136,7 @@ impl<'a> Chamber<'a> {
         Self { body, surroundings: Surroundings::STANDARD, approach: Approach::Auto, lowest: None }
     }
 
-    /// With what is known of slack fibres at the contraction that something holds.
+    /// Looks up the lowest pressure with taut fibres at the contraction at which the muscle is held.
     fn looked_at(mut self) -> Self {
         let held = match self.body {
             Body::Muscle { muscle, load: Load::Held(contraction), .. }
@@ -144,7 +147,7 @@ impl<'a> Chamber<'a> {
         self
     }
 
-    /// With the dead volume \[m^3\] of tubes and fittings.
+    /// The chamber with the dead volume \[m^3\] of tubes and fittings.
     ///
     /// # Errors
     /// [`GasError::Number`] unless it is finite and not negative.
@@ -153,7 +156,7 @@ impl<'a> Chamber<'a> {
         Ok(self)
     }
 
-    /// With another ambient pressure \[Pa\], absolute.
+    /// The chamber at another ambient pressure \[Pa\], absolute.
     ///
     /// # Errors
     /// [`GasError::Number`] unless it is positive.
@@ -162,13 +165,14 @@ impl<'a> Chamber<'a> {
         Ok(self)
     }
 
-    /// In the surroundings of another, which are checked.
+    /// The chamber with the given surroundings, which have been checked.
     pub(super) const fn within(mut self, surroundings: Surroundings) -> Self {
         self.surroundings = surroundings;
         self
     }
 
-    /// The load stands on a support at this contraction until the muscle lifts it; of no effect on a vessel or a held muscle.
+    /// Puts the load on a support at this contraction until the muscle lifts it. A vessel or a held muscle is
+    /// not changed.
     ///
     /// # Errors
     /// [`GasError::Number`] unless it is finite and below 1.
@@ -188,7 +192,7 @@ impl<'a> Chamber<'a> {
         Ok(self.looked_at())
     }
 
-    /// Solved by this method.
+    /// The chamber with another solution method.
     #[must_use]
     pub fn solved_by(mut self, approach: Approach) -> Self {
         self.approach = approach;
@@ -216,16 +220,17 @@ impl<'a> Chamber<'a> {
         matches!(self.body, Body::Vessel(_))
     }
 
-    /// Load on the support \[N\], which the muscle lifts when it pulls more; none without a support.
+    /// Load on the support \[N\]. The muscle lifts it when it pulls more. None without a support.
     pub(super) fn load_on_support(&self) -> Option<f64> {
         let Body::Muscle { load, muscle, support } = &self.body else { return None };
         support.map(|support| load_at(load, muscle, support))
     }
 
-    /// The state at a gauge pressure \[Pa\]: of a muscle >= 0, of a vessel above minus the ambient pressure.
+    /// The state at a gauge pressure \[Pa\], which must be >= 0 for a muscle and above minus the ambient
+    /// pressure for a vessel.
     ///
     /// # Errors
-    /// [`GasError::Number`], [`GasError::Muscle`] without equilibrium, or [`GasError::NoBalance`].
+    /// [`GasError::Number`], [`GasError::Muscle`] if there is no equilibrium, or [`GasError::NoBalance`].
     pub fn at(&self, pressure_pa: f64) -> Result<Inside, GasError> {
         let low = if self.is_vessel() { -self.ambient_pa() } else { 0.0 };
         at_least(
@@ -243,7 +248,8 @@ impl<'a> Chamber<'a> {
         Ok(self.inside(pressure_pa, true, None)?.force_n < load)
     }
 
-    /// The state on the support, or off it, there perhaps near a known contraction. Slightly negative pressures, as a search tries them, are as none.
+    /// The state on the support or off it, off it optionally near a known contraction. A search may try
+    /// slightly negative pressures; they count as zero.
     pub(super) fn inside(
         &self,
         pressure_pa: f64,
@@ -269,7 +275,7 @@ impl<'a> Chamber<'a> {
         Ok(Inside::of(pressure_pa, &found, &self.surroundings))
     }
 
-    /// At a contraction that something holds, where a muscle with a bladder may push.
+    /// The state at a prescribed contraction, where a muscle with a bladder may push.
     fn held(
         &self,
         muscle: &MuscleWithEffects,
@@ -287,7 +293,8 @@ impl<'a> Chamber<'a> {
         Ok(found)
     }
 
-    /// Where the pull is the load: by Newton's method from a known contraction, or without one.
+    /// The state in which pull and load are equal, by Newton's method from a known contraction or without
+    /// one.
     fn balance(
         &self,
         muscle: &MuscleWithEffects,
@@ -309,6 +316,7 @@ impl<'a> Chamber<'a> {
                 -found.stiffness_n_per_m * l0 - slope,
             ))
         };
+        // If Newton's method leaves the neighbourhood, the general search below takes over.
         if let Some(mut e) = near {
             for _ in 0..8 {
                 let Ok((value, slope)) = excess(e) else { break };
@@ -327,7 +335,8 @@ impl<'a> Chamber<'a> {
         }
         let no_balance =
             |e: f64| GasError::NoBalance { pressure_pa, contraction: e, load_n: load_at(load, muscle, e) };
-        // No muscle pulls beyond its limit. There the load is larger than the pull; where the muscle pulls as much, it has contracted less.
+        // No muscle pulls beyond its limit, so the load exceeds the pull there, and the balance lies at a
+        // smaller contraction.
         let limit = solve(Given::Force(0.0))?.contraction;
         let load_n = load_at(load, muscle, limit);
         if !(load_n >= 0.0 && load_n.is_finite()) {
@@ -335,7 +344,8 @@ impl<'a> Chamber<'a> {
         }
         let mut found = solve(Given::Force(load_n))?;
         if found.force_n - load_at(load, muscle, found.contraction) < 0.0 {
-            // A load that falls with the contraction: downwards from the limit to the first balance.
+            // For a load that decreases with the contraction, search downwards from the limit to the first
+            // balance.
             for _ in 0..MOST_SOLVES {
                 let last = found.contraction;
                 found = solve(Given::Force(load_at(load, muscle, last)))?;
@@ -354,9 +364,10 @@ impl<'a> Chamber<'a> {
     }
 }
 
-/// The state whose gas has z = ln P + n ln(V + Vd), searched from a gauge pressure \[Pa\].
+/// The state whose gas has z = ln P + n ln(V + Vd). The search starts from a gauge pressure \[Pa\].
 ///
-/// The root lies between u = ln P and u - g(u), since g(u) = u + n ln(V + Vd) - z has at least the slope 1: secants inside that bracket.
+/// With u = ln P and g(u) = u + n ln(V + Vd) - z, the root lies between u and u - g(u), because the slope of
+/// g is at least 1. Secants are taken inside this bracket.
 pub(super) fn with_gas(
     inside: impl Fn(f64) -> Result<Inside, GasError>,
     ambient_pa: f64,
@@ -375,7 +386,7 @@ pub(super) fn with_gas(
     let mut failures = 0;
     for _ in 0..100 {
         if step.abs() < 1e-12 {
-            // Halved until nothing is left of it: the root lies where there is no equilibrium.
+            // The step has been halved until it vanished: the root lies where there is no equilibrium.
             if g.abs() > 1e-9 {
                 break;
             }
@@ -383,7 +394,7 @@ pub(super) fn with_gas(
         }
         match value(u + step) {
             Ok((next, found)) => {
-                // Illinois: the other end of a bracket counts half when it stays.
+                // Illinois method: the function value at an end of the bracket is halved if that end stays.
                 other = match other {
                     Some((v, gv)) if next * g > 0.0 && gv * g < 0.0 => Some((v, 0.5 * gv)),
                     _ => Some((u, g)),

@@ -1,11 +1,11 @@
-//! Gas that is shut in, and a closed muscle: filled, the valve shut, then moved.
+//! Enclosed gas, and a closed muscle, which is filled, shut, and then moved.
 //!
 //! ```text
 //! P (V(p, e) + Vd)^n = P1 (V(p1, e1) + Vd)^n        1 <= n <= 1.4: isothermal (slow) to adiabatic (fast)
 //! m = P1 (V1 + Vd)/(R T1),    T = T1 P (V + Vd)/(P1 (V1 + Vd))
 //! ```
-//! For inextensible fibres V depends on e alone and p follows at once; with fibres, a bladder or cloth that stretch it is a root in p.
-//! V is `Response::volume_m3`.
+//! For inextensible fibres V depends on e alone, and p follows directly. If fibres, bladder or cloth stretch,
+//! p is the root of an equation. V is `Response::volume_m3`.
 
 use std::cell::Cell;
 
@@ -18,14 +18,14 @@ use super::muscle::{failed, pulling};
 use super::surroundings::Surroundings;
 use super::{AMBIENT_TEMPERATURE_K, GAMMA, GasError, R_AIR, at_least, positive};
 
-/// Gas that was shut in, with the exponent of its law.
+/// Enclosed gas with its polytropic exponent.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ShutGas {
     pub(crate) surroundings: Surroundings,
     pub(crate) exponent: f64,
-    /// Gauge pressure at which it was shut in \[Pa\].
+    /// Gauge pressure at which it was enclosed \[Pa\].
     pub(crate) pressure_pa: f64,
-    /// Volume of the muscle there \[m^3\].
+    /// Volume of the muscle when it was enclosed \[m^3\].
     pub(crate) volume_m3: f64,
 }
 
@@ -35,7 +35,8 @@ impl ShutGas {
         self.surroundings.absolute(self.pressure_pa) * self.surroundings.gas_volume(self.volume_m3)
     }
 
-    /// The state of what it is in that obeys its law, searched from a gauge pressure \[Pa\].
+    /// The state of the chamber that obeys the law of the gas. The search starts from a gauge pressure
+    /// \[Pa\].
     pub(crate) fn state(
         &self,
         inside: impl Fn(f64) -> Result<Inside, GasError>,
@@ -48,7 +49,7 @@ impl ShutGas {
     }
 }
 
-/// A muscle with the gas that was shut in.
+/// A muscle with enclosed gas.
 #[derive(Debug, Clone, Copy)]
 pub struct ClosedMuscle<'a> {
     pub(super) muscle: &'a MuscleWithEffects,
@@ -70,18 +71,20 @@ pub struct ClosedState {
     pub volume_m3: f64,
     /// Temperature of the gas after the polytropic change \[K\].
     pub temperature_k: f64,
-    /// Mass of the gas \[kg\], that of the dead volume included: the same in every state.
+    /// Mass of the gas including the dead volume \[kg\]; the same in every state.
     pub mass_kg: f64,
-    /// The equilibrium. Its stiffnesses with the gas enclosed know of no dead volume; see [`ClosedMuscle::stiffness`].
+    /// The equilibrium. Its stiffnesses with enclosed gas don't include the dead volume; see
+    /// [`ClosedMuscle::stiffness`].
     pub response: Response,
 }
 
 impl<'a> ClosedMuscle<'a> {
-    /// Filled to a gauge pressure \[Pa\] > 0 at a contraction, then shut; changes of the exponent 1 (isothermal) to 1.4 (adiabatic). Without dead
-    /// volume, at 293.15 K and 101325 Pa outside, unless said otherwise.
+    /// A muscle that was filled to a gauge pressure \[Pa\] > 0 at a contraction and then shut. The exponent
+    /// is from 1 (isothermal) to 1.4 (adiabatic). Unless changed, there is no dead volume, the temperature is
+    /// 293.15 K, and the ambient pressure is 101325 Pa.
     ///
     /// # Errors
-    /// [`GasError::Number`], or [`GasError::Muscle`] if the muscle doesn't pull there.
+    /// [`GasError::Number`], or [`GasError::Muscle`] if the muscle doesn't pull at that contraction.
     pub fn new(
         muscle: &'a MuscleWithEffects,
         pressure_pa: f64,
@@ -102,7 +105,7 @@ impl<'a> ClosedMuscle<'a> {
         Ok(Self { muscle, approach: Approach::Auto, gas, temperature_k: AMBIENT_TEMPERATURE_K })
     }
 
-    /// With the dead volume \[m^3\] of tubes and fittings.
+    /// The muscle with the dead volume \[m^3\] of tubes and fittings.
     ///
     /// # Errors
     /// [`GasError::Number`] unless it is finite and not negative.
@@ -111,7 +114,7 @@ impl<'a> ClosedMuscle<'a> {
         Ok(self)
     }
 
-    /// With another ambient pressure \[Pa\], absolute.
+    /// The muscle at another ambient pressure \[Pa\], absolute.
     ///
     /// # Errors
     /// [`GasError::Number`] unless it is positive.
@@ -120,7 +123,7 @@ impl<'a> ClosedMuscle<'a> {
         Ok(self)
     }
 
-    /// Filled with gas of this temperature \[K\].
+    /// The muscle filled with gas of this temperature \[K\].
     ///
     /// # Errors
     /// [`GasError::Number`] unless it is positive.
@@ -129,7 +132,7 @@ impl<'a> ClosedMuscle<'a> {
         Ok(self)
     }
 
-    /// Mass of the gas \[kg\], that of the dead volume included.
+    /// Mass of the gas including the dead volume \[kg\].
     #[must_use]
     pub fn mass_kg(&self) -> f64 {
         self.gas.filled() / (R_AIR * self.temperature_k)
@@ -138,7 +141,7 @@ impl<'a> ClosedMuscle<'a> {
     /// The state at a contraction.
     ///
     /// # Errors
-    /// [`GasError::Muscle`] if the muscle doesn't pull there, or [`GasError::NoPressure`].
+    /// [`GasError::Muscle`] if the muscle doesn't pull at that contraction, or [`GasError::NoPressure`].
     pub fn at_contraction(&self, contraction: f64) -> Result<ClosedState, GasError> {
         if !contraction.is_finite() {
             return Err(GasError::Number {
@@ -151,10 +154,11 @@ impl<'a> ClosedMuscle<'a> {
         self.state(inside.pressure_pa, contraction)
     }
 
-    /// The state under a force \[N\] >= 0: the contraction as well.
+    /// The state under a force \[N\] >= 0, including the contraction.
     ///
     /// # Errors
-    /// [`GasError::Number`], [`GasError::Muscle`] if the muscle can't carry it, or [`GasError::NoPressure`].
+    /// [`GasError::Number`], [`GasError::Muscle`] if the muscle can't carry the force, or
+    /// [`GasError::NoPressure`].
     pub fn under_force(&self, force_n: f64) -> Result<ClosedState, GasError> {
         at_least("the force [N]", force_n, 0.0, "give a finite force from 0 on: a muscle doesn't push")?;
         let inside = self.shut(Load::Force(force_n))?;
@@ -260,7 +264,8 @@ mod tests {
                 assert!((gas / (found.mass_kg * R_AIR * found.temperature_k) - 1.0).abs() < 1e-12);
             }
         }
-        // It matters: at the same contraction the soft muscle's volume changes with the pressure by more than 1 %.
+        // The effect is relevant: at the same contraction the volume of the soft muscle changes with the
+        // pressure by more than 1 %.
         let muscle = soft();
         let volume = |bar: f64| {
             muscle.solve(Pressure::bar(bar), Given::Contraction(0.1), Approach::Auto).unwrap().volume_m3
@@ -281,7 +286,8 @@ mod tests {
         }
     }
 
-    /// First law: the work put in, F dl, is what the gas gains plus what the atmosphere does not have to be given back.
+    /// First law: the work put in, F dl, equals the energy gained by the gas minus the work of the
+    /// atmosphere.
     #[test]
     fn work_is_the_energy_of_the_gas() {
         for muscle in [pleated(), braid()] {
@@ -305,7 +311,8 @@ mod tests {
         }
     }
 
-    /// There by the contraction, back by the force: F dl + l dF over the closed path is zero, also where fibres store energy.
+    /// Forward by the contraction, back by the force: F dl + l dF over the closed path is zero, even if
+    /// fibres store energy.
     #[test]
     fn a_closed_path_takes_no_work() {
         let muscle = soft();
@@ -345,7 +352,7 @@ mod tests {
         assert!(closed.at_temperature(f64::INFINITY).is_err());
         assert!(closed.at_contraction(f64::NAN).is_err() && closed.at_contraction(0.0).is_err());
         assert!(closed.under_force(-1.0).is_err() && closed.under_force(f64::NAN).is_err());
-        // Contracted so far, the little gas would be thinner than the atmosphere.
+        // At this contraction the small amount of gas would be below the ambient pressure.
         let error = closed.at_contraction(0.3).unwrap_err();
         assert!(matches!(error, GasError::NoPressure { .. }), "{error}");
         assert!(error.to_string().contains("start with a higher pressure"));

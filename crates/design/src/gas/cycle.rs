@@ -1,4 +1,4 @@
-//! Air and efficiency of a cycle: fill on the support, lift a constant load, vent.
+//! Air consumption and efficiency of a cycle: filling on the support, lifting a constant load, venting.
 //!
 //! ```text
 //! air        m = P2 (V2 + Vd)/(R T0) - p0 (V1' + Vd)/(R T0)        from the supply per cycle; V1' at e1 without pressure
@@ -10,11 +10,12 @@
 //!     vented      B2 = P2 (V2 + Vd)(ln(P2/p0) - 1 + p0/P2)         exergy of the charge at the end of the lift
 //!     throttled   E - B2 - W_g = R T0 integral of ln(Ps/P) dm      between the supply and the muscle
 //! ```
-//! Everything at the ambient temperature T0, slowly. The pull F is that of the gauge pressure: what the muscle takes from the gas to push the
-//! atmosphere aside, p0 dV, comes back when it is vented; it is neither in W nor in W_g, and E counts only what air can do above the ambient.
-//! *Not passed on*: pull beyond the load (`Lift::Isobaric`), what stretches, friction, and between n fibres the part 1 - a of the gas work
-//! (see [the module](super)). The losses of
-//! a real compressor are not counted.
+//! All changes are slow, at the ambient temperature T0. The pull F is that of the gauge pressure. The work p0
+//! dV with which the muscle displaces the atmosphere is returned on venting. It is neither in W nor in W_g,
+//! and E counts only the work that air can do above the ambient. The part *not passed on* consists of pull
+//! beyond the load (`Lift::Isobaric`), of energy in stretched parts, of friction, and, between n fibres, of
+//! the fraction 1 - a of the gas work (see [the module](super)). The losses of a real compressor are not
+//! counted.
 
 use bulge_fibre::{Approach, Response};
 use bulge_model::MuscleWithEffects;
@@ -27,33 +28,36 @@ use super::orifice::REFERENCE_DENSITY;
 use super::surroundings::Surroundings;
 use super::{AMBIENT_TEMPERATURE_K, GasError, R_AIR, positive};
 
-/// Panels of six Gauss points for the gas work.
+/// Panels for the gas work, each with six Gauss points.
 const PANELS: u32 = 6;
 
-/// How the load goes up.
+/// Mode of lifting the load.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub enum Lift {
-    /// The pressure rises until the muscle carries the load, and on until it is up: F(p, e) = load all the way.
+    /// The pressure rises until the muscle carries the load, and further until the load is up: F(p, e) = load
+    /// throughout.
     PressureRise,
-    /// The muscle is filled to this gauge pressure \[Pa\] while held, then moves at that pressure; its pull beyond the load is lost.
+    /// The muscle is held while it is filled to this gauge pressure \[Pa\], and then moves at that pressure.
+    /// Its pull beyond the load is lost.
     Isobaric {
         /// Gauge pressure \[Pa\].
         pressure_pa: f64,
     },
 }
 
-/// A cycle: filled at the contraction `from`, up to `to` with the load, vented, down again without it.
+/// A cycle: the muscle is filled at the contraction `from`, lifts the load to `to`, is vented, and returns
+/// without the load.
 #[derive(Debug, Clone, Copy)]
 pub struct Stroke<'a> {
     /// The muscle.
     pub muscle: &'a MuscleWithEffects,
     /// Load \[N\] > 0.
     pub load_n: f64,
-    /// Contraction where the load stands.
+    /// Contraction at which the load stands on its support.
     pub from: f64,
-    /// Contraction where it is up.
+    /// Contraction at which the load is up.
     pub to: f64,
-    /// How it goes up.
+    /// Mode of lifting.
     pub lift: Lift,
     /// Gauge pressure of the supply \[Pa\].
     pub supply_pressure_pa: f64,
@@ -61,22 +65,22 @@ pub struct Stroke<'a> {
     pub dead_volume_m3: f64,
     /// Ambient pressure \[Pa\].
     pub ambient_pa: f64,
-    /// Temperature of air, supply and ambient, T0 \[K\].
+    /// Temperature T0 of air, supply and ambient \[K\].
     pub temperature_k: f64,
 }
 
-/// What a cycle takes and gives.
+/// Consumption and work of a cycle.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct CycleResult {
     /// Gauge pressure at which the load leaves its support \[Pa\].
     pub start_pressure_pa: f64,
-    /// Gauge pressure when it is up \[Pa\].
+    /// Gauge pressure when the load is up \[Pa\].
     pub end_pressure_pa: f64,
-    /// Way of the load \[m\].
+    /// Travel of the load \[m\].
     pub stroke_m: f64,
     /// Air from the supply \[kg\].
     pub air_kg: f64,
-    /// The same in normal litres (ANR, 1.185 kg/m^3) \[l\].
+    /// The same air in normal litres (ANR, 1.185 kg/m^3) \[l\].
     pub air_litres_anr: f64,
     /// Exergy of that air, E \[J\].
     pub exergy_j: f64,
@@ -86,9 +90,9 @@ pub struct CycleResult {
     pub efficiency: f64,
     /// Work of the gas that doesn't reach the load \[J\].
     pub not_passed_on_j: f64,
-    /// Lost between supply and muscle \[J\].
+    /// Exergy lost between supply and muscle \[J\].
     pub throttled_j: f64,
-    /// Let out with the air \[J\].
+    /// Exergy of the vented air \[J\].
     pub vented_j: f64,
 }
 
@@ -115,10 +119,11 @@ impl<'a> Stroke<'a> {
         }
     }
 
-    /// Air, energies and efficiency.
+    /// Air, energies and efficiency of the cycle.
     ///
     /// # Errors
-    /// [`GasError::Number`] for numbers that can't be (a pressure above that of the supply too), [`GasError::Muscle`] if the muscle can't lift the load.
+    /// [`GasError::Number`] for impossible numbers (including a pressure above that of the supply),
+    /// [`GasError::Muscle`] if the muscle can't lift the load.
     pub fn cycle(&self) -> Result<CycleResult, GasError> {
         self.check()?;
         let [start, end] = match self.lift {
@@ -140,6 +145,7 @@ impl<'a> Stroke<'a> {
                 instead: "it is less than the load: take a higher pressure, a smaller load or a shorter way",
             });
         }
+        // The ambient air that the muscle holds without pressure is not taken from the supply.
         let slack = follow(self.muscle, LEAST_PRESSURE_PA, self.from, Approach::Auto)?;
         let heat = R_AIR * self.temperature_k;
         let gas =
@@ -199,7 +205,8 @@ impl<'a> Stroke<'a> {
             .map_err(|error| failed(pressure_pa, error))
     }
 
-    /// The pressure at which the muscle carries the load at a contraction: from that of the supply by secants, inside what brackets it.
+    /// The pressure at which the muscle carries the load at a contraction. Secants start from the supply
+    /// pressure and stay inside the bracket.
     fn pressure_for(&self, contraction: f64) -> Result<f64, GasError> {
         let excess = |p: f64| {
             Ok::<_, GasError>(
@@ -216,7 +223,8 @@ impl<'a> Stroke<'a> {
                 instead: "it is less than the load: take a higher supply pressure, a smaller load or a shorter way",
             });
         }
-        // Proportional to the pressure where nothing else shapes the muscle: the first secant is the answer there.
+        // The excess is proportional to the pressure if nothing but the pressure shapes the muscle. The first
+        // secant then gives the root.
         let (mut low, mut high, mut at_low, mut at_high) = (0.0, most, -1.0, at_most);
         let mut p = most;
         for _ in 0..100 {
@@ -238,7 +246,8 @@ impl<'a> Stroke<'a> {
         Ok(p)
     }
 
-    /// Integral of p dV from no pressure at the start to the end of the lift \[J\], as p2 V2 less the integral of V dp.
+    /// Integral of p dV from zero pressure at the start to the end of the lift \[J\], computed as p2 V2 minus
+    /// the integral of V dp.
     fn gas_work(
         &self,
         [start, end]: [f64; 2],
@@ -246,7 +255,7 @@ impl<'a> Stroke<'a> {
         [below, above]: [&Response; 2],
     ) -> Result<f64, GasError> {
         let mut work = end * above.volume_m3;
-        // Held: the volume grows only if something stretches.
+        // While the muscle is held, its volume grows only if something stretches.
         let held =
             |p: f64| Ok(follow(self.muscle, p.max(LEAST_PRESSURE_PA), self.from, Approach::Auto)?.volume_m3);
         let same = |a: f64, b: f64| (a - b).abs() <= 1e-13 * b;
@@ -287,7 +296,7 @@ mod tests {
 
     #[test]
     fn the_parts_add_up_and_the_gas_gives_what_the_load_takes() {
-        // Inextensible, continuous: all gas work reaches the load.
+        // Inextensible, continuous fibres: all gas work reaches the load.
         for muscle in [pleated(), braid()] {
             let found = stroke(&muscle, 200.0).cycle().unwrap();
             assert!(found.not_passed_on_j.abs() < 1e-8 * found.work_j, "{found:?}");
@@ -296,14 +305,14 @@ mod tests {
             assert!(found.efficiency > 0.0 && found.efficiency < 1.0);
             assert!(found.throttled_j > 0.0 && found.vented_j > 0.0);
         }
-        // Between 40 fibres the part 1 - a doesn't reach the load.
+        // Between 40 fibres the fraction 1 - a doesn't reach the load.
         let found = stroke(&forty(), 200.0).cycle().unwrap();
         let a = 40.0 / (2.0 * std::f64::consts::PI) * (2.0 * std::f64::consts::PI / 40.0).sin();
         let lost = found.not_passed_on_j / (found.work_j + found.not_passed_on_j);
         assert!((lost - (1.0 - a)).abs() < 1e-8, "{lost}");
     }
 
-    /// Throttling, computed as a remainder, against its own integral R T0 ln(Ps/P) dm.
+    /// The throttling loss, computed as a remainder, against its own integral R T0 ln(Ps/P) dm.
     #[test]
     fn throttling_is_its_integral() {
         for muscle in [pleated(), soft()] {
@@ -332,7 +341,7 @@ mod tests {
 
     #[test]
     fn air_by_hand() {
-        // At constant pressure: work of the gas p dV, mass from the volumes, normal litres at 1.185 kg/m^3.
+        // At constant pressure: gas work p dV, mass from the volumes, normal litres at 1.185 kg/m^3.
         let muscle = braid();
         let lift = Lift::Isobaric { pressure_pa: 3e5 };
         let mut stroke = Stroke::new(&muscle, 250.0, [0.05, 0.2], lift, 6e5);
@@ -370,7 +379,8 @@ mod tests {
             let falling = [0.0, 1e-5, 1e-4, 1e-3].map(|dead| efficiency(dead, 6e5));
             assert!(falling.windows(2).all(|pair| pair[1] < pair[0]), "{falling:?}");
             assert!(efficiency(0.0, 8e5) < efficiency(0.0, 6e5));
-            // Rising pressure takes what the load needs; a constant one that is higher takes more air for the same work.
+            // A rising pressure consumes what the load needs. A higher constant pressure consumes more air
+            // for the same work.
             let rise = stroke(&muscle, 150.0).cycle().unwrap();
             let lift = Lift::Isobaric { pressure_pa: 1.3 * rise.end_pressure_pa };
             let constant = Stroke { lift, ..stroke(&muscle, 150.0) }.cycle().unwrap();

@@ -1,4 +1,4 @@
-//! Filling and venting over time: a supply, an orifice, and a muscle on a load (or a rigid vessel).
+//! Filling and venting over time, with a supply, an orifice, and a muscle on a load (or a rigid vessel).
 //!
 //! ```text
 //! dm/dt = m'(P_supply, P)                              orifice after ISO 6358, positive into the chamber
@@ -7,19 +7,26 @@
 //!              dz/dt = (gamma - 1)(cp T_in m' + hA (Tw - T))/(P (V + Vd)),   z = ln(P (V + Vd)^gamma)
 //! F(p, e) = load(e)                                    quasi-static; on a support e stays until F exceeds the load
 //! ```
-//! T_in is the temperature of the side that the air comes from. The state is z and m; P, V and e follow from z by one root, so that neither
-//! balance needs a derivative of V, and with m' = 0 the law is that of [`ClosedMuscle`](super::ClosedMuscle). V is the volume that holds the gas.
+//! T_in is the temperature of the side from which the air comes. The state consists of z and m. P, V and e
+//! follow from z by finding one root, so that neither balance needs a derivative of V. With m' = 0 the law is
+//! that of [`ClosedMuscle`](super::ClosedMuscle). V is the volume that the gas fills.
 //!
-//! **The end.** m' has an infinite slope where the pressures meet, which they do after a finite time. Instead of the time t the integration variable is s with
-//! dt = w ds, w = sqrt(1 - x^2), x = (ratio - b)/(1 - b): in s everything is regular (dm/ds = k w^2 = k (1 - x^2)). At w = 1e-3 (the pressures differ by
-//! 5e-7 (1 - b)) the rest is taken in closed form: x = sin(theta), dtheta/dt constant but for terms of w^2. Nothing is smoothed. Where heat flows, the
-//! pressures never quite meet and the flow follows the heat: from w = 1e-3 on the ratio of the pressures stays, and the flow is the one that keeps it.
+//! **The end.** The pressures become equal after a finite time, and the slope of m' is infinite there. The
+//! integration variable is therefore s instead of the time t, with dt = w ds, w = sqrt(1 - x^2) and x =
+//! (ratio - b)/(1 - b). All functions of s are regular (dm/ds = k w^2 = k (1 - x^2)). At w = 1e-3, where the
+//! pressures differ by 5e-7 (1 - b), the rest is taken in closed form: x = sin(theta), with dtheta/dt
+//! constant except for terms of w^2. Nothing is smoothed. With heat flow the pressures never become quite
+//! equal, and the flow follows the heat: from w = 1e-3 on, the ratio of the pressures is constant, and the
+//! flow is the one that keeps it constant.
 //!
-//! Steps end where the flow ceases to be choked and where the load leaves its support or comes back: between, all is smooth, and DOP853 keeps its order.
+//! Steps end where the flow ceases to be choked, and where the load leaves its support or returns to it.
+//! Between these events all functions are smooth, and DOP853 keeps its order.
 //!
-//! The states of a muscle on its load are functions of the pressure alone. They are interpolated from equilibria to 1e-10, where that many agree.
+//! The states of a muscle on its load depend only on the pressure. They are interpolated between equilibria
+//! to 1e-10 where this accuracy is reached.
 //!
-//! Left out: kinetic energy, heat conduction in the tube, inertia of the load, a supply vessel that changes its temperature (it keeps it).
+//! Neglected: kinetic energy, heat conduction in the tube, inertia of the load, and changes of temperature in
+//! a supply vessel.
 
 mod end;
 mod path;
@@ -31,17 +38,17 @@ use super::chamber::Chamber;
 use super::orifice::Orifice;
 use super::{AMBIENT_TEMPERATURE_K, GasError, at_least, positive};
 
-/// Where the air comes from, or goes to.
+/// Source or sink of the air.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub enum Supply {
-    /// At a constant gauge pressure: a compressor with a regulator, or the ambient.
+    /// Constant gauge pressure: a compressor with a regulator, or the ambient.
     Constant {
         /// Gauge pressure \[Pa\].
         pressure_pa: f64,
         /// Temperature \[K\].
         temperature_k: f64,
     },
-    /// A vessel of this volume, whose pressure falls with what leaves it and whose temperature stays.
+    /// A vessel of constant temperature whose pressure falls as air leaves it.
     Vessel {
         /// Gauge pressure at the start \[Pa\].
         pressure_pa: f64,
@@ -53,21 +60,21 @@ pub enum Supply {
 }
 
 impl Supply {
-    /// The ambient at 293.15 K: what a muscle is vented to.
+    /// The ambient at 293.15 K, into which a muscle is vented.
     #[must_use]
     pub const fn ambient() -> Self {
         Self::Constant { pressure_pa: 0.0, temperature_k: AMBIENT_TEMPERATURE_K }
     }
 }
 
-/// What becomes of the temperature of the gas in the chamber.
+/// Model for the temperature of the gas in the chamber.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub enum GasModel {
-    /// It stays: slow changes.
+    /// Constant temperature, for slow changes.
     Isothermal,
-    /// The balance of energy, with the walls taking part by hA (Tw - T).
+    /// Energy balance with the heat hA (Tw - T) from the walls.
     Adiabatic {
-        /// Heat transfer coefficient times the wall's area \[W/K\] >= 0; 0 for no heat.
+        /// Heat transfer coefficient times the area of the wall \[W/K\] >= 0; 0 for no heat.
         heat_transfer_w_per_k: f64,
         /// Temperature of the wall \[K\].
         wall_temperature_k: f64,
@@ -75,35 +82,35 @@ pub enum GasModel {
 }
 
 impl GasModel {
-    /// No heat through the walls.
+    /// Energy balance without heat from the walls.
     #[must_use]
     pub const fn adiabatic() -> Self {
         Self::Adiabatic { heat_transfer_w_per_k: 0.0, wall_temperature_k: AMBIENT_TEMPERATURE_K }
     }
 }
 
-/// A chamber to be filled, or vented.
+/// Filling or venting of a chamber.
 #[derive(Debug, Clone, Copy)]
 pub struct Filling<'a> {
-    /// What is filled: a muscle on its load, or a vessel.
+    /// The chamber: a muscle on its load, or a vessel.
     pub chamber: Chamber<'a>,
-    /// What the air flows through.
+    /// Orifice through which the air flows.
     pub orifice: Orifice,
-    /// Where it comes from, or goes to.
+    /// Source or sink of the air.
     pub supply: Supply,
-    /// Isothermal, or with a balance of energy.
+    /// Isothermal model, or energy balance.
     pub gas: GasModel,
-    /// Gauge pressure in the chamber at the start \[Pa\]; of a muscle >= 0.
+    /// Gauge pressure in the chamber at the start \[Pa\]; >= 0 for a muscle.
     pub start_pressure_pa: f64,
     /// Temperature in the chamber at the start \[K\].
     pub start_temperature_k: f64,
-    /// The longest time to compute \[s\].
+    /// Longest computed time \[s\].
     pub longest_s: f64,
-    /// Samples at least, spread evenly over ln P (V + Vd)^n.
+    /// Least number of samples, spread evenly over ln P (V + Vd)^n.
     pub samples: usize,
 }
 
-/// A moment of a filling.
+/// State at one time of a filling.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Sample {
     /// Time \[s\].
@@ -112,11 +119,11 @@ pub struct Sample {
     pub pressure_pa: f64,
     /// Contraction; 0 for a vessel.
     pub contraction: f64,
-    /// Pull of the muscle \[N\], less than the load on a support; 0 for a vessel.
+    /// Pull of the muscle \[N\], which is less than the load while that is on a support; 0 for a vessel.
     pub force_n: f64,
     /// Volume of the muscle or vessel \[m^3\], without the dead volume.
     pub volume_m3: f64,
-    /// Mass of the gas, that in the dead volume included \[kg\].
+    /// Mass of the gas including the dead volume \[kg\].
     pub mass_kg: f64,
     /// Temperature of the gas \[K\].
     pub temperature_k: f64,
@@ -124,46 +131,49 @@ pub struct Sample {
     pub flow_kg_per_s: f64,
 }
 
-/// What became of the energy, from the start to the end of a filling: work = enthalpy + heat - internal.
+/// Energy balance of a filling from start to end: work = enthalpy + heat - internal.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Energy {
-    /// Carried in by the air, integral of cp T_in dm \[J\]; negative when it flowed out.
+    /// Enthalpy of the incoming air, integral of cp T_in dm \[J\]; negative for outgoing air.
     pub enthalpy_j: f64,
     /// Heat from the wall \[J\].
     pub heat_j: f64,
     /// Change of the internal energy \[J\].
     pub internal_j: f64,
-    /// Work of the gas, integral of P dV: on the load, what stretches, and the atmosphere (p0 dV) \[J\].
+    /// Work of the gas, integral of P dV \[J\]: on the load, on stretched parts, and on the atmosphere (p0
+    /// dV).
     pub work_j: f64,
 }
 
-/// A filling over time.
+/// Time history of a filling.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct History {
-    /// From the start to the end.
+    /// Samples from the start to the end.
     pub samples: Vec<Sample>,
-    /// Gauge pressure at which it ends \[Pa\]: that of a constant supply, else the last one.
+    /// Final gauge pressure \[Pa\]: that of a constant supply, otherwise the last one.
     pub final_pressure_pa: f64,
-    /// Time until 90 % of the change of pressure \[s\]; from the ambient that is 90 % of the final gauge pressure. None if not reached.
+    /// Time until 90 % of the change of pressure \[s\]. If the filling starts from the ambient, that is 90 %
+    /// of the final gauge pressure. None if not reached.
     pub time_90_s: Option<f64>,
-    /// The same for 99 %.
+    /// Time until 99 % of the change of pressure \[s\].
     pub time_99_s: Option<f64>,
-    /// Whether the flow has ended, and with heat the difference of temperatures too (1e-6 of it).
+    /// Whether the flow has ended, and with heat also the difference of temperatures (to 1e-6 of the
+    /// wall temperature).
     pub settled: bool,
-    /// Air that came in \[kg\], negative when it flowed out.
+    /// Mass of air that came in \[kg\]; negative if it flowed out.
     pub air_kg: f64,
-    /// Balance of energy; none when isothermal, where the wall gives whatever it takes.
+    /// Energy balance; none for the isothermal model, in which the wall supplies any heat.
     pub energy: Option<Energy>,
-    /// Integration steps.
+    /// Number of integration steps.
     pub steps: u32,
 }
 
 impl Filling<'_> {
-    /// The time series.
+    /// Computes the time history.
     ///
     /// # Errors
-    /// [`GasError::Number`] for numbers that can't be, [`GasError::Stopped`] where the muscle finds no equilibrium any more (with the reason), or the
-    /// errors of [`Chamber::at`] at the start.
+    /// [`GasError::Number`] for impossible numbers, [`GasError::Stopped`] with the reason if the muscle no
+    /// longer has an equilibrium, or the errors of [`Chamber::at`] at the start.
     pub fn run(&self) -> Result<History, GasError> {
         self.check()?;
         run::run(self)

@@ -1,4 +1,4 @@
-//! Questions to a muscle with its effects: where it pulls, where it may push, from which length its contraction counts, what it carries.
+//! Solves a muscle with its effects: where it pulls, where it may push, its reference length, and its load.
 
 use bulge_fibre::{Approach, FibreError, Given, Problem, Response};
 use bulge_model::{MuscleWithEffects, MuscleWithEffectsError};
@@ -6,12 +6,12 @@ use bulge_muscles::{Pressure, Quantity as _};
 
 use super::{GasError, Load};
 
-/// What is wrong with the muscle, at a pressure.
+/// The error of a muscle at a pressure.
 pub(crate) fn failed(pressure_pa: f64, error: impl Into<MuscleWithEffectsError>) -> GasError {
     GasError::Muscle { pressure_pa, error: Box::new(error.into()) }
 }
 
-/// The muscle with its effects where it pulls.
+/// Solves the muscle with its effects where it pulls.
 pub(crate) fn pulling(
     muscle: &MuscleWithEffects,
     pressure_pa: f64,
@@ -26,7 +26,7 @@ pub(crate) fn pulling(
     Ok(found)
 }
 
-/// Whether shape and force per pressure are the same at any pressure.
+/// Whether shape and force per pressure are independent of the pressure.
 pub(super) fn is_scale_free(muscle: &MuscleWithEffects) -> Result<bool, GasError> {
     let problem = problem(muscle, 1e5)?;
     Ok(problem.is_scale_free() && !muscle.adds_force())
@@ -36,11 +36,12 @@ pub(super) fn problem(muscle: &MuscleWithEffects, pressure_pa: f64) -> Result<Pr
     Problem::new(muscle.parts(), Pressure::pa(pressure_pa)).map_err(|error| failed(pressure_pa, error))
 }
 
-/// The muscle with its effects at a pressure and a contraction, also where it would push.
+/// Solves the muscle with its effects at a pressure and a contraction, even where it would push.
 ///
-/// At low pressure a bladder may carry all of it, so that the fibres are slack and there is no net to solve. From there down the muscle goes on as it was: pull
-/// and volume linear in the pressure, from the lowest pressure at which the fibres are taut (the force of a net on rubber is p times one shape less that of the
-/// rubber).
+/// At low pressure a bladder may carry the whole load, so that the fibres are slack and there is no net to
+/// solve. The muscle is then continued downwards from the lowest pressure at which the fibres are taut, with
+/// pull and volume linear in the pressure. (The force of a net on rubber is p times a shape minus the force
+/// of the rubber.)
 pub(super) fn follow(
     muscle: &MuscleWithEffects,
     pressure_pa: f64,
@@ -54,16 +55,16 @@ pub(super) fn follow(
     })
 }
 
-/// A muscle whose fibres are slack at this pressure is not looked at any more \[Pa\].
+/// Pressure above which slack fibres are no longer followed \[Pa\].
 const HIGHEST_SLACK_PA: f64 = 1e6;
-/// Where the search for taut fibres begins \[Pa\].
+/// Pressure at which the search for taut fibres begins \[Pa\].
 const LOWEST_TAUT_PA: f64 = 1e3;
-/// Its last steps, each twice as near.
+/// Halvings at the end of that search.
 const HALVINGS: u32 = 20;
-/// Between the two pressures of the continuation, relative.
+/// Relative distance between the two pressures of the continuation.
 const APART: f64 = 1e-3;
 
-/// A muscle with a bladder at the lowest pressure at which its fibres are taut, and a little above.
+/// A muscle with a bladder at the lowest pressure at which its fibres are taut, and slightly above.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Lowest {
     pressure_pa: f64,
@@ -72,11 +73,11 @@ pub(super) struct Lowest {
 }
 
 impl Lowest {
-    /// At a contraction; none where the fibres are taut from the beginning, or never.
+    /// Finds this state at a contraction; none if the fibres are taut at every pressure, or never.
     pub(super) fn of(muscle: &MuscleWithEffects, contraction: f64, approach: Approach) -> Option<Self> {
         muscle.parts().rubber?;
         let at = |p: f64| taut(muscle, p, contraction, approach);
-        // Upwards until it works, then halving between.
+        // The pressure is raised until a solution exists, then bisected.
         let (mut low, mut high) = (0.0, LOWEST_TAUT_PA);
         while at(high).is_err() {
             (low, high) = (high, 2.0 * high);
@@ -95,12 +96,12 @@ impl Lowest {
         Some(Self { pressure_pa: high, one: at(high).ok()?, other: at((1.0 + APART) * high).ok()? })
     }
 
-    /// Whether it is above a pressure.
+    /// Whether the lowest pressure with taut fibres is above a pressure.
     pub(super) const fn is_above(&self, pressure_pa: f64) -> bool {
         pressure_pa < self.pressure_pa
     }
 
-    /// Continued down to a pressure.
+    /// Extrapolates down to a pressure.
     pub(super) fn down_to(&self, pressure_pa: f64) -> Response {
         let part = (pressure_pa - self.pressure_pa) / (APART * self.pressure_pa);
         let (one, other) = (&self.one, &self.other);
@@ -115,7 +116,7 @@ impl Lowest {
     }
 }
 
-/// The muscle with its effects at a contraction, also where it would push.
+/// Solves the muscle with its effects at a contraction, even where it would push.
 pub(crate) fn taut(
     muscle: &MuscleWithEffects,
     pressure_pa: f64,
@@ -154,27 +155,30 @@ mod tests {
         MuscleWithEffects::new(&from_toml(RUBBER, "m.toml").unwrap(), &[]).unwrap()
     }
 
-    /// Stiff rubber at 100 Pa: no net to solve, and yet a muscle that pushes; continuous and rising in the pressure through where the fibres are taut.
+    /// Stiff rubber at 100 Pa: there is no net to solve, and the muscle pushes. The force is continuous and
+    /// rises with the pressure through the point where the fibres become taut.
     #[test]
     fn slack_fibres_are_passed() {
         let muscle = rubber();
         let force = |p: f64| follow(&muscle, p, 0.05, Approach::Auto).unwrap().force_n;
         assert!(taut(&muscle, 100.0, 0.05, Approach::Auto).is_err() && force(100.0) < 0.0);
         let lowest = Lowest::of(&muscle, 0.05, Approach::Auto).unwrap();
-        // The chamber's way and this one are the same.
+        // The chamber gives the same result.
         assert!((lowest.down_to(100.0).force_n - force(100.0)).abs() < 1e-12 && lowest.is_above(100.0));
         let mut before = force(100.0);
         for k in 1..=60 {
             let p = 100.0 + 2e3 * f64::from(k);
             let now = force(p);
-            // The slope of a net: the cylinder's p pi r0^2 (3 (1 - e)^2 cos^2 - 1)/sin^2 is 0.0028 N/Pa.
+            // The slope of a net: that of the cylinder, p pi r0^2 (3 (1 - e)^2 cos^2 - 1)/sin^2, is 0.0028
+            // N/Pa.
             let slope = (now - before) / 2e3;
             assert!((1e-3..6e-3).contains(&slope), "{p} {slope}");
             before = now;
         }
     }
 
-    /// A stroke begins and ends where the muscle pulls the load; a chamber goes from no pressure to all.
+    /// A stroke begins and ends where the muscle carries the load; a chamber covers all pressures from zero
+    /// on.
     #[test]
     fn muscles_with_rubber_lift() {
         let muscle = rubber();

@@ -1,15 +1,19 @@
-//! The flow of a valve, an orifice or a fitting after ISO 6358.
+//! The flow of a valve, an orifice or a fitting according to ISO 6358.
 //!
 //! ```text
 //! m' = C P1 rho0 sqrt(T0/T1)                                        P2/P1 <= b    (choked)
 //! m' = C P1 rho0 sqrt(T0/T1) sqrt(1 - ((P2/P1 - b)/(1 - b))^2)      P2/P1 >  b    (subsonic)
 //! ```
-//! P1, T1 upstream, P2 downstream, both pressures absolute; C sonic conductance \[m^3/(s Pa)\] (1 l/(s bar) = 1e-8), b critical pressure ratio, 0 <= b < 1.
-//! Reference atmosphere (ANR, ISO 8778): rho0 = 1.185 kg/m^3, T0 = 293.15 K (air of 65 % humidity; dry air of 100 kPa has 1.1884 kg/m^3).
+//! P1 and T1 are upstream, P2 downstream; both pressures are absolute. C is the sonic conductance \[m^3/(s
+//! Pa)\] (1 l/(s bar) = 1e-8), and b the critical pressure ratio, 0 <= b < 1. The reference atmosphere (ANR,
+//! ISO 8778) has rho0 = 1.185 kg/m^3 and T0 = 293.15 K (air of 65 % humidity; dry air at 100 kPa has 1.1884
+//! kg/m^3).
 //!
-//! Source: ISO 6358-1:2013, with its subsonic index at 0.5 (the ellipse of ISO 6358:1989). Left out: other indices and a cracking pressure.
+//! Source: ISO 6358-1:2013 with a subsonic index of 0.5 (the ellipse of ISO 6358:1989). Neglected: other
+//! indices and a cracking pressure.
 //!
-//! The slope of m' by P2 is infinite at P2 = P1. Nothing is smoothed here; [`Filling`](super::Filling) integrates in a variable in which the end is regular.
+//! The derivative of m' with respect to P2 is infinite at P2 = P1. Nothing is smoothed here;
+//! [`Filling`](super::Filling) integrates in a variable in which the end is regular.
 
 use std::f64::consts::PI;
 
@@ -22,7 +26,7 @@ pub const REFERENCE_DENSITY: f64 = 1.185;
 /// Temperature of the reference atmosphere \[K\].
 pub const REFERENCE_TEMPERATURE_K: f64 = 293.15;
 
-/// A resistance to flow after ISO 6358.
+/// A flow resistance according to ISO 6358.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Orifice {
     conductance_m3_per_s_pa: f64,
@@ -30,7 +34,8 @@ pub struct Orifice {
 }
 
 impl Orifice {
-    /// From the sonic conductance C \[m^3/(s Pa)\] and the critical pressure ratio b, as data sheets state them.
+    /// An orifice with the sonic conductance C \[m^3/(s Pa)\] and the critical pressure ratio b of a data
+    /// sheet.
     ///
     /// # Errors
     /// [`GasError::Number`] unless C > 0 and 0 <= b < 1.
@@ -46,7 +51,8 @@ impl Orifice {
         Ok(Self { conductance_m3_per_s_pa, critical_ratio })
     }
 
-    /// A well-rounded nozzle of the narrowest section `area_m2`, from isentropic flow, times a discharge coefficient (1 for none).
+    /// A well-rounded nozzle with the narrowest section `area_m2`. Isentropic flow is multiplied by a
+    /// discharge coefficient (1 for an ideal nozzle).
     ///
     /// ```text
     /// b = (2/(gamma + 1))^(gamma/(gamma - 1)) = 0.528
@@ -73,7 +79,8 @@ impl Orifice {
         )
     }
 
-    /// A sharp hole of this diameter \[m\]: [`Orifice::nozzle`] with the discharge coefficient 0.8, a rough guess where no data sheet is at hand.
+    /// A sharp-edged hole of this diameter \[m\]: [`Orifice::nozzle`] with a discharge coefficient of 0.8, a
+    /// rough guess if there is no data sheet.
     ///
     /// # Errors
     /// [`GasError::Number`] unless the diameter is positive.
@@ -93,7 +100,7 @@ impl Orifice {
         self.critical_ratio
     }
 
-    /// Choked mass flow from absolute pressure \[Pa\] and temperature \[K\] upstream \[kg/s\].
+    /// Choked mass flow \[kg/s\] at an upstream absolute pressure \[Pa\] and temperature \[K\].
     #[must_use]
     pub fn choked_flow(&self, upstream_pa: f64, upstream_k: f64) -> f64 {
         self.conductance_m3_per_s_pa
@@ -102,12 +109,13 @@ impl Orifice {
             * (REFERENCE_TEMPERATURE_K / upstream_k).sqrt()
     }
 
-    /// x = (P2/P1 - b)/(1 - b) of a ratio of pressures: below 0 the flow is choked, at 1 it ends.
+    /// x = (P2/P1 - b)/(1 - b) of a pressure ratio. The flow is choked below 0 and ends at 1.
     pub(super) fn opening(&self, ratio: f64) -> f64 {
         (ratio - self.critical_ratio) / (1.0 - self.critical_ratio)
     }
 
-    /// Mass flow from side 1 to side 2 \[kg/s\], negative the other way; absolute pressures \[Pa\] >= 0, not both 0, temperatures \[K\] > 0.
+    /// Mass flow from side 1 to side 2 \[kg/s\], negative in the other direction. Pressures are absolute
+    /// \[Pa\], >= 0 and not both 0; temperatures \[K\] are > 0.
     ///
     /// # Errors
     /// [`GasError::Number`] outside these ranges.
@@ -122,7 +130,7 @@ impl Orifice {
             return Ok(0.0);
         }
         let x = self.opening(down / up).max(0.0);
-        // (1 - x)(1 + x) keeps its digits next to x = 1.
+        // (1 - x)(1 + x) keeps its digits near x = 1.
         Ok(sign * self.choked_flow(up, temperature) * ((1.0 - x) * (1.0 + x)).max(0.0).sqrt())
     }
 }
@@ -138,14 +146,16 @@ mod tests {
 
     #[test]
     fn flow_of_a_data_sheet() {
-        // C is the volume at the reference atmosphere per time and upstream pressure: 2 l/(s bar) at 7 bar absolute and 20 C is 14 l/s ANR.
+        // C is the volume at the reference atmosphere per time and upstream pressure: 2 l/(s bar) at 7 bar
+        // absolute and 20 C gives 14 l/s ANR.
         let flow = valve().flow([7e5, 293.15], [1e5, 293.15]).unwrap();
         assert!((flow / 1.185 - 14e-3).abs() < 1e-15);
-        // Hotter air is thinner: by sqrt(T0/T1).
+        // Hotter air is less dense: the factor is sqrt(T0/T1).
         let hot = valve().flow([7e5, 4.0 * 293.15], [1e5, 293.15]).unwrap();
         assert!((hot / flow - 0.5).abs() < 1e-15);
-        // Half-way between b and 1: sqrt(1 - 1/4). And 6 to 5 bar gauge at b = 0.3, a nominal flow as data sheets state it, by hand:
-        // x = (6.01325/7.01325 - 0.3)/0.7 = 0.7963..., C P1 sqrt(1 - x^2) = 8.486 l/s.
+        // Half-way between b and 1 the factor is sqrt(1 - 1/4). From 6 to 5 bar gauge at b = 0.3, a nominal
+        // flow as stated in data sheets, by hand: x = (6.01325/7.01325 - 0.3)/0.7 = 0.7963..., C P1 sqrt(1 -
+        // x^2) = 8.486 l/s.
         let half = valve().flow([7e5, 293.15], [0.65 * 7e5, 293.15]).unwrap();
         assert!((half / flow - 0.75_f64.sqrt()).abs() < 1e-14);
         let nominal = valve().flow([701_325.0, 293.15], [601_325.0, 293.15]).unwrap();
@@ -159,7 +169,8 @@ mod tests {
         assert!((valve().flow(two, one).unwrap() + there).abs() < 1e-18 && there > 0.0);
         assert_eq!(valve().flow(one, [5e5, 250.0]).unwrap().to_bits(), 0);
         assert_eq!(valve().flow([0.0, 300.0], [0.0, 300.0]).unwrap().to_bits(), 0);
-        // Near equal pressures m' grows as the root of the difference: sqrt(2 (1 - r)/(1 - b)), to order (1 - r).
+        // Near equal pressures m' grows like the root of the difference: sqrt(2 (1 - r)/(1 - b)), to order (1
+        // - r).
         for gap in [1e-6, 1e-8] {
             let flow = valve().flow([5e5, 293.15], [5e5 * (1.0 - gap), 293.15]).unwrap();
             let root = valve().choked_flow(5e5, 293.15) * (2.0 * gap / 0.7_f64).sqrt();
@@ -167,7 +178,7 @@ mod tests {
         }
     }
 
-    /// The law of de Saint-Venant and Wantzel for a nozzle, which the ellipse of the standard stands for.
+    /// The law of de Saint-Venant and Wantzel for a nozzle, which the ellipse of the standard approximates.
     #[test]
     fn a_nozzle_follows_isentropic_flow() {
         let nozzle = Orifice::nozzle(1e-6, 1.0).unwrap();
@@ -181,7 +192,7 @@ mod tests {
             let bound = if ratio < 0.528 { 1e-12 } else { 6e-3 };
             assert!((flow / exact - 1.0).abs() < bound, "{ratio}: {}", flow / exact);
         }
-        // The usual number: 0.0404 A P/sqrt(T).
+        // The usual factor: 0.0404 A P/sqrt(T).
         assert!((nozzle.choked_flow(1e5, 300.0) * 300_f64.sqrt() / 0.1 - 0.0404).abs() < 1e-4);
         let hole = Orifice::hole(2e-3).unwrap();
         let ratio = hole.conductance_m3_per_s_pa() / nozzle.conductance_m3_per_s_pa();

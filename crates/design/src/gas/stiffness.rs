@@ -1,15 +1,18 @@
-//! The stiffness of a closed muscle, split into what its geometry and what its gas gives.
+//! The stiffness of a closed muscle, split into the contributions of its geometry and of its gas.
 //!
 //! ```text
 //! K = dF/dl = F_l + F_p dp/dl,      dp/dl = -n P V_l/(V + Vd + n P V_p)
 //! ```
-//! Subscripts: derivatives by the length at constant pressure and by the pressure at constant length. F_l is `Response::stiffness_n_per_m`, V and its
-//! derivatives are those of `volume_m3`. With Vd = 0, n = 1 or 1.4 and p0 = 101325 Pa, K is `Response::stiffness_isothermal_n_per_m` or
-//! `_adiabatic_n_per_m`: these take V and V_l from the polygonal volume, but it is a constant part of the circular one, which cancels in dp/dl. With
-//! dead volume it doesn't: there it matters that V is the volume that holds the gas. Vd -> infinity: constant pressure, K = F_l.
+//! Subscripts denote derivatives with respect to the length at constant pressure and to the pressure at
+//! constant length. F_l is `Response::stiffness_n_per_m`; V and its derivatives are those of `volume_m3`.
+//! With Vd = 0, n = 1 or 1.4 and p0 = 101325 Pa, K is `Response::stiffness_isothermal_n_per_m` or
+//! `_adiabatic_n_per_m`. These take V and V_l from the polygonal volume, but it is a constant fraction of the
+//! circular one, which cancels in dp/dl. With dead volume it doesn't cancel, and V must be the volume that
+//! the gas fills. In the limit Vd -> infinity the pressure is constant and K = F_l.
 //!
-//! F_p and V_p are exact (`Problem::gradient`, or F/p and 0 where nothing but the pressure shapes the muscle). What effects of the load add to F_p is a
-//! central difference over 1e-3 of the pressure.
+//! F_p and V_p are exact (`Problem::gradient`, or F/p and 0 if nothing but the pressure shapes the muscle).
+//! The contribution to F_p of effects that add to the force is a central difference over 1e-3 of the
+//! pressure.
 
 use bulge_muscles::Quantity as _;
 use serde::Serialize;
@@ -18,30 +21,30 @@ use super::GasError;
 use super::closed::{ClosedMuscle, ClosedState};
 use super::muscle::{failed, follow, problem};
 
-/// Part of the pressure over which the force of added effects is differenced.
+/// Relative pressure step for the force of added effects.
 const DIFFERENCE: f64 = 1e-3;
 
 /// The stiffness of a closed muscle.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct StiffnessSplit {
-    /// F_l, at constant pressure \[N/m\].
+    /// Contribution F_l of the geometry, at constant pressure \[N/m\].
     pub geometry_n_per_m: f64,
-    /// F_p dp/dl, of the enclosed gas \[N/m\].
+    /// Contribution F_p dp/dl of the enclosed gas \[N/m\].
     pub gas_n_per_m: f64,
     /// Their sum, dF/dl of the closed muscle \[N/m\].
     pub total_n_per_m: f64,
-    /// F_p, pull per pressure at constant length \[m^2\].
+    /// F_p, derivative of the pull with respect to the pressure at constant length \[m^2\].
     pub force_by_pressure_m2: f64,
-    /// V_p at constant length \[m^3/Pa\]; 0 where nothing stretches.
+    /// V_p at constant length \[m^3/Pa\]; 0 if nothing stretches.
     pub volume_by_pressure_m3_per_pa: f64,
-    /// V_l at constant pressure \[m^2\], of the volume that holds the gas.
+    /// V_l at constant pressure \[m^2\], of the volume that the gas fills.
     pub volume_by_length_m2: f64,
     /// dp/dl of the closed muscle \[Pa/m\].
     pub pressure_by_length_pa_per_m: f64,
 }
 
 impl ClosedMuscle<'_> {
-    /// The stiffness at a contraction: [`ClosedMuscle::at_contraction`], then its split.
+    /// Stiffness at a contraction: [`ClosedMuscle::at_contraction`], then the split.
     ///
     /// # Errors
     /// Those of [`ClosedMuscle::at_contraction`].
@@ -49,7 +52,7 @@ impl ClosedMuscle<'_> {
         self.split(&self.at_contraction(contraction)?)
     }
 
-    /// The stiffness at a state of this muscle.
+    /// Stiffness at a state of this muscle.
     ///
     /// # Errors
     /// [`GasError::Muscle`] if the derivatives can't be computed.
@@ -98,7 +101,7 @@ impl ClosedMuscle<'_> {
         Ok(by)
     }
 
-    /// Unpressurised length from which contractions count \[m\].
+    /// Unpressurised length to which contractions refer \[m\].
     #[must_use]
     pub fn rest_length_m(&self) -> f64 {
         self.muscle.muscle().length().si()
@@ -158,13 +161,13 @@ mod tests {
             closed.with_dead_volume(dead).unwrap().stiffness(0.1).unwrap()
         };
         let (large, larger) = (split(1.0), split(10.0));
-        // The gas part goes with 1/Vd.
+        // The contribution of the gas is proportional to 1/Vd.
         assert!((large.gas_n_per_m / larger.gas_n_per_m - 10.0).abs() < 0.01);
         assert!((larger.total_n_per_m / larger.geometry_n_per_m - 1.0).abs() < 1e-3);
         assert!(split(0.0).gas_n_per_m > 10.0 * split(5e-3).gas_n_per_m);
     }
 
-    /// An effect whose force goes with the pressure: F_p gains its slope.
+    /// An effect whose force depends on the pressure adds its slope to F_p.
     #[test]
     fn effects_that_depend_on_the_pressure_take_part() {
         let text = "[effects.stiff]\ntitle = \"x\"\nforce = \"k * p * p / p_ref\"\nparameters.k = { unit = \"mm^2\", typical = \"10 mm^2\", low = \"0 mm^2\", high = \"1000 mm^2\" }\nparameters.p_ref = { unit = \"bar\", typical = \"1 bar\", low = \"0.1 bar\", high = \"10 bar\" }\n";

@@ -1,4 +1,4 @@
-//! What is around the volume of a muscle: tubes and fittings that hold gas as well, and the ambient pressure.
+//! The surroundings of a muscle: dead volume of tubes and fittings, and ambient pressure.
 
 use super::{GasError, at_least, positive};
 
@@ -12,7 +12,7 @@ pub(crate) struct Surroundings {
 }
 
 impl Surroundings {
-    /// The standard atmosphere, and no dead volume.
+    /// The standard atmosphere without dead volume.
     pub(crate) const STANDARD: Self = Self { dead_volume_m3: 0.0, ambient_pa: bulge_fibre::AMBIENT_PRESSURE };
 
     pub(super) fn with_dead_volume(self, volume_m3: f64) -> Result<Self, GasError> {
@@ -25,12 +25,12 @@ impl Surroundings {
         Ok(Self { ambient_pa: positive("the ambient pressure [Pa]", pressure_pa)?, ..self })
     }
 
-    /// Absolute pressure \[Pa\] of a gauge pressure \[Pa\].
+    /// Absolute pressure \[Pa\] at a gauge pressure \[Pa\].
     pub(super) const fn absolute(&self, pressure_pa: f64) -> f64 {
         pressure_pa + self.ambient_pa
     }
 
-    /// Volume of the gas \[m^3\] around a volume \[m^3\].
+    /// Volume of the gas \[m^3\] for a volume of the muscle \[m^3\].
     pub(crate) const fn gas_volume(&self, volume_m3: f64) -> f64 {
         volume_m3 + self.dead_volume_m3
     }

@@ -1,4 +1,4 @@
-//! Joint files: TOML into a joint, with the place and the cure for everything that is wrong.
+//! Joint files: reads TOML into a joint. Every error states the place of the mistake and how to correct it.
 
 use bulge_effects::{Catalogue, known};
 use bulge_fibre::Approach;
@@ -9,7 +9,7 @@ use std::path::Path;
 
 use super::{FourBar, Joint, JointMuscle, Linkage, Side};
 
-/// What messages call the file.
+/// Name of the file in messages.
 const KIND: FileKind = FileKind { name: "joint", file: "joint.toml", line: "radius = \"40 mm\"" };
 
 /// A joint file with every key.
@@ -44,7 +44,7 @@ form = \"fastest\"                # or \"smallest\", \"splines\", \"chebyshev\"
 checks = 131072                 # points off the grid that certify it
 ";
 
-/// Keys of the file, with an example of each.
+/// Keys of the file, each with an example.
 const TOP: Keys = &[
     ("name", "name = \"knee\""),
     ("muscle", "muscle = \"ppam-2-r16\""),
@@ -69,21 +69,23 @@ const TOP: Keys = &[
     ("outputs", "outputs = [\"torque\", \"stiffness\"]"),
     ("table", "[table]"),
 ];
-/// What is checked of a joint file.
+/// Extent of the checks of a joint file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Checks {
-    /// Both muscles pull over the whole of its ranges, as maps and tables need it.
+    /// Both muscles must pull over the whole of the ranges, as maps and tables require.
     Everywhere,
-    /// Its linkage alone: a question at single angles and pressures is checked when it is asked.
+    /// Only the linkage is checked. Single angles and pressures are checked when they are used.
     Linkage,
 }
 
 impl Joint {
-    /// Reads a joint file; [`JOINT_EXAMPLE`] has every key. The muscle files that it names stand beside it. `more` reads what the file says of other things:
-    /// the outputs and the table that are wanted of it.
+    /// Reads a joint file; [`JOINT_EXAMPLE`] shows every key. The muscle files that it names are looked up
+    /// beside it. `more` reads other settings of the file, such as the outputs and the table that are
+    /// requested.
     ///
     /// # Errors
-    /// If the file can't be read, is larger than 1 MiB, is not UTF-8 or is no valid joint, or if a muscle can't be read. The message is complete.
+    /// If the file can't be read, is larger than 1 MiB, is not UTF-8 or is no valid joint, or if a muscle
+    /// can't be read. The message is complete.
     pub fn read<T>(
         path: &Path,
         checks: Checks,
@@ -92,8 +94,8 @@ impl Joint {
         Self::from_toml(&KIND.read(path)?, &path.display().to_string(), path.parent(), checks, more)
     }
 
-    /// Reads a joint from TOML text; `origin` is what messages call the text, usually a file name, and `folder` is where the muscle files lie, if
-    /// not in the current one.
+    /// Reads a joint from TOML text. Messages call the text `origin`, usually a file name. The muscle files
+    /// are looked up in `folder`, or in the current folder if none is given.
     ///
     /// ```
     /// use bulge_design::joint::{Checks, JOINT_EXAMPLE, Joint};
@@ -104,7 +106,8 @@ impl Joint {
     /// ```
     ///
     /// # Errors
-    /// With the place and the cure, if the text is no valid joint, a muscle can't be read, or the angles leave the domain of a muscle.
+    /// If the text is no valid joint, a muscle can't be read, or the angles leave the domain of a muscle. The
+    /// error states the place and the correction.
     pub fn from_toml<T>(
         text: &str,
         origin: &str,
@@ -159,7 +162,7 @@ fn muscles(
     Ok([one(Side::Agonist, agonist, contractions[0])?, one(Side::Antagonist, antagonist, contractions[1])?])
 }
 
-/// The keys of both muscles: one for both, or one for each.
+/// Reads the keys of the muscles: one key for both, or one for each.
 fn each(
     settings: &Settings<'_>,
     both: &'static str,
@@ -181,7 +184,7 @@ fn each(
     }
 }
 
-/// Keys of a pulley, of a lever, and of a four-bar linkage beside these.
+/// Keys of a pulley, of a lever, and the additional ones of a four-bar linkage.
 const PULLEY: &[&str] = &["radius"];
 const LEVER: &[&str] = &["arm", "base", "lever_angle"];
 const FOUR_BAR: &[&str] = &["ground", "crank", "coupler", "rocker", "rocker_angle", "crossed"];
@@ -269,7 +272,8 @@ fn check(settings: &Settings<'_>, joint: &Joint) -> Result<(), FileError> {
     check_lever(settings, joint)
 }
 
-/// Links that don't close, or whose crank stands still, for either muscle: the antagonist's are the mirror image.
+/// Refuses links that don't close or whose crank stands still, for either muscle. The links of the antagonist
+/// are the mirror image.
 fn check_bars(settings: &Settings<'_>, joint: &Joint) -> Result<(), FileError> {
     let Linkage::FourBar { bar, .. } = joint.linkage else { return Ok(()) };
     let [low, high] = joint.angle;
@@ -277,14 +281,14 @@ fn check_bars(settings: &Settings<'_>, joint: &Joint) -> Result<(), FileError> {
     let Some(angle) = bar.fault([-most, most]) else { return Ok(()) };
     let what = format!(
         "the four-bar linkage of one of the muscles doesn't close, or stands at a dead centre, at the angle {:.4} deg",
-        // Without the sign of a zero.
+        // Removes the sign of a negative zero.
         angle.to_degrees() + 0.0
     );
     let instead = "write a narrower range of `angle`, or other lengths of the links";
     Err(settings.error(settings.value_span("angle"), what, instead))
 }
 
-/// A lever that is turned through its dead centre pulls the other way from there on.
+/// Refuses a lever that passes its dead centre, beyond which it turns the other way.
 fn check_lever(settings: &Settings<'_>, joint: &Joint) -> Result<(), FileError> {
     let Some([lever_angle, distance]) = joint.linkage.lever() else { return Ok(()) };
     let room = lever_angle.min(PI - lever_angle);
@@ -325,20 +329,20 @@ fn check_lever(settings: &Settings<'_>, joint: &Joint) -> Result<(), FileError> 
     Ok(())
 }
 
-/// Refuses angles at which a muscle has no length to pull with.
+/// Refuses angles at which a muscle has no valid length.
 fn check_muscle(settings: &Settings<'_>, joint: &Joint, muscle: &JointMuscle) -> Result<(), FileError> {
     let name = muscle.side.name();
     let refused =
         |what: String, instead: String| Err(settings.error(settings.value_span("angle"), what, instead));
     let contraction = |angle: f64| muscle.contraction(angle);
     let angle_at = |contraction| muscle.angle_at(contraction, joint.angle);
-    // The angle at which it is longest comes first.
+    // The angle at which the muscle is longest comes first.
     let mut ends = joint.angle;
     if muscle.side == Side::Antagonist {
         ends.reverse();
     }
     let [longest, shortest] = ends;
-    // "before": towards the angles where it is shorter, or longer.
+    // Direction of the angles at which the muscle is shorter, and of those at which it is longer.
     let [above, below] = if muscle.side == Side::Agonist { ["above", "below"] } else { ["below", "above"] };
     if muscle.is_singular && contraction(longest) <= 0.0 {
         let angle = angle_at(0.0).to_degrees();
@@ -356,7 +360,7 @@ fn check_muscle(settings: &Settings<'_>, joint: &Joint, muscle: &JointMuscle) ->
             Err(error) => return refused(format!("the {name} at {pressure} Pa: {error}"), OTHER.to_owned()),
         };
         if contraction(shortest) > limit {
-            // Where even the other end is too short, no angle helps.
+            // If the muscle is too short even at the other end, no angle helps.
             let angle = angle_at(limit).to_degrees();
             let what = format!(
                 "the {name} reaches its contraction limit at {pressure} Pa, {:.4} %, at the angle {angle:.4} deg: beyond it the muscle doesn't pull",
@@ -375,5 +379,5 @@ fn check_muscle(settings: &Settings<'_>, joint: &Joint, muscle: &JointMuscle) ->
     Ok(())
 }
 
-/// What helps where a muscle has no equilibrium.
+/// Advice if a muscle has no equilibrium.
 const OTHER: &str = "write a narrower range of `angle` or `pressure`, or another contraction";

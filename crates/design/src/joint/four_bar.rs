@@ -1,4 +1,4 @@
-//! A four-bar linkage between the crank that a muscle turns and the joint.
+//! A four-bar linkage between the joint and a crank on which a muscle pulls.
 //!
 //! ```text
 //! crank a on the pivot O, joint's axis at (d, 0), rocker c on the moving link at psi = psi_0 + theta, coupler b between their ends:
@@ -6,28 +6,30 @@
 //! P(psi) = (d + c cos(psi), c sin(psi))        g = a^2 + P.P - 2 a (Px cos(phi) + Py sin(phi)) - b^2 = 0
 //! phi'  = -g_psi/g_phi                         phi'' = -(g_psipsi + 2 g_phipsi phi' + g_phiphi phi'^2)/g_phi
 //! ```
-//! The crank's turn chi = phi - phi(psi_0) counts positive where the joint's angle rises, so that a positive angle shortens the agonist.
+//! The turn of the crank, chi = phi - phi(psi_0), is positive for rising angles of the joint, so that a
+//! positive angle shortens the agonist.
 
 use serde::Serialize;
 
 /// Links of a four-bar linkage.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct FourBar {
-    /// From the crank's pivot to the joint's axis, d \[m\].
+    /// Distance from the pivot of the crank to the axis of the joint, d \[m\].
     pub ground: f64,
     /// Length of the crank, a \[m\].
     pub crank: f64,
     /// Length of the coupler, b \[m\].
     pub coupler: f64,
-    /// From the joint's axis to the coupler's end on the moving link, c \[m\].
+    /// Distance from the axis of the joint to the end of the coupler on the moving link, c \[m\].
     pub rocker: f64,
-    /// Angle psi_0 of the rocker against the line from the crank's pivot through the joint's axis, at the joint's angle 0 \[rad\].
+    /// Angle psi_0 at the joint angle 0 between the rocker and the line from the pivot of the crank through
+    /// the axis of the joint \[rad\].
     pub rocker_angle: f64,
-    /// Which of the two ways in which the links close: with the coupler crossing that line.
+    /// Selects one of the two ways in which the links close: the one in which the coupler crosses that line.
     pub is_crossed: bool,
 }
 
-/// The crank's turn with its derivatives by the joint's angle.
+/// Turn of the crank and its derivatives with respect to the joint angle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Turn {
     /// chi \[rad\].
@@ -38,18 +40,18 @@ pub(super) struct Turn {
     pub(super) bend: f64,
 }
 
-/// Smallest sine between crank and coupler: nearer to their dead centre the links don't carry.
+/// Smallest sine of the angle between crank and coupler. Closer to their dead centre the links can't carry.
 const LEAST_SINE: f64 = 1e-3;
 
 impl FourBar {
-    /// phi, phi' and phi'' at psi; `None` where the links don't reach, or at a dead centre.
+    /// phi, phi' and phi'' at psi; `None` if the links don't reach, or at a dead centre.
     fn crank_at(&self, psi: f64) -> Option<[f64; 3]> {
         let Self { ground: d, crank: a, coupler: b, rocker: c, is_crossed, .. } = *self;
         let (sin, cos) = psi.sin_cos();
         let (p, p1, p2) = ([d + c * cos, c * sin], [-c * sin, c * cos], [-c * cos, -c * sin]);
         let square = p[0] * p[0] + p[1] * p[1];
         let between = (a * a + square - b * b) / (2.0 * a * square.sqrt());
-        // Nor is a NaN a cosine.
+        // A NaN is refused as well.
         if between.is_nan() || between.abs() >= 1.0 {
             return None;
         }
@@ -60,7 +62,7 @@ impl FourBar {
         let across = |v: [f64; 2]| v[0] * s - v[1] * k;
         let dot = |v: [f64; 2], w: [f64; 2]| v[0] * w[0] + v[1] * w[1];
         let g_phi = 2.0 * a * across(p);
-        // 2 a |P| sin(phi - beta) is 2 a b times the sine between crank and coupler.
+        // 2 a |P| sin(phi - beta) equals 2 a b times the sine of the angle between crank and coupler.
         if g_phi.abs() < 2.0 * a * b * LEAST_SINE {
             return None;
         }
@@ -72,18 +74,19 @@ impl FourBar {
         Some([phi, first, second])
     }
 
-    /// The crank's turn at a joint's angle \[rad\]; `None` where the links don't close.
+    /// Turn of the crank at a joint angle \[rad\]; `None` if the links don't close.
     pub(super) fn turn(&self, angle: f64) -> Option<Turn> {
         let [rest, ratio, _] = self.crank_at(self.rocker_angle)?;
         let [phi, first, second] = self.crank_at(self.rocker_angle + angle)?;
         let sign = ratio.signum();
-        // From the angle of rest without a whole turn between them.
+        // Relative to the angle at rest, reduced to less than half a turn.
         let turn =
             (phi - rest + std::f64::consts::PI).rem_euclid(std::f64::consts::TAU) - std::f64::consts::PI;
         Some(Turn { angle: sign * turn, ratio: sign * first, bend: sign * second })
     }
 
-    /// The first angle of a range, from 0 outwards, at which the links don't close or the crank stands still; `None` if they always work.
+    /// The first angle of a range, from 0 outwards, at which the links don't close or the crank stands still;
+    /// `None` if there is none.
     pub(super) fn fault(&self, [low, high]: [f64; 2]) -> Option<f64> {
         const STEPS: u32 = 400;
         let works = |angle: f64| self.turn(angle).is_some_and(|turn| turn.ratio > 1e-3);
@@ -109,7 +112,8 @@ mod tests {
         is_crossed: false,
     };
 
-    /// The ends of crank and rocker stay as far apart as the coupler is long, on both branches; slopes against differences.
+    /// On both branches, the distance between the ends of crank and rocker equals the coupler length; slopes
+    /// are compared with differences.
     #[test]
     fn the_links_keep_their_lengths() {
         for is_crossed in [false, true] {
@@ -133,7 +137,7 @@ mod tests {
         }
     }
 
-    /// A parallelogram turns the crank as the joint turns.
+    /// In a parallelogram the crank turns as the joint does.
     #[test]
     fn a_parallelogram_is_no_gear() {
         let bar = FourBar {

@@ -1,21 +1,22 @@
-//! How muscles act on a joint: a pulley, levers with the law of cosines, or either of them on the crank of a four-bar linkage.
+//! Geometry of muscles on a joint: a pulley, levers by the law of cosines, or either of them on the crank of
+//! a four-bar linkage.
 
 use serde::Serialize;
 
 use super::four_bar::{FourBar, Turn};
 
-/// Which of the two muscles.
+/// One of the two muscles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Side {
-    /// The one that a positive angle shortens.
+    /// The muscle that a positive angle shortens.
     Agonist,
-    /// The one that a positive angle lengthens.
+    /// The muscle that a positive angle lengthens.
     Antagonist,
 }
 
 impl Side {
-    /// In words.
+    /// Its name in words.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -24,7 +25,7 @@ impl Side {
         }
     }
 
-    /// 1 or -1: the sign of the angle that shortens it.
+    /// Sign of the angle that shortens the muscle: 1 or -1.
     pub(super) const fn sign(self) -> f64 {
         match self {
             Self::Agonist => 1.0,
@@ -33,7 +34,8 @@ impl Side {
     }
 }
 
-/// What turns the pull of both muscles into torques; the antagonist's is the mirror image of the agonist's.
+/// Linkage that converts the pull of both muscles into torques. That of the antagonist is the mirror image of
+/// that of the agonist.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case", tag = "kind")]
 pub enum Linkage {
@@ -42,37 +44,37 @@ pub enum Linkage {
         /// Its radius r \[m\].
         radius: f64,
     },
-    /// Levers: l = sqrt(a^2 + b^2 - 2 a b cos(phi)) less a rigid rest, phi = phi(0) - theta.
+    /// Levers: l = sqrt(a^2 + b^2 - 2 a b cos(phi)) minus a rigid part, phi = phi(0) - theta.
     Lever {
-        /// From the joint's axis to the attachment on the moving link, a \[m\].
+        /// Distance from the axis of the joint to the attachment on the moving link, a \[m\].
         arm: f64,
-        /// From the joint's axis to the attachment on the base, b \[m\].
+        /// Distance from the axis of the joint to the attachment on the base, b \[m\].
         base: f64,
-        /// Angle phi(0) between both at the joint's angle 0 \[rad\].
+        /// Angle phi(0) between both at the joint angle 0 \[rad\].
         lever_angle: f64,
     },
-    /// A four-bar linkage from the joint to a crank, on which the muscle pulls.
+    /// A four-bar linkage from the joint to a crank on which the muscle pulls.
     FourBar {
         /// Its links.
         bar: FourBar,
-        /// How the muscle turns the crank.
+        /// Linkage between the muscle and the crank.
         drive: Box<Linkage>,
     },
 }
 
-/// What an angle of the joint means for a muscle.
+/// Kinematics of a muscle at an angle of the joint.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Reach {
     /// l(0) - l(theta) \[m\].
     pub(super) shortening: f64,
-    /// -dl/dtheta: the torque per force \[m\]; negative for the antagonist.
+    /// Lever arm -dl/dtheta, the torque per force \[m\]; negative for the antagonist.
     pub(super) arm: f64,
-    /// Its derivative by the angle \[m/rad\].
+    /// Derivative of the lever arm with respect to the angle \[m/rad\].
     pub(super) arm_by_angle: f64,
 }
 
 impl Linkage {
-    /// What a muscle does at an angle \[rad\].
+    /// Kinematics of a muscle at an angle \[rad\].
     ///
     /// ```text
     /// d^2 = a^2 + b^2 - 2 a b cos(phi),   dd/dphi = g = a b sin(phi)/d,   dg/dphi = a b cos(phi)/d - g^2/d
@@ -88,7 +90,8 @@ impl Linkage {
                 let distance = distance(arm, base, phi);
                 let (sin, cos) = phi.sin_cos();
                 let by_phi = arm * base * sin / distance;
-                // d(0) - d without cancellation: the difference of the squares over the sum.
+                // d(0) - d is computed without cancellation, as the difference of the squares divided by the
+                // sum.
                 let half = 2.0 * f64::midpoint(lever_angle, phi).sin() * (0.5 * (lever_angle - phi)).sin();
                 let sum = self::distance(arm, base, lever_angle) + distance;
                 Reach {
@@ -98,7 +101,8 @@ impl Linkage {
                 }
             }
             Self::FourBar { bar, ref drive } => {
-                // The antagonist's links are the mirror image: chi(-theta) turned round. Outside the range that was checked nothing is pulled.
+                // The links of the antagonist are the mirror image, so its turn is -chi(-theta). Outside the
+                // checked range the result is NaN.
                 let still = Turn { angle: f64::NAN, ratio: f64::NAN, bend: f64::NAN };
                 let Turn { angle: turn, ratio, bend } = bar.turn(sign * angle).unwrap_or(still);
                 let there = drive.at(side, sign * turn);
@@ -111,7 +115,8 @@ impl Linkage {
         }
     }
 
-    /// Angle between the attachments of a lever at the angle 0 \[rad\], and their distance \[m\]; none of a pulley.
+    /// Angle between the attachments of a lever at the angle 0 \[rad\], and their distance \[m\]; none for a
+    /// pulley.
     pub(super) fn lever(&self) -> Option<[f64; 2]> {
         match *self {
             Self::Pulley { .. } => None,
@@ -121,7 +126,7 @@ impl Linkage {
     }
 }
 
-/// By the law of cosines, without cancellation where the attachments are close.
+/// Law of cosines, without cancellation if the attachments are close to each other.
 fn distance(arm: f64, base: f64, phi: f64) -> f64 {
     let sin = (0.5 * phi).sin();
     (arm - base).hypot(2.0 * (arm * base).sqrt() * sin)
@@ -149,12 +154,13 @@ mod tests {
                 assert!((found.arm_by_angle - bend).abs() < 1e-9, "{found:?} {bend}");
             }
         }
-        // Its height over the line between the attachments is the arm.
+        // The lever arm is the height over the line between the attachments.
         let right = Linkage::Lever { arm: 0.03, base: 0.04, lever_angle: std::f64::consts::FRAC_PI_2 };
         assert!((right.at(Side::Agonist, 0.0).arm - 0.024).abs() < 1e-15);
     }
 
-    /// Shortening, arm and its slope through a four-bar linkage, for both muscles, and the antagonist as the mirror image.
+    /// Shortening, lever arm and its slope with a four-bar linkage, for both muscles, and the antagonist as
+    /// the mirror image.
     #[test]
     fn a_four_bar_linkage_gears_the_arm() {
         let bar = FourBar {
@@ -184,7 +190,7 @@ mod tests {
                 );
             }
         }
-        // A parallelogram is no gear.
+        // A parallelogram has the ratio 1.
         let bar = FourBar { coupler: 0.1, rocker: 0.04, ..bar };
         let geared = Linkage::FourBar { bar, drive: Box::new(lever.clone()) };
         for angle in [-0.3, 0.25] {

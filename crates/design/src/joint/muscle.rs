@@ -1,4 +1,4 @@
-//! A muscle on its side of a joint: its pull, what the pull follows, and how sure it is.
+//! A muscle on its side of a joint: its pull, the derivatives of the pull, and its uncertainty.
 
 use bulge_effects::{Group, Known};
 use bulge_fibre::{Approach, Problem, Response};
@@ -11,11 +11,12 @@ use super::geometry::Reach;
 use super::{Cause, JointError, Linkage, Side};
 use crate::gas::{pulling, taut};
 
-/// Steps of the differences: parts of the range of angles, of the contraction where the force is infinite at 0, and of the pressure.
+/// Steps of the differences, relative to the range of angles, to the contraction if the force is infinite at
+/// 0, and to the pressure.
 const ANGLE_STEP: f64 = 1e-4;
 const CONTRACTION_STEP: f64 = 1e-2;
 const PRESSURE_STEP: f64 = 1e-4;
-/// Offsets and weights of the fourth-order difference, over 12 steps.
+/// Offsets and weights of the difference of fourth order, to be divided by 12 steps.
 const STENCIL: [(f64, f64); 4] = [(-2.0, 1.0), (-1.0, -8.0), (1.0, 8.0), (2.0, -1.0)];
 
 /// A muscle on its side of a joint.
@@ -34,36 +35,36 @@ pub struct JointMuscle {
     pub(super) is_singular: bool,
     #[serde(skip)]
     known: Vec<Known>,
-    /// The numbers that its file states with a width, with these widths.
+    /// The numbers for which its file states a width, and these widths.
     #[serde(skip)]
     unsure: Vec<(Number, f64)>,
 }
 
-/// A number of a muscle, or of one of its effects by their places.
+/// A number of a muscle, or of one of its effects, by their indices.
 #[derive(Debug, Clone, Copy)]
 enum Number {
     Muscle(Parameter),
     Effect(usize, usize),
 }
 
-/// What a muscle contributes to the torque, with derivatives.
+/// Contribution of a muscle to the torque, with derivatives.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pull {
     /// Torque \[N m\]; negative for the antagonist.
     pub torque: f64,
-    /// Its derivative by the angle \[N m/rad\].
+    /// Derivative of the torque with respect to the angle \[N m/rad\].
     pub by_angle: f64,
     /// Contraction of the muscle.
     pub contraction: f64,
-    /// Its derivative by the angle \[1/rad\].
+    /// Derivative of the contraction with respect to the angle \[1/rad\].
     pub contraction_by_angle: f64,
 }
 
 impl JointMuscle {
-    /// A muscle that is contracted as stated at the angle 0 of a linkage, with the effects that are known of it.
+    /// A muscle with the given contraction at the angle 0 of a linkage, and with its known effects.
     ///
     /// # Errors
-    /// If the muscle can't have an effect, or has no equilibrium to ask for.
+    /// If an effect is impossible for the muscle, or the muscle has no equilibrium problem.
     pub fn new(
         side: Side,
         linkage: Linkage,
@@ -77,7 +78,7 @@ impl JointMuscle {
         Ok(Self { side, muscle, contraction, linkage, extended, is_singular, known, unsure })
     }
 
-    /// Which muscle of the joint.
+    /// Side of the joint.
     #[must_use]
     pub const fn side(&self) -> Side {
         self.side
@@ -97,25 +98,25 @@ impl JointMuscle {
         self.contraction + self.reach(angle).shortening / self.muscle.length().si()
     }
 
-    /// The angle in a range at which the muscle has a contraction, where it has.
+    /// The angle in a range at which the muscle has a contraction, if there is one.
     pub(super) fn angle_at(&self, contraction: f64, [low, high]: [f64; 2]) -> f64 {
         illinois(|angle| self.contraction(angle) - contraction, low, high, 1e-12)
     }
 
-    /// The muscle alone at an angle \[rad\] and a gauge pressure \[Pa\] at which it pulls.
+    /// Response of the muscle alone at an angle \[rad\] and a gauge pressure \[Pa\] at which it pulls.
     pub(super) fn response(&self, angle: f64, pressure: f64) -> Result<Response, JointError> {
         pulling(&self.extended, pressure, self.contraction(angle), Approach::Auto)
             .map_err(|error| self.failed(angle, pressure, error))
     }
 
-    /// Its part of the torque at an angle \[rad\] and a gauge pressure \[Pa\].
+    /// Contribution to the torque at an angle \[rad\] and a gauge pressure \[Pa\].
     ///
     /// ```text
     /// M_i = F m,   m = -dl/dtheta,   dk/dtheta = m/l0,   dM_i/dtheta = dF/dk m^2/l0 + F dm/dtheta
     /// ```
     ///
     /// # Errors
-    /// [`JointError::Muscle`] where it doesn't pull.
+    /// [`JointError::Muscle`] if it doesn't pull.
     pub fn pull(&self, angle: f64, pressure: f64) -> Result<Pull, JointError> {
         let (reach, length) = (self.reach(angle), self.muscle.length().si());
         let found = self.response(angle, pressure)?;
@@ -128,10 +129,11 @@ impl JointMuscle {
         })
     }
 
-    /// Derivative of the torque by the pressure \[N m/Pa\]: exact, or a difference where effects are known of the muscle.
+    /// Derivative of the torque with respect to the pressure \[N m/Pa\]. It is exact, or a difference if the
+    /// muscle has known effects.
     ///
     /// # Errors
-    /// [`JointError::Muscle`] where there is no equilibrium.
+    /// [`JointError::Muscle`] if there is no equilibrium.
     pub fn by_pressure(&self, angle: f64, pressure: f64) -> Result<f64, JointError> {
         let contraction = self.contraction(angle);
         let by = if self.known.is_empty() {
@@ -150,8 +152,9 @@ impl JointMuscle {
         Ok(by * self.reach(angle).arm)
     }
 
-    /// Second derivatives of the torque, by the angle and by angle and pressure: differences of its exact derivative by the angle, over a part of a range
-    /// of angles \[rad\] that is as wide as this.
+    /// Second derivatives of the torque, with respect to the angle and to angle and pressure. They are
+    /// differences of the exact derivative by the angle; the step is a fraction of a range of angles of the
+    /// given width \[rad\].
     ///
     /// # Errors
     /// As [`JointMuscle::pull`].
@@ -172,8 +175,8 @@ impl JointMuscle {
         Ok(sums)
     }
 
-    /// Standard deviation of the force that comes of the widths in the muscle's file, as if its numbers were independent \[N\]: slopes by differences over a
-    /// fifth of a width.
+    /// Standard deviation of the force \[N\] due to the widths in the muscle file, as if its numbers were
+    /// independent. The slopes are differences over a fifth of a width.
     pub(super) fn unsure(&self, angle: f64, pressure: f64) -> Result<f64, JointError> {
         let contraction = self.contraction(angle);
         let mut sum = 0.0_f64;
@@ -184,7 +187,7 @@ impl JointMuscle {
                     self.moved(*number, by).and_then(|muscle| Ok(force(&muscle, pressure, contraction)?));
                 found.map_err(|error| self.failed(angle, pressure, error))
             };
-            // At a bound of the number one side is enough.
+            // At a bound of the number, a one-sided difference is enough.
             let slope = match (force(step), force(-step)) {
                 (Ok(up), Ok(down)) => (up - down) / (2.0 * step),
                 (Ok(up), Err(_)) => (up - force(0.0)?) / step,
@@ -196,7 +199,7 @@ impl JointMuscle {
         Ok(sum)
     }
 
-    /// The muscle with a number moved from where it is stated.
+    /// The muscle with a number changed by the given amount.
     fn moved(&self, number: Number, by: f64) -> Result<MuscleWithEffects, Cause> {
         let (mut muscle, mut known) = (self.muscle.clone(), self.known.clone());
         match number {
@@ -214,18 +217,19 @@ impl JointMuscle {
     }
 }
 
-/// Force at a contraction \[N\], also where the muscle would push.
+/// Force at a contraction \[N\], even where the muscle would push.
 fn force(muscle: &MuscleWithEffects, pressure: f64, contraction: f64) -> Result<f64, MuscleWithEffectsError> {
     taut(muscle, pressure, contraction, Approach::Auto).map(|found| found.force_n)
 }
 
-/// Numbers of a muscle file that have a width: of the muscle (but its length and its number of fibres, which say what a contraction and a fibre are) and of
-/// the effects that belong to it, with the width in SI.
+/// Numbers of a muscle file that have a width, with the width in SI: those of the effects that belong to the
+/// muscle, and those of the muscle itself except its length and its number of fibres, which define a
+/// contraction and a fibre.
 fn stated_widths(muscle: &Muscle, known: &[Known]) -> Vec<(Number, f64)> {
     let mut found = Vec::new();
     for (parameter, width) in muscle.widths() {
         let is_fixed = matches!(parameter, Parameter::Length | Parameter::Fibres);
-        // A width of 0 says that the number is exact.
+        // A width of 0 means that the number is exact.
         if !is_fixed && *width > 0.0 && muscle.get(*parameter).is_some() {
             found.push((Number::Muscle(*parameter), *width));
         }

@@ -1,4 +1,4 @@
-//! How a joint stands: under a load, at an angle, for a wanted angle and stiffness, and with its valves shut.
+//! States of a joint: under a load, at an angle, for a wanted angle and stiffness, and with closed valves.
 
 use bulge_fibre::Approach;
 use serde::Serialize;
@@ -10,10 +10,10 @@ use crate::gas::{GasError, Inside, ShutGas, Surroundings, failed, pulling};
 /// Steps in which a closed joint is followed to its rest.
 const STEPS: u32 = 64;
 
-/// One muscle of a joint that stands.
+/// State of one muscle of a joint.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct SideState {
-    /// Which one.
+    /// Side of the joint.
     pub side: Side,
     /// Gauge pressure \[Pa\].
     pub pressure_pa: f64,
@@ -21,62 +21,63 @@ pub struct SideState {
     pub contraction: f64,
     /// Pull \[N\].
     pub force_n: f64,
-    /// Its part of the torque \[N m\]: negative for the antagonist.
+    /// Contribution to the torque \[N m\]; negative for the antagonist.
     pub torque_nm: f64,
-    /// Gas that it holds \[m^3\].
+    /// Volume of its gas \[m^3\].
     pub volume_m3: f64,
 }
 
-/// How a joint stands.
+/// State of a joint.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct JointState {
     /// Its angle \[rad\].
     pub angle_rad: f64,
-    /// Torque of both muscles \[N m\]. What holds the joint there from outside is the negative of it.
+    /// Torque of both muscles \[N m\]. The external torque that holds the joint is the negative of it.
     pub torque_nm: f64,
     /// -dM/dtheta at constant pressures \[N m/rad\].
     pub stiffness_nm_per_rad: f64,
-    /// The same with both valves shut, slowly (isothermal) \[N m/rad\].
+    /// Stiffness with both valves closed, for slow (isothermal) motion \[N m/rad\].
     pub isothermal_nm_per_rad: f64,
-    /// And fast (adiabatic, exponent 1.4) \[N m/rad\].
+    /// Stiffness with both valves closed, for fast (adiabatic, exponent 1.4) motion \[N m/rad\].
     pub adiabatic_nm_per_rad: f64,
     /// Agonist and antagonist.
     pub sides: [SideState; 2],
 }
 
-/// Standard deviations of what an outside torque is computed from.
+/// Standard deviations of the readings from which an external torque is computed.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Readings {
-    /// Of each pressure \[Pa\].
+    /// Standard deviation of each pressure \[Pa\].
     pub pressure_pa: f64,
-    /// Of the angle \[rad\].
+    /// Standard deviation of the angle \[rad\].
     pub angle_rad: f64,
-    /// Of the force that the model says of each muscle \[N\]: what a fit leaves.
+    /// Standard deviation of the modelled force of each muscle \[N\]: the residual of a fit.
     pub force_n: f64,
 }
 
-/// An outside torque with its standard deviation.
+/// An external torque with its standard deviation.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Outside {
-    /// Torque on the joint from outside \[N m\], positive where it turns the joint to positive angles.
+    /// External torque on the joint \[N m\], positive if it turns the joint to positive angles.
     pub torque_nm: f64,
     /// Its standard deviation \[N m\].
     pub sd_nm: f64,
-    /// What pressures, angle, forces and the widths of what was learnt contribute to it \[N m\].
+    /// Contributions of the pressures, the angle, the forces and the widths of learnt numbers to the standard
+    /// deviation \[N m\].
     pub from_nm: [f64; 4],
 }
 
-/// A joint whose valves are shut.
+/// A joint with closed valves.
 #[derive(Debug, Clone)]
 pub struct Closed<'a> {
     joint: &'a Joint,
-    /// Where it was shut.
+    /// Angle at which the valves were closed.
     angle: f64,
     gas: [ShutGas; 2],
 }
 
 impl Joint {
-    /// How the joint stands at an angle \[rad\] and the gauge pressures of agonist and antagonist \[Pa\].
+    /// The state at an angle \[rad\] and the gauge pressures of agonist and antagonist \[Pa\].
     ///
     /// ```text
     /// K = sum over both of  K_l m^2 - F dm/dtheta        m = -dl/dtheta, K_l = dF/dl of the muscle: open, or closed with its gas
@@ -120,10 +121,11 @@ impl Joint {
         })
     }
 
-    /// Where the joint rests under an outside torque \[N m\], positive where it turns the joint to positive angles.
+    /// State of rest under an external torque \[N m\], which is positive if it turns the joint to positive
+    /// angles.
     ///
     /// # Errors
-    /// [`JointError::NoRest`] if it isn't in the range of angles, or [`JointError::Muscle`].
+    /// [`JointError::NoRest`] if the rest isn't within the range of angles, or [`JointError::Muscle`].
     pub fn rest(&self, pressures: [f64; 2], outside: f64) -> Result<JointState, JointError> {
         self.within(pressures)?;
         let torque = |angle: f64| Ok(self.moment(angle, pressures)? + outside);
@@ -134,7 +136,7 @@ impl Joint {
         self.stand(root(torque, range, TOLERANCE * (high - low).abs())?, pressures)
     }
 
-    /// Refuses pressures outside the joint's range.
+    /// Refuses pressures outside the range of the joint.
     fn within(&self, pressures: [f64; 2]) -> Result<(), JointError> {
         let range @ [low, high] = self.pressure;
         let slack = 1e-9 * high;
@@ -145,14 +147,14 @@ impl Joint {
         }
     }
 
-    /// The outside torque that holds the joint at an angle against both muscles, as S1 (section 4.2) estimates the force of an operator from the pressures,
-    /// with its standard deviation:
+    /// The external torque that holds the joint at an angle against both muscles, with its standard
+    /// deviation. S1 (section 4.2) estimates the force of an operator from the pressures in this way:
     ///
     /// ```text
     /// M_out = -M(theta, p1, p2)     var M_out = sum (dM/dp_i s_p)^2 + (K s_theta)^2 + sum (m_i s_F)^2 + sum (m_i dF/dk s_k)^2
     /// ```
-    /// The last sum is over the numbers k that the muscles' files state with a width, such as those that `bulge fit` has learnt, as if they were independent.
-    /// The part s_F is what the fit leaves beyond them.
+    /// The last sum is over the numbers k for which the muscle files state a width, such as those learnt by
+    /// `bulge fit`, as if they were independent. s_F is the residual of the fit beyond them.
     ///
     /// # Errors
     /// As [`Joint::torque`].
@@ -172,23 +174,27 @@ impl Joint {
         Ok(Outside { torque_nm: -stand.torque_nm, sd_nm, from_nm: from })
     }
 
-    /// The antagonist's pressure that holds an angle under an outside torque beside a pressure of the agonist; the end of the range where none does.
+    /// The pressure of the antagonist that, with a pressure of the agonist, holds an angle under an external
+    /// torque; an end of the range if none does.
     fn partner(&self, angle: f64, agonist: f64, outside: f64) -> Result<f64, JointError> {
         let (low, high) = (self.least_pressure(&self.muscles[1], angle)?, self.pressure[1]);
         root(|p| Ok(self.moment(angle, [agonist, p])? + outside), [low, high], TOLERANCE * high)
     }
 
-    /// The pressures of agonist and antagonist that hold an angle \[rad\] under an outside torque \[N m\] with a stiffness \[N m/rad\] at constant
-    /// pressures: the difference of the pressures sets the angle, their sum the stiffness (S1, section 4.1).
+    /// The pressures of agonist and antagonist that hold an angle \[rad\] under an external torque \[N m\]
+    /// with a stiffness \[N m/rad\] at constant pressures. The difference of the pressures sets the angle,
+    /// and their sum the stiffness (S1, section 4.1).
     ///
     /// # Errors
-    /// [`JointError::Stiffness`] with the stiffnesses that the range of pressures allows there, or [`JointError::Held`] if none holds the angle.
+    /// [`JointError::Stiffness`] with the stiffnesses that are possible at this angle, or
+    /// [`JointError::Held`] if no pressures hold it.
     pub fn pressures_for(&self, angle: f64, stiffness: f64, outside: f64) -> Result<JointState, JointError> {
         self.inside(angle)?;
         let range = self.agonists(angle, outside)?;
         let stand = |agonist: f64| self.stand(angle, [agonist, self.partner(angle, agonist, outside)?]);
         let ends = [stand(range[0])?.stiffness_nm_per_rad, stand(range[1])?.stiffness_nm_per_rad];
         let [least, most] = [ends[0].min(ends[1]), ends[0].max(ends[1])];
+        // Rounding may put a stiffness at an end of the range slightly outside.
         let slack = 1e-9 * most.abs();
         if !(stiffness >= least - slack && stiffness <= most + slack) {
             return Err(JointError::Stiffness { angle, stiffness, range: [least, most] });
@@ -198,18 +204,19 @@ impl Joint {
         stand(agonist)
     }
 
-    /// The agonist's pressures beside which a pressure of the antagonist holds the angle.
+    /// The range of agonist pressures for which a pressure of the antagonist holds the angle.
     fn agonists(&self, angle: f64, outside: f64) -> Result<[f64; 2], JointError> {
         let high = self.pressure[1];
         let [one, other] = &self.muscles;
         let (low, lowest) = (self.least_pressure(one, angle)?, self.least_pressure(other, angle)?);
         let own = |p: f64| Ok::<_, JointError>(one.pull(angle, p)?.torque + outside);
         let against = |p: f64| Ok::<_, JointError>(-other.pull(angle, p)?.torque);
-        // Rising in p: what the agonist must reach, and must not pass.
+        // Both torques rise with p: a lower limit that the agonist must reach, and an upper one that it must
+        // not exceed.
         let [weakest, strongest] = [against(lowest)?, against(high)?];
         let reached = |torque: f64| root(|p| Ok(own(p)? - torque), [low, high], TOLERANCE * high);
         if own(high)? < weakest || own(low)? > strongest {
-            // Without the torque from outside: what holds the joint there is the negative.
+            // Without the external torque; the torque that holds the joint is the negative.
             let held = [weakest - own(high)? + outside, strongest - own(low)? + outside];
             return Err(JointError::Held { angle, outside, range: held });
         }
@@ -218,8 +225,9 @@ impl Joint {
         Ok([from, to])
     }
 
-    /// The joint with its valves shut where it stands: each muscle keeps P (V + V_dead)^n, n from 1 (slow, isothermal) to 1.4 (fast, adiabatic), with the dead
-    /// volume of fittings and tubes \[m^3\] of each.
+    /// Closes the valves of the joint in this state. Each muscle then keeps P (V + V_dead)^n, with n from 1
+    /// (slow, isothermal) to 1.4 (fast, adiabatic) and the dead volume of the fittings and tubes of each
+    /// muscle \[m^3\].
     ///
     /// # Errors
     /// As [`Joint::torque`].
@@ -241,10 +249,10 @@ impl Joint {
 }
 
 impl Closed<'_> {
-    /// Gauge pressures of both at an angle \[Pa\].
+    /// Gauge pressures of both muscles at an angle \[Pa\].
     ///
     /// # Errors
-    /// [`JointError::Empty`] where a muscle has no gauge pressure left, or [`JointError::Muscle`].
+    /// [`JointError::Empty`] if a muscle has no gauge pressure left, or [`JointError::Muscle`].
     pub fn pressures(&self, angle: f64) -> Result<[f64; 2], JointError> {
         let mut pressures = [0.0; 2];
         for ((found, muscle), gas) in pressures.iter_mut().zip(&self.joint.muscles).zip(&self.gas) {
@@ -271,13 +279,14 @@ impl Closed<'_> {
         Ok(pressures)
     }
 
-    /// Where it rests under an outside torque \[N m\].
+    /// State of rest under an external torque \[N m\].
     ///
     /// # Errors
     /// As [`Joint::rest`] and [`Closed::pressures`].
     pub fn rest(&self, outside: f64) -> Result<JointState, JointError> {
         let torque = |angle: f64| Ok(self.joint.moment(angle, self.pressures(angle)?)? + outside);
-        // From where it was shut outwards: at an end of the range a muscle may have lost its pressure, and rest before.
+        // Search outwards from the closing angle: at an end of the range a muscle may have lost its pressure,
+        // while the rest lies before it.
         let start = self.angle;
         let begun = torque(start)?;
         let end = self.joint.angle[usize::from(begun > 0.0)];
@@ -295,13 +304,13 @@ impl Closed<'_> {
         Err(JointError::NoRest { pressures, torques: [begun, torque(end)?], range })
     }
 
-    /// -dM/dtheta with the valves shut and the dead volume \[N m/rad\]: a difference of fourth order.
+    /// -dM/dtheta with closed valves and the dead volume \[N m/rad\], by a difference of fourth order.
     ///
     /// # Errors
     /// As [`Closed::torque`].
     pub fn stiffness(&self, angle: f64) -> Result<f64, JointError> {
         let [low, high] = self.joint.angle;
-        // Within the range on both sides.
+        // The step keeps both sides within the range.
         let h = (1e-3 * (high - low)).min(0.4 * (angle - low)).min(0.4 * (high - angle));
         let at = |k: f64| self.torque(angle + k * h);
         Ok(-(8.0 * (at(1.0)? - at(-1.0)?) - (at(2.0)? - at(-2.0)?)) / (12.0 * h))
@@ -326,7 +335,8 @@ mod tests {
     const AMBIENT: f64 = bulge_fibre::AMBIENT_PRESSURE;
     const BRAIDS: &str = "muscle = \"dmsp-20-250\"\nkind = \"pulley\"\nradius = \"30 mm\"\ncontraction = \"12 %\"\nangle = \"-20 deg..20 deg\"\npressure = \"1 bar..6 bar\"\n";
 
-    /// Torque and stiffness as the other functions have them; the torque of a pulley is the difference of the forces times its radius.
+    /// Torque and stiffness agree with the other functions; the torque of a pulley is the difference of the
+    /// forces times its radius.
     #[test]
     fn a_stand_is_torque_and_stiffness() {
         for text in [PULLEY, LEVER, BRAIDS] {
@@ -353,7 +363,7 @@ mod tests {
             let free = joint.rest([2e5, 2.1e5], 0.0).unwrap();
             let loaded = joint.rest([2e5, 2.1e5], 1.5).unwrap();
             assert!((loaded.torque_nm + 1.5).abs() < 1e-7 && loaded.angle_rad > free.angle_rad);
-            // A small load turns it by load over stiffness.
+            // Under a small load it turns by load over stiffness.
             let small = joint.rest([2e5, 2.1e5], 1e-3).unwrap();
             let turned = (small.angle_rad - free.angle_rad) * free.stiffness_nm_per_rad / 1e-3;
             assert!((turned - 1.0).abs() < 1e-3, "{turned}");
@@ -361,7 +371,7 @@ mod tests {
         }
     }
 
-    /// The way back: from the angle and the stiffness of a stand to its pressures.
+    /// The inverse: from the angle and the stiffness of a state to its pressures.
     #[test]
     fn pressures_for_angle_and_stiffness() {
         for text in [PULLEY, LEVER, BRAIDS] {
@@ -379,7 +389,7 @@ mod tests {
                     panic!("no joint is as stiff")
                 };
                 assert!(least < there.stiffness_nm_per_rad && there.stiffness_nm_per_rad < most);
-                // Both ends of the range can be had.
+                // Both ends of the range can be reached.
                 for stiffness in [least, most] {
                     let end = joint.pressures_for(there.angle_rad, stiffness, outside).unwrap();
                     assert!((end.stiffness_nm_per_rad / stiffness - 1.0).abs() < 1e-6);
@@ -390,7 +400,7 @@ mod tests {
             else {
                 panic!("nothing holds 10 kN m")
             };
-            // The strongest pull of one against the weakest of the other.
+            // The strongest pull of one muscle against the weakest of the other.
             let [low, high] = joint.pressure;
             let torque = |one: f64, other: f64| joint.torque(0.0, one, other).unwrap();
             assert!((least + torque(high, low)).abs() < 1e-6 && (most + torque(low, high)).abs() < 1e-6);
@@ -398,7 +408,8 @@ mod tests {
         }
     }
 
-    /// What is held from outside is what is asked for; its standard deviation against many noisy readings.
+    /// The external torque that holds a state is recovered; its standard deviation is compared with many
+    /// noisy readings.
     #[test]
     fn an_outside_torque_with_its_uncertainty() {
         let joint = joint(LEVER);
@@ -427,7 +438,8 @@ mod tests {
         assert!((whole / found.sd_nm - 1.0).abs() < 1e-12);
     }
 
-    /// Widths of a muscle file: of the rubber, and of an effect that adds to the force, against torques of muscles with other numbers.
+    /// Widths of a muscle file, of the rubber and of an effect that adds to the force, against torques of
+    /// muscles with other numbers.
     #[test]
     fn what_was_learnt_is_not_sure() {
         let muscle = |c10: f64, offset: f64, width: &str| {
@@ -448,7 +460,7 @@ mod tests {
         let none = Readings { pressure_pa: 0.0, angle_rad: 0.0, force_n: 0.0 };
         let (angle, pressures) = (0.1, [4e5, 3e5]);
         let found = with(0.2, 12.0, "+-").outside(angle, pressures, none).unwrap();
-        // Each muscle by itself: the torques of joints whose numbers are moved, one side's force at a time.
+        // Each muscle by itself: torques of joints with changed numbers, and the force of one side at a time.
         let sides = |c10: f64, offset: f64| {
             with(c10, offset, "").stand(angle, pressures).unwrap().sides.map(|side| side.torque_nm)
         };
@@ -463,8 +475,8 @@ mod tests {
         assert!(with(0.2, 12.0, "").outside(angle, pressures, none).unwrap().sd_nm == 0.0);
     }
 
-    /// Shut valves: the stiffness is minus the slope of the closed torque, slow and fast; the gas is the same everywhere; dead volume makes it softer, and
-    /// endless dead volume as soft as open valves.
+    /// Closed valves: the stiffness is minus the slope of the closed torque, slow and fast. The amount of gas
+    /// is constant. Dead volume makes the joint softer, and infinite dead volume as soft as open valves do.
     #[test]
     fn closed_muscles_are_stiffer() {
         for text in [PULLEY, LEVER, BRAIDS] {

@@ -1,4 +1,4 @@
-//! Joints: torques against other ways to them, and files with mistakes.
+//! Joints: torques against independent computations, and files with mistakes.
 
 use super::*;
 use bulge_fibre::Problem;
@@ -25,7 +25,7 @@ fn unchecked(text: &str, folder: Option<&Path>) -> Joint {
     Joint::from_toml(text, "j.toml", folder, Checks::Linkage, |_| Ok(())).unwrap().0
 }
 
-/// What is answered to a joint whose text has `old` replaced.
+/// Checks the error for a joint whose text has `old` replaced.
 #[track_caller]
 fn refused(text: &str, old: &str, new: &str, parts: &[&str]) {
     assert!(text.contains(old), "{old}");
@@ -41,7 +41,7 @@ fn every_key_is_read() {
     assert_eq!((joint.name.as_str(), joint.linkage()), ("knee", &Linkage::Pulley { radius: 0.04 }));
     assert_eq!((joint.pressure, joint.muscles()[1].side()), ([5e4, 3e5], Side::Antagonist));
     assert!((joint.angle[0] + 25_f64.to_radians()).abs() < 1e-15);
-    // What is in comments holds as well.
+    // The lines in comments are valid as well.
     let each =
         JOINT_EXAMPLE.replace("muscle = ", "# muscle = ").replace("contraction = \"20 %\"            #", "#");
     let each = each
@@ -90,7 +90,7 @@ fn mistakes_have_a_place_and_a_cure() {
 
 #[test]
 fn angles_leave_no_domain() {
-    // 20 % of 110 mm are 31.513 degrees of the pulley.
+    // 20 % of 110 mm correspond to 31.513 degrees of the pulley.
     let straight =
         ["j.toml:5:9", "the agonist is straight at the angle -31.5127 deg", "`angle` above -31.5127 deg"];
     refused(PULLEY, "-25 deg", "-40 deg", &straight);
@@ -133,12 +133,13 @@ fn equal_pressures_balance() {
             assert!(joint.torque(0.0, pressure, pressure).unwrap().abs() < 1e-12);
             assert!(rest(&joint, [pressure; 2]).abs() < 1e-12);
         }
-        // Fibres that don't stretch: torque and stiffness are proportional to the pressure, and the angle depends on the ratio.
+        // If fibres don't stretch, torque and stiffness are proportional to the pressure, and the angle
+        // depends on the ratio of the pressures.
         for angle in [-0.3, 0.1, 0.3] {
             let one = joint.torque(angle, 1e5, 0.6e5).unwrap();
             let three = joint.torque(angle, 3e5, 1.8e5).unwrap();
             assert!((three / one - 3.0).abs() < 1e-12);
-            // Mirrored.
+            // The mirror image.
             assert!((joint.torque(-angle, 0.6e5, 1e5).unwrap() + one).abs() < 1e-11 * one.abs());
         }
         let angle = rest(&joint, [1.5e5, 1e5]);
@@ -204,7 +205,8 @@ fn what_has_no_answer() {
 
 const FOUR_BAR: &str = "muscle = \"ppam-2-r16\"\nkind = \"four-bar\"\nradius = \"40 mm\"\nground = \"100 mm\"\ncrank = \"40 mm\"\ncoupler = \"100 mm\"\nrocker = \"40 mm\"\nrocker_angle = \"86 deg\"\ncontraction = \"20 %\"\nangle = \"-25 deg..25 deg\"\npressure = \"0.5 bar..3 bar\"\n";
 
-/// A parallelogram is the pulley itself; other links gear it: torque times angle is what it was, work in is work out.
+/// A parallelogram acts as the pulley itself, and other links act as a gear: the work put in equals the work
+/// obtained.
 #[test]
 fn a_four_bar_linkage_loses_no_work() {
     let (plain, same) = (read(PULLEY), read(FOUR_BAR));
@@ -219,7 +221,7 @@ fn a_four_bar_linkage_loses_no_work() {
         .replace("\"100 mm\"\nrocker", "\"95 mm\"\nrocker")
         .replace("-25 deg..25 deg", "-15 deg..15 deg");
     let joint = read(&geared);
-    // Torque of the agonist along the way, against force times shortening.
+    // The torque of the agonist, integrated over the angle, against force times shortening.
     let steps = 200;
     let (low, high) = (-0.25, 0.25);
     let at = |k: u32| low + (high - low) * f64::from(k) / f64::from(steps);
@@ -259,7 +261,8 @@ fn a_four_bar_linkage_loses_no_work() {
     refused(PULLEY, "kind", "crank = \"4 mm\"\nkind", &["a pulley has no `crank`", "four-bar"]);
 }
 
-/// A question at one angle or one pair of pressures doesn't fail because of the rest of the range, and is answered as in a narrow one.
+/// A result at one angle or one pair of pressures doesn't fail because of the rest of the range, and it is
+/// the same as in a narrow range.
 #[test]
 fn only_what_is_asked_is_checked() {
     for (text, angles, most) in
@@ -278,7 +281,7 @@ fn only_what_is_asked_is_checked() {
         let beyond = wide.torque(1.2, 2e5, 2e5).unwrap_err().to_string();
         assert!(beyond.contains("agonist") || beyond.contains("antagonist"), "{beyond}");
     }
-    // At the least pressure the rubber of a braid pushes at this angle, at most pressures it doesn't.
+    // At the lowest pressure the rubber of a braid pushes at this angle; at most pressures it doesn't.
     let folder = tempfile::tempdir().unwrap();
     let braid = "name = \"x\"\nkind = \"braided\"\nlength = \"250 mm\"\nradius = \"10 mm\"\nbraid_angle = \"25 deg\"\nwall = \"1 mm\"\n[effects.bladder-elasticity]\nc10 = \"0.1 MPa\"\n";
     std::fs::write(folder.path().join("braid.toml"), braid).unwrap();

@@ -1,4 +1,4 @@
-//! Fluidic muscles that can be bought, with the force law that S4 sizes with.
+//! Commercial fluidic muscles, with the force law that S4 uses for sizing.
 
 use bulge_effects::law::Law;
 use bulge_muscles::preset;
@@ -8,13 +8,14 @@ use super::family::{Family, Limits};
 
 /// Names and inner diameters \[m\].
 const FLUIDIC: [(&str, f64); 3] = [("dmsp-10", 0.01), ("dmsp-20", 0.02), ("dmsp-40", 0.04)];
-/// The law, its numbers, and the muscle they belong to.
+/// The law, its coefficients, and the muscle to which they belong.
 const MEASURED: [&str; 3] = ["sarosi-6", "DMSP-20-400N, S4", "dmsp-20-400"];
 
-/// Festo fluidic muscles of 10, 20 and 40 mm: that of 20 mm as S4 measured it, the others alike in their cross-section and not measured.
+/// Festo fluidic muscles of 10, 20 and 40 mm. That of 20 mm is as measured in S4; the others are taken as
+/// similar in their cross-section and were not measured.
 ///
 /// # Errors
-/// None, unless the law of that name is gone.
+/// None, as long as the law of that name exists.
 pub fn fluidic_muscles() -> Result<Vec<Family>, SizeError> {
     let [law, table, muscle] = MEASURED;
     let gone = |why: String| SizeError::Muscle { family: muscle.to_owned(), length_m: 0.4, why };
@@ -34,7 +35,7 @@ pub fn fluidic_muscles() -> Result<Vec<Family>, SizeError> {
 mod tests {
     use super::*;
 
-    /// Those of 10 and 40 mm are a quarter and four times that of 20 mm.
+    /// The forces of the muscles of 10 and 40 mm are a quarter and four times that of 20 mm.
     #[test]
     fn forces_go_with_the_square_of_the_diameter() {
         let families = fluidic_muscles().unwrap();

@@ -1,4 +1,4 @@
-//! A muscle of one length at one pressure that carries the load, and how well.
+//! A muscle of one length at one pressure that carries the load, and its margins.
 
 use bulge_numerics::root::illinois;
 use serde::Serialize;
@@ -7,90 +7,93 @@ use super::family::CutMuscle;
 use super::load::LoadCase;
 use super::{LoadPoint, SizeError};
 
-/// How a muscle stands at a point of the load.
+/// State of a muscle at a point of the load.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct AtPoint {
     /// Travel \[m\].
     pub travel_m: f64,
     /// Force that the load needs \[N\].
     pub force_n: f64,
-    /// The muscle's contraction there.
+    /// Contraction of the muscle at this point.
     pub contraction: f64,
-    /// What it pulls there at the operating pressure \[N\]; `None`: its fibres are straight and it pulls anything.
+    /// Pull of the muscle at this point at the operating pressure \[N\]; `None` if its fibres are straight,
+    /// so that it can pull any force.
     pub available_n: Option<f64>,
-    /// Gauge pressure at which it just holds the load there \[Pa\]: the way of the pressure as the load moves.
+    /// Gauge pressure at which the muscle just holds the load at this point \[Pa\]. Over the points it is the
+    /// pressure history as the load moves.
     pub holding_pressure_pa: f64,
 }
 
-/// What was given, and what was sought.
+/// The given quantity and the sought one.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case", tag = "given")]
 pub enum Given {
-    /// The operating pressure, for the shortest length.
+    /// The operating pressure is given; the shortest length is sought.
     Pressure {
-        /// It \[Pa\].
+        /// Given pressure \[Pa\].
         pressure_pa: f64,
     },
-    /// The length, for the lowest pressure.
+    /// The length is given; the lowest pressure is sought.
     Length {
-        /// It \[m\].
+        /// Given length \[m\].
         length_m: f64,
     },
-    /// Neither: the best compromise.
+    /// Nothing is given; the best compromise is sought.
     Compromise,
 }
 
 /// A muscle that carries the load.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Choice {
-    /// Which muscle.
+    /// Name of the muscle.
     pub family: String,
-    /// Where its forces come from.
+    /// Source of its forces.
     pub basis: String,
     /// Nominal diameter \[m\].
     pub diameter_m: f64,
-    /// Length without pressure \[m\].
+    /// Length at zero pressure \[m\].
     pub length_m: f64,
     /// Operating gauge pressure \[Pa\].
     pub pressure_pa: f64,
-    /// What was given.
+    /// The given quantity.
     #[serde(flatten)]
     pub given: Given,
-    /// Contractions where the muscle begins and where the stroke ends.
+    /// Contractions at the beginning and at the end of the stroke.
     pub contraction: [f64; 2],
     /// The points of the load.
     pub points: Vec<AtPoint>,
-    /// Least of available over needed force, less 1, anywhere on the way.
+    /// Smallest ratio of available to needed force, minus 1, anywhere on the way.
     pub force_margin: f64,
-    /// What is left to the highest pressure, over it.
+    /// Distance to the highest pressure, relative to that pressure.
     pub pressure_margin: f64,
-    /// What is left to the largest contraction, over it.
+    /// Distance to the largest contraction, relative to that contraction.
     pub contraction_margin: f64,
-    /// Strain of the muscle's life, 0 to 1: see the module.
+    /// Strain of the muscle's life, 0 to 1; see the module.
     pub strain: f64,
 }
 
 /// A muscle that doesn't carry the load.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Infeasible {
-    /// Which muscle.
+    /// Name of the muscle.
     pub family: String,
-    /// What was given.
+    /// The given quantity.
     #[serde(flatten)]
     pub given: Given,
-    /// Why not, in words, with the numbers.
+    /// The reason in words, with numbers.
     pub why: String,
 }
 
-/// Pressures are found to this \[Pa\].
+/// Tolerance of a pressure \[Pa\].
 const PRESSURE_TOLERANCE: f64 = 1e-3;
 
-/// Where a muscle begins, and the contraction after a travel.
+/// Contraction of a muscle after a travel.
 pub(super) fn contraction(muscle: &CutMuscle<'_>, travel_m: f64) -> f64 {
     muscle.family().limits().contraction[0] + travel_m / muscle.length_m()
 }
 
-/// The least of what a muscle pulls over what is needed (times 1 + margin), less 1, on a way, and where.
+/// Smallest ratio of pull to needed force (times 1 + margin), minus 1, on a way, and the point at which it
+/// occurs.
 pub(super) fn least(
     muscle: &CutMuscle<'_>,
     pressure_pa: f64,
@@ -108,7 +111,8 @@ pub(super) fn least(
     Ok(least)
 }
 
-/// The pressure at which a muscle just pulls a force at a contraction; the highest one where it can't.
+/// The pressure at which a muscle just pulls a force at a contraction; the highest pressure if it can't pull
+/// that force.
 pub(super) fn holding_pressure(
     muscle: &CutMuscle<'_>,
     contraction: f64,
@@ -120,7 +124,7 @@ pub(super) fn holding_pressure(
     }
     let mut failed = None;
     let missing = |p: f64| match muscle.force_n(p, contraction) {
-        // Infinite where the fibres are straight: any pressure does.
+        // The force is infinite if the fibres are straight; any pressure then suffices.
         Ok(force) => (force - force_n).clamp(-force_n, force_n),
         Err(error) => {
             failed.get_or_insert(error);
@@ -132,7 +136,7 @@ pub(super) fn holding_pressure(
 }
 
 impl Choice {
-    /// How a muscle stands at a pressure.
+    /// The choice of a muscle at a pressure.
     pub(super) fn new(
         muscle: &CutMuscle<'_>,
         pressure_pa: f64,

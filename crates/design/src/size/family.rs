@@ -1,4 +1,4 @@
-//! Muscles of one kind in every length: what they pull, and what they bear.
+//! Muscles of one kind in every length: their pull and their limits.
 
 use bulge_effects::Known;
 use bulge_effects::law::{CoefficientTable, Law, LawGeometry, LawPoint};
@@ -9,29 +9,30 @@ use serde::Serialize;
 
 use super::SizeError;
 
-/// What a kind of muscle bears.
+/// Limits of a kind of muscle.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Limits {
     /// Highest gauge pressure \[Pa\].
     pub pressure_pa: f64,
     /// Smallest and largest contraction.
     pub contraction: [f64; 2],
-    /// Shortest and longest muscle that can be had \[m\].
+    /// Shortest and longest available muscle \[m\].
     pub length_m: [f64; 2],
     /// Largest force that it may carry \[N\].
     pub force_n: f64,
 }
 
 impl Limits {
-    /// Of a Festo fluidic muscle of 20 mm, as its maker states them: 6 bar, contractions to 25 %, 40 mm to 9 m, 1500 N.
+    /// Limits of a Festo fluidic muscle of 20 mm, as stated by the manufacturer: 6 bar, contractions up to
+    /// 25 %, 40 mm to 9 m, 1500 N.
     pub const FLUIDIC: Self =
         Self { pressure_pa: 6e5, contraction: [0.0, 0.25], length_m: [0.04, 9.0], force_n: 1500.0 };
-    /// Of a pleated muscle: 3 bar and 3000 N as S1 tested it, 5 to 35 % as it recommends for the life of the fibres, and lengths about those that were
-    /// built.
+    /// Limits of a pleated muscle: 3 bar and 3000 N as tested in S1, 5 to 35 % as S1 recommends for the life
+    /// of the fibres, and lengths about those that were built.
     pub const PLEATED: Self =
         Self { pressure_pa: 3e5, contraction: [0.05, 0.35], length_m: [0.03, 1.0], force_n: 3000.0 };
 
-    /// Those of a kind.
+    /// The limits of a kind.
     #[must_use]
     pub const fn of(kind: Kind) -> Self {
         if kind.is_pleated() { Self::PLEATED } else { Self::FLUIDIC }
@@ -63,12 +64,12 @@ impl Limits {
     }
 }
 
-/// Where the force comes from.
+/// Source of the force.
 #[derive(Debug, Clone)]
 enum Source {
-    /// A force law of the papers, times the scale of the cross-section.
+    /// A published force law, multiplied by the scale of the cross-section.
     Law { law: &'static Law, geometry: LawGeometry, coefficients: Vec<f64>, scale: f64 },
-    /// The equilibrium of a muscle, with the effects that are known of it.
+    /// The equilibrium of a muscle, with its known effects.
     Net { muscle: Box<Muscle>, known: Vec<Known>, is_similar: bool },
 }
 
@@ -83,10 +84,10 @@ pub struct Family {
 }
 
 impl Family {
-    /// Muscles whose force a law gives, with the numbers of a table, or typical ones.
+    /// Muscles whose force is given by a law, with the coefficients of a table or with typical ones.
     ///
     /// # Errors
-    /// Limits that make no sense.
+    /// If the limits are invalid.
     pub fn of_law(
         name: &str,
         law: &'static Law,
@@ -105,20 +106,21 @@ impl Family {
         Ok(Self { name: name.to_owned(), diameter_m: 2.0 * geometry.radius, limits, basis, source })
     }
 
-    /// Muscles like this one in every length, by the equilibrium of their fibres and with the effects that are known of it. Lengths are held to the
-    /// slenderness for which meridians are computed, [`PLEATED_SLENDERNESS`] or [`BRAIDED_SLENDERNESS`].
+    /// Muscles like this one in every length, computed from the equilibrium of their fibres and with the
+    /// known effects. Lengths are limited to the slenderness for which meridians are computed,
+    /// [`PLEATED_SLENDERNESS`] or [`BRAIDED_SLENDERNESS`].
     ///
     /// # Errors
-    /// Limits that make no sense.
+    /// If the limits are invalid.
     pub fn of_muscle(muscle: &Muscle, known: Vec<Known>, mut limits: Limits) -> Result<Self, SizeError> {
         let radius = muscle.radius().si().max(muscle.end_radius().si());
         let [low, high] = limits.length_m;
         let least = muscle.radius().si().min(muscle.end_radius().si());
         let [stocky, slender] = if muscle.is_pleated() { PLEATED_SLENDERNESS } else { BRAIDED_SLENDERNESS };
-        // Just inside, so that rounding doesn't lead out.
+        // Slightly inside, so that rounding doesn't leave the range.
         limits.length_m = [low.max(radius * stocky * (1.0 + 1e-9)), high.min(least * slender * (1.0 - 1e-9))];
         limits.check()?;
-        // Those that change the shape are numbers of the muscle itself.
+        // Effects that change the shape are numbers of the muscle itself.
         let mut effects: Vec<&str> = known.iter().map(|(effect, _)| effect.card().name).collect();
         effects.extend(muscle.bladder().map(|_| "bladder-elasticity"));
         effects.extend(muscle.unfolding().map(|_| "limited-unfolding"));
@@ -136,9 +138,12 @@ impl Family {
         })
     }
 
-    /// The same with every radius in proportion to the length, as S1 asks for pleated muscles of another length: they keep their slenderness l0/R, and
-    /// with it force over p l0^2 and the room that their cloth needs. Only where no effects are known of the muscle, since their numbers hold for its own
-    /// radius; otherwise, and of a law, the family stays as it is.
+    /// The family with every radius proportional to the length, as S1 requires for pleated muscles of another
+    /// length. They keep their slenderness l0/R, and with it the force over p l0^2 and the room for their
+    /// cloth.
+    ///
+    /// This applies only if no effects of the muscle are known, since their numbers hold for its own radius.
+    /// Otherwise, and for a law, the family is unchanged.
     #[must_use]
     pub fn similar(mut self) -> Self {
         if let Source::Net { known, is_similar, muscle } = &mut self.source
@@ -152,9 +157,10 @@ impl Family {
         self
     }
 
-    /// Muscles of another diameter that are alike in their cross-section: at equal pressure and contraction the force goes with the diameter's square, and
-    /// so does its limit.
-    /// A family whose force is an equilibrium stays as it is: state the other radius in its muscle.
+    /// Muscles of another diameter with a similar cross-section. At equal pressure and contraction the force
+    /// is proportional to the square of the diameter, and so is its limit.
+    ///
+    /// A family whose force is an equilibrium is unchanged; state the other radius in its muscle instead.
     #[must_use]
     pub fn scaled(mut self, name: &str, diameter_m: f64) -> Self {
         if let Source::Law { scale, .. } = &mut self.source {
@@ -168,17 +174,17 @@ impl Family {
         self
     }
 
-    /// The same under another name.
+    /// The family under another name.
     #[must_use]
     pub fn named(mut self, name: &str) -> Self {
         name.clone_into(&mut self.name);
         self
     }
 
-    /// The same with other limits.
+    /// The family with other limits.
     ///
     /// # Errors
-    /// Limits that make no sense.
+    /// If the limits are invalid.
     pub fn with_limits(mut self, limits: Limits) -> Result<Self, SizeError> {
         limits.check()?;
         self.limits = limits;
@@ -191,28 +197,28 @@ impl Family {
         &self.name
     }
 
-    /// Its nominal diameter \[m\]; of a muscle file twice the radius.
+    /// Its nominal diameter \[m\]; twice the radius for a muscle file.
     #[must_use]
     pub fn diameter_m(&self) -> f64 {
         self.diameter_m
     }
 
-    /// What it bears.
+    /// Its limits.
     #[must_use]
     pub fn limits(&self) -> Limits {
         self.limits
     }
 
-    /// Where its forces come from, in words.
+    /// Source of its forces, in words.
     #[must_use]
     pub fn basis(&self) -> &str {
         &self.basis
     }
 
-    /// The muscle of a length \[m\].
+    /// The muscle of the given length \[m\].
     ///
     /// # Errors
-    /// A length that this muscle can't have.
+    /// If the muscle can't have this length.
     pub fn at(&self, length_m: f64) -> Result<CutMuscle<'_>, SizeError> {
         let wrong = |why: String| SizeError::Muscle { family: self.name.clone(), length_m, why };
         let mut diameter_m = self.diameter_m;
@@ -236,7 +242,7 @@ impl Family {
     }
 }
 
-/// Lengths across a muscle.
+/// Lateral dimensions of a muscle.
 const ACROSS: [Parameter; 5] = [
     Parameter::Radius,
     Parameter::FittingRadius,
@@ -245,7 +251,7 @@ const ACROSS: [Parameter; 5] = [
     Parameter::UnfoldedRadius,
 ];
 
-/// A muscle of another length, and all across it by a factor.
+/// A muscle of another length, with its lateral dimensions multiplied by a factor.
 fn stretched(muscle: &Muscle, length_m: f64, factor: f64) -> Result<Muscle, MuscleError> {
     let mut changed = muscle.with(Parameter::Length, length_m)?;
     for parameter in ACROSS {
@@ -256,14 +262,14 @@ fn stretched(muscle: &Muscle, length_m: f64, factor: f64) -> Result<Muscle, Musc
     Ok(changed)
 }
 
-/// How a muscle of one length pulls.
+/// Computation of the pull of a muscle of one length.
 #[derive(Debug)]
 enum Pull<'a> {
     Law { law: &'static Law, geometry: LawGeometry, coefficients: &'a [f64], scale: f64 },
     Net(Box<MuscleWithEffects>),
 }
 
-/// A muscle of a family and a length.
+/// A muscle of a family, with a length.
 #[derive(Debug)]
 pub struct CutMuscle<'a> {
     family: &'a Family,
@@ -291,11 +297,11 @@ impl CutMuscle<'_> {
         self.diameter_m
     }
 
-    /// What it pulls at a gauge pressure \[Pa\] and a contraction \[N\]: 0 where it would push, or without pressure; infinite where fibres that don't
-    /// stretch are straight.
+    /// Pull \[N\] at a gauge pressure \[Pa\] and a contraction. It is 0 where the muscle would push, or
+    /// without pressure. It is infinite where fibres that don't stretch are straight.
     ///
     /// # Errors
-    /// No equilibrium was found, for another reason than these.
+    /// If no equilibrium was found for another reason than these.
     pub fn force_n(&self, pressure_pa: f64, contraction: f64) -> Result<f64, SizeError> {
         if pressure_pa <= 0.0 {
             return Ok(0.0);
@@ -307,7 +313,8 @@ impl CutMuscle<'_> {
         };
         match &self.pull {
             Pull::Law { law, geometry, coefficients, scale } => {
-                // As it lifts: laws that tell the directions apart give less force to a muscle that shortens.
+                // The pull while lifting: laws that distinguish directions give a smaller force for a
+                // shortening muscle.
                 let at = LawPoint { pressure: pressure_pa, contraction, direction: 1.0 };
                 if !law.is_defined_at(at) {
                     return Ok(f64::INFINITY);
@@ -335,7 +342,8 @@ impl CutMuscle<'_> {
         }
     }
 
-    /// Contractions and forces of an isobar, from where the muscle begins to where it ends or pulls no more; none where the force is infinite.
+    /// Contractions and forces of an isobar, from the initial contraction to the largest one, or to where the
+    /// pull vanishes. Points with an infinite force are left out.
     ///
     /// # Errors
     /// As [`CutMuscle::force_n`].

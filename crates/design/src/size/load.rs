@@ -1,15 +1,15 @@
-//! What a muscle has to pull, and how far.
+//! The load: required forces over a travel.
 
 use serde::Serialize;
 
 use super::SizeError;
 
-/// Force that is needed after a travel.
+/// Required force after a travel.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct LoadPoint {
-    /// Travel from where the muscle begins \[m\], 0 or more.
+    /// Travel from the initial position of the muscle \[m\], 0 or more.
     pub travel_m: f64,
-    /// Force that it must pull there \[N\], 0 or more.
+    /// Required force \[N\], 0 or more.
     pub force_n: f64,
 }
 
@@ -20,14 +20,15 @@ pub struct LoadCase {
     points: Vec<LoadPoint>,
 }
 
-/// Places at which the load is looked at from one point to the next.
+/// Number of places checked between one point and the next.
 const BETWEEN: usize = 8;
 
 impl LoadCase {
     /// A load through points in the order of their travel.
     ///
     /// # Errors
-    /// No point beyond the beginning, points out of order, a number that is negative or not finite, or no force at all.
+    /// If no point lies beyond the beginning, points are out of order, a number is negative or not finite, or
+    /// all forces are 0.
     pub fn new(points: Vec<LoadPoint>) -> Result<Self, SizeError> {
         let mut before = f64::NEG_INFINITY;
         for (i, LoadPoint { travel_m, force_n }) in points.iter().enumerate() {
@@ -50,7 +51,7 @@ impl LoadCase {
         Ok(Self { points })
     }
 
-    /// A force at rest, and one after the stroke.
+    /// A load with a force at rest and another one after the stroke.
     ///
     /// # Errors
     /// As [`LoadCase::new`].
@@ -80,7 +81,7 @@ impl LoadCase {
         self.points.iter().fold(0.0, |most, point| most.max(point.force_n))
     }
 
-    /// The points, and places between them.
+    /// The points of the load, and places between them.
     #[must_use]
     pub fn path(&self) -> Vec<LoadPoint> {
         let mut path = Vec::with_capacity(BETWEEN * self.points.len());

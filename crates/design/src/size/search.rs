@@ -10,14 +10,14 @@ use super::choice::{Choice, Given, Infeasible, contraction, holding_pressure, le
 use super::family::{CutMuscle, Family, Limits};
 use super::load::{LoadCase, LoadPoint};
 
-/// What counts in a compromise.
+/// Weights of a compromise.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Weights {
-    /// Of (p/p_max)^2.
+    /// Weight of (p/p_max)^2.
     pub pressure: f64,
-    /// Of (e_end/e_max)^2.
+    /// Weight of (e_end/e_max)^2.
     pub contraction: f64,
-    /// Of (l/l_shortest)^2, with the shortest length that carries the load at the highest pressure.
+    /// Weight of (l/l_shortest)^2, with the shortest length that carries the load at the highest pressure.
     pub length: f64,
 }
 
@@ -27,38 +27,39 @@ impl Default for Weights {
     }
 }
 
-/// What is given.
+/// Requirements on the muscles.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Requirements {
-    /// Operating gauge pressures to find the shortest length for \[Pa\].
+    /// Operating gauge pressures for which the shortest length is sought \[Pa\].
     pub pressures_pa: Vec<f64>,
-    /// Lengths to find the lowest pressure for \[m\].
+    /// Lengths for which the lowest pressure is sought \[m\].
     pub lengths_m: Vec<f64>,
-    /// Force in reserve, over the force needed.
+    /// Reserve of force, relative to the required force.
     pub margin: f64,
-    /// Lengths are rounded up to multiples of this \[m\]; 0 for exact ones.
+    /// Lengths are rounded up to multiples of this step \[m\]; 0 for exact lengths.
     pub step_m: f64,
-    /// What a compromise weighs; `None` for none.
+    /// Weights of a compromise; `None` if no compromise is sought.
     pub weights: Option<Weights>,
 }
 
-/// All that was found.
+/// Result of a sizing.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Sizing {
     /// The load.
     pub load: LoadCase,
-    /// What carries it, the kindest to the muscle first.
+    /// Muscles that carry the load, ranked by the strain of their life, the lowest first.
     pub choices: Vec<Choice>,
-    /// What doesn't.
+    /// Muscles that don't carry it.
     pub infeasible: Vec<Infeasible>,
 }
 
 /// Relative tolerance of a length.
 const LENGTH_TOLERANCE: f64 = 1e-10;
-/// The same of a compromise, which is flat.
+/// Relative tolerance of the length of a compromise, whose minimum is flat.
 const COMPROMISE_TOLERANCE: f64 = 1e-6;
 
-/// Muscles, lengths and pressures that carry a load, ranked. Parallel; the same result on any number of threads.
+/// Finds muscles, lengths and pressures that carry a load, and ranks them. The search runs in parallel; its
+/// result doesn't depend on the number of threads.
 ///
 /// ```
 /// use bulge_design::size::{Family, Limits, LoadCase, Requirements, size};
@@ -76,7 +77,8 @@ const COMPROMISE_TOLERANCE: f64 = 1e-6;
 /// ```
 ///
 /// # Errors
-/// A wish that makes no sense, or a muscle whose equilibrium can't be found. Muscles that don't carry the load are no error.
+/// If a requirement is invalid, or the equilibrium of a muscle can't be found. A muscle that doesn't carry
+/// the load is no error.
 pub fn size(families: &[Family], load: &LoadCase, wish: &Requirements) -> Result<Sizing, SizeError> {
     check(wish)?;
     let asked = wish.pressures_pa.iter().map(|p| Given::Pressure { pressure_pa: *p });
@@ -153,6 +155,7 @@ fn one(
         },
     };
     let [low, high] = family.limits().length_m;
+    // A given or rounded length may be outside the range.
     if !(low..=high).contains(&length) {
         return not(format!(
             "it would be {:.1} mm long: it can be had from {:.0} to {:.0} mm",
@@ -181,7 +184,7 @@ fn one(
     Choice::new(&muscle, pressure, given, load).map(Ok)
 }
 
-/// A load for a family.
+/// A load and the family that is to carry it.
 struct Task<'a> {
     family: &'a Family,
     load: &'a LoadCase,
@@ -190,7 +193,7 @@ struct Task<'a> {
 }
 
 impl Task<'_> {
-    /// Up to a multiple of the step, but for rounding.
+    /// Rounds up to a multiple of the step, with a tolerance for rounding errors.
     fn rounded(&self, length: f64, step: f64) -> f64 {
         if step == 0.0 {
             return length;
@@ -199,17 +202,17 @@ impl Task<'_> {
         up.max(self.family.limits().length_m[0])
     }
 
-    /// The least ratio of forces less 1, of a muscle of a length.
+    /// The smallest ratio of forces minus 1, for a muscle of a length.
     fn least(&self, length: f64, pressure: f64, way: &[LoadPoint]) -> Result<(f64, LoadPoint), SizeError> {
         least(&self.family.at(length)?, pressure, way, self.margin)
     }
 
-    /// The shortest muscle that carries the load at a pressure, or why none does.
+    /// The shortest muscle that carries the load at a pressure, or the reason why none does.
     fn shortest(&self, pressure: f64) -> Result<Result<f64, String>, SizeError> {
         let limits = self.family.limits();
         let [from, to] = limits.contraction;
         let [low, high] = limits.length_m;
-        // Shorter ones would contract too far.
+        // Shorter muscles would contract too far.
         let low = low.max(self.load.stroke_m() / (to - from));
         if low > high {
             return Ok(Err(format!(
@@ -218,7 +221,7 @@ impl Task<'_> {
                 1e3 * high
             )));
         }
-        // First at the points, then, if the load between them asks for more, on the whole way.
+        // The points come first; the whole way follows, because the load between them may require more.
         let mut length = low;
         for way in [self.load.points(), &self.way] {
             if self.least(length, pressure, way)?.0 >= -LENGTH_TOLERANCE {
@@ -229,7 +232,7 @@ impl Task<'_> {
                 return Ok(Err(self.too_weak(&self.family.at(high)?, pressure, at)?));
             }
             let mut failed = None;
-            // In 1/l, by which contractions go.
+            // Solve in 1/l, to which contractions are proportional.
             let over = illinois(
                 |over| match self.least(1.0 / over, pressure, way) {
                     Ok((ratio, _)) => ratio.min(1.0),
@@ -261,7 +264,7 @@ impl Task<'_> {
         ))
     }
 
-    /// The lowest pressure at which a muscle carries the load, or why none does.
+    /// The lowest pressure at which a muscle carries the load, or the reason why none does.
     fn lowest(&self, muscle: &CutMuscle<'_>) -> Result<Result<f64, String>, SizeError> {
         let highest = self.family.limits().pressure_pa;
         let (missing, at) = least(muscle, highest, &self.way, self.margin)?;
@@ -269,7 +272,8 @@ impl Task<'_> {
             return Ok(Err(self.too_weak(muscle, highest, at)?));
         }
         let mut lowest = 0.0_f64;
-        // From the end, where most is needed: what is held already asks for no search.
+        // Begin at the end, where the required pressure is highest. A point that is already held needs no
+        // search.
         for point in self.way.iter().rev() {
             let (needed, e) = ((1.0 + self.margin) * point.force_n, contraction(muscle, point.travel_m));
             if muscle.force_n(lowest, e)? < needed {
@@ -279,7 +283,7 @@ impl Task<'_> {
         Ok(Ok(lowest))
     }
 
-    /// The length that weighs least between the shortest and the longest.
+    /// The length with the smallest weighted sum, between the shortest and the longest.
     fn compromise(&self, shortest: f64, weights: Weights) -> Result<f64, SizeError> {
         let longest = self.family.limits().length_m[1];
         let cost = |length: f64| -> Result<f64, SizeError> {
@@ -308,7 +312,7 @@ impl Task<'_> {
         if let Some(error) = failed {
             return Err(error);
         }
-        // It never looks at the upper end itself.
+        // The search never evaluates the upper end itself.
         Ok(if cost(longest)? < least { longest } else { log.exp() })
     }
 }

@@ -1,4 +1,4 @@
-//! S4's worked examples, what one direction says of the other, and similarity.
+//! S4's worked examples, consistency of both directions, and similarity.
 
 use bulge_effects::law::Law;
 use bulge_fibre::closed_form;
@@ -38,7 +38,7 @@ fn only(family: &Family, load: &LoadCase, wish: &Requirements) -> Choice {
     found.choices[0].clone()
 }
 
-/// Read off S4's figure 4 to half a per cent of contraction.
+/// Values read from S4's figure 4, to half a per cent of contraction.
 #[test]
 fn the_worked_examples_of_s4() {
     let family = dmsp_20();
@@ -58,7 +58,7 @@ fn the_worked_examples_of_s4() {
         let off = 100.0 * choice.contraction[1] - percent;
         println!("{kilograms} kg at {bar} bar: {:.2} %, {:.1} mm", percent + off, 1e3 * choice.length_m);
         worst[0] = worst[0].max(off.abs());
-        // The other way round: the pressure for the length that S4's contraction makes.
+        // The reverse: the pressure for the length that follows from S4's contraction.
         let other = only(&family, &load, &wish(&[], &[0.05 / (0.01 * percent)]));
         worst[1] = worst[1].max((1e-5 * other.pressure_pa - bar).abs());
     }
@@ -69,7 +69,8 @@ fn the_worked_examples_of_s4() {
     assert!((lift(4.0).length_m - 0.400).abs() < 0.012, "S4: 400 mm at 4 bar");
 }
 
-/// Of laws and of equilibria: the shortest muscle at a pressure needs just this pressure, and pulls just what is needed.
+/// For laws and for equilibria: the shortest muscle at a pressure needs exactly this pressure, and pulls
+/// exactly the required force.
 #[test]
 fn both_directions_agree() {
     for (family, stroke, force, pressure) in
@@ -109,7 +110,7 @@ fn a_pleated_muscle_of_another_length_is_another_slenderness() {
     assert!((2e5 * l * l * f * angle.sin() / angle / 900.0 - 1.0).abs() < 1e-8);
 }
 
-/// Twice the length and the radius, four times the force at the same pressure and contraction.
+/// Twice the length and the radius give four times the force at the same pressure and contraction.
 #[test]
 fn pleated_muscles_alike_in_their_slenderness() {
     let family = pleated().similar();
@@ -122,7 +123,7 @@ fn pleated_muscles_alike_in_their_slenderness() {
         let ratio = two.force_n(2e5, contraction).unwrap() / one.force_n(2e5, contraction).unwrap();
         assert!((ratio - 4.0).abs() < 1e-9, "{ratio}");
     }
-    // With the slenderness kept the length follows from p l^2 f(e).
+    // With constant slenderness, the length follows from p l^2 f(e).
     let load = LoadCase::lift(0.02, 0.0, 900.0).unwrap();
     let choice = only(&family, &load, &wish(&[2e5], &[]));
     let angle = std::f64::consts::TAU / 40.0;
@@ -131,7 +132,7 @@ fn pleated_muscles_alike_in_their_slenderness() {
     assert!((choice.diameter_m - 2.0 * choice.length_m / 6.875).abs() < 1e-12);
 }
 
-/// Twice the diameter, four times the load: the same length and pressure.
+/// Twice the diameter carries four times the load at the same length and pressure.
 #[test]
 fn muscles_alike_in_their_cross_section() {
     let load = |force: f64| LoadCase::lift(0.05, 0.0, force).unwrap();
@@ -156,7 +157,7 @@ fn a_margin_is_a_larger_load() {
     }
 }
 
-/// An isobar sags between its ends: a load that falls along the chord would be dropped halfway.
+/// An isobar sags between its ends, so a load that falls along the chord would be dropped halfway.
 #[test]
 fn the_load_is_carried_between_its_points() {
     let family = dmsp_20();
@@ -179,7 +180,8 @@ fn lengths_are_rounded_up() {
     assert!(rounded.force_margin > 0.0);
 }
 
-/// Only length counts: the shortest. Length doesn't count: the longest. Between: no neighbour weighs less.
+/// If only the length counts, the result is the shortest; if it doesn't count, the longest. Between them, no
+/// neighbour has a smaller weighted sum.
 #[test]
 fn a_compromise_weighs_least() {
     let load = LoadCase::lift(0.05, 0.0, 500.0).unwrap();
@@ -252,7 +254,7 @@ fn nonsense_is_refused() {
     }
 }
 
-/// The order of the muscles and of the threads doesn't matter.
+/// The result doesn't depend on the order of the muscles or on the threads.
 #[test]
 fn the_kindest_comes_first() {
     let load = LoadCase::lift(0.03, 0.0, 400.0).unwrap();

@@ -1,4 +1,4 @@
-//! The axes of a sweep file: what each varies, and its values.
+//! The axes of a sweep file: the quantity that each varies, and its values.
 
 use bulge_muscles::settings::{Keys, Setting, Settings, nearest, shortened};
 use bulge_muscles::{FileError, Muscle, Parameter};
@@ -8,7 +8,7 @@ use super::scale::Scale;
 use crate::plan::{Axis, End, Quantity, Range, Spacing};
 use crate::sobol::DIMENSIONS;
 
-/// Keys of an axis, with an example of each.
+/// Keys of an axis, each with an example.
 pub(super) const AXIS: Keys = &[
     ("range", "range = \"2..100\""),
     ("list", "list = [20, 40, 60]"),
@@ -17,30 +17,30 @@ pub(super) const AXIS: Keys = &[
 ];
 /// Most values of one axis of a grid.
 const MOST_POINTS: u64 = 1_000_000_000;
-/// Most axes: as many as the low-discrepancy sequence has dimensions.
+/// Most axes: the number of dimensions of the low-discrepancy sequence.
 const MOST_AXES: usize = DIMENSIONS;
 
 /// An axis with its place in the file.
 pub(super) struct Placed<'a> {
     pub(super) axis: Axis,
-    /// Its table.
+    /// The table of the axis.
     pub(super) settings: Settings<'a>,
-    /// The place of its name.
+    /// Place of its name.
     pub(super) name: ops::Range<usize>,
-    /// The place of its range or list.
+    /// Place of its range or list.
     pub(super) values: ops::Range<usize>,
-    /// What such values look like.
+    /// Example of valid values.
     pub(super) example: String,
 }
 
 impl Placed<'_> {
-    /// What is wrong with its range or list, with an example of a right one.
+    /// An error about the range or list of the axis, with a valid example.
     pub(super) fn wrong(&self, what: impl Into<String>) -> FileError {
         self.settings.error(self.values.clone(), what, self.example.clone())
     }
 }
 
-/// The axes of the file, in its order.
+/// The axes in the order of the file.
 pub(super) fn axes<'a>(settings: &Settings<'a>, muscle: &Muscle) -> Result<Vec<Placed<'a>>, FileError> {
     let table = settings.table("axes", "`[axes]`", &[])?.ok_or_else(|| settings.missing("axes"))?;
     let names = table.names();
@@ -98,7 +98,7 @@ fn axis<'a>(
     })
 }
 
-/// What a name varies, its name in columns, and what its values are measured in.
+/// The quantity that a name stands for, its column name, and the scale of its values.
 pub(crate) fn quantity(name: &str, muscle: &Muscle) -> Option<(Quantity, String, Scale)> {
     let is_it =
         |p: &Parameter| [p.name(), p.key()].contains(&name) || p.key().strip_prefix("effects.") == Some(name);
@@ -127,7 +127,7 @@ pub(crate) fn quantity(name: &str, muscle: &Muscle) -> Option<(Quantity, String,
     Some((quantity, name.to_owned(), scale))
 }
 
-/// The names of the axes that the muscle can have.
+/// Names of the axes that are possible for the muscle.
 fn known(muscle: &Muscle) -> Vec<String> {
     let plain = ["contraction", "pressure", "slenderness", "elastic_group"].map(str::to_owned);
     let fits = |parameter: &Parameter| parameter.kind().is_none_or(|kind| kind == muscle.kind());
@@ -141,7 +141,7 @@ fn known(muscle: &Muscle) -> Vec<String> {
 
 fn unknown(axes: &Settings<'_>, name: &str, span: ops::Range<usize>, muscle: &Muscle) -> FileError {
     let what = format!("unknown axis `{}`", shortened(name));
-    // [axes.fibre.stiffness] without quotes is a table within a table.
+    // Without quotes, [axes.fibre.stiffness] is a table within a table.
     let dotted = axes.get(name).and_then(|value| dotted(name, value, muscle));
     if let Some(dotted) = dotted {
         return axes.error(span, what, format!("write the name in quotes: `[axes.\"{dotted}\"]`"));
@@ -154,7 +154,7 @@ fn unknown(axes: &Settings<'_>, name: &str, span: ops::Range<usize>, muscle: &Mu
     axes.error(span, what, instead)
 }
 
-/// The name of an axis that was split at its dots.
+/// The full name of an axis that TOML split at its dots.
 fn dotted(name: &str, value: Setting<'_>, muscle: &Muscle) -> Option<String> {
     value.entries()?.into_iter().find_map(|(key, inner)| {
         let name = format!("{name}.{key}");
@@ -162,7 +162,7 @@ fn dotted(name: &str, value: Setting<'_>, muscle: &Muscle) -> Option<String> {
     })
 }
 
-/// The name as a key of TOML.
+/// The name as a TOML key.
 fn quoted(name: &str) -> String {
     if name.contains('.') { format!("\"{name}\"") } else { name.to_owned() }
 }
@@ -188,7 +188,7 @@ fn between(
             "a range must rise, and have a finite length: this one goes from {from} to {to}"
         )));
     }
-    // Where both are > 0 the ratio may still overflow.
+    // Even with both ends > 0 their ratio may overflow.
     if spacing == Spacing::Log && !(from > 0.0 && to.is_none_or(|to| (to / from).is_finite())) {
         let what = format!("logarithmic spacing from {from} is not possible: both ends must be > 0");
         let instead = "write a lower end > 0, or `spacing = \"linear\"`";

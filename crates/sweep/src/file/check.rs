@@ -1,4 +1,4 @@
-//! What the axes of a sweep file can't be, together or with its muscle.
+//! Checks that the axes of a sweep file are compatible with each other and with the muscle.
 
 use bulge_effects::{Catalogue, known};
 use bulge_fibre::{Approach, Parts, Problem};
@@ -9,20 +9,20 @@ use super::axes::Placed;
 use crate::design::at_step;
 use crate::plan::{End, Quantity, Range};
 
-/// What to write instead of numbers of fibres that aren't whole.
+/// Advice for numbers of fibres that aren't whole.
 const LIST: &str = "use a list, such as `list = [20, 40, 60]`";
 
-/// The muscle of a sweep with its axes.
+/// The muscle of a sweep and its axes.
 pub(super) struct Family<'p, 'a> {
     pub(super) muscle: &'p Muscle,
     pub(super) catalogue: &'p Catalogue,
-    /// Gauge pressure \[Pa\] where no axis varies it.
+    /// Gauge pressure \[Pa\] if no axis varies it.
     pub(super) pressure: f64,
     pub(super) axes: &'p [Placed<'a>],
 }
 
 impl Family<'_, '_> {
-    /// Refuses axes that vary the same, or that the muscle can't have.
+    /// Refuses two axes that vary the same quantity, and axes that are impossible for the muscle.
     pub(super) fn check(&self) -> Result<(), FileError> {
         for (i, placed) in self.axes.iter().enumerate() {
             let target = self.target(&placed.axis.quantity);
@@ -41,12 +41,12 @@ impl Family<'_, '_> {
         Ok(())
     }
 
-    /// The number of the muscle that an axis changes.
+    /// The quantity of the muscle that an axis actually changes.
     fn target(&self, quantity: &Quantity) -> Quantity {
         match quantity {
             Quantity::Slenderness => Quantity::Parameter(Parameter::Radius),
             Quantity::ElasticGroup => Quantity::Parameter(Parameter::FibreStiffness),
-            // The radius that acts in a pleated muscle is that at the fittings, under either name.
+            // In a pleated muscle the radius at the fittings is the one that acts, under either name.
             Quantity::Parameter(Parameter::FittingRadius) if self.muscle.is_pleated() => {
                 Quantity::Parameter(Parameter::Radius)
             }
@@ -54,12 +54,12 @@ impl Family<'_, '_> {
         }
     }
 
-    /// Whether an axis changes this number of the muscle.
+    /// Whether an axis changes this quantity of the muscle.
     pub(super) fn varies(&self, quantity: &Quantity) -> bool {
         self.axes.iter().any(|placed| self.target(&placed.axis.quantity) == *quantity)
     }
 
-    /// The elastic group needs pleated fibres that can be counted.
+    /// Refuses the elastic group unless the muscle has pleated fibres of known number.
     fn check_group(&self, placed: &Placed<'_>) -> Result<(), FileError> {
         let refused =
             |what: &str, instead: &str| Err(placed.settings.error(placed.name.clone(), what, instead));
@@ -78,15 +78,16 @@ impl Family<'_, '_> {
         Ok(())
     }
 
-    /// The muscle at the ends of each axis. Axes that are set before it are at their lower ends, as it may need them: a fibre's stiffness needs a number
-    /// of fibres. The others are as in the muscle's file.
+    /// The muscle at both ends of each axis. Axes that are set before it are at their lower ends, because it
+    /// may depend on them: the stiffness of a fibre needs a number of fibres. All other axes are as in the
+    /// muscle file.
     ///
-    /// Refuses values that the muscle can't have.
+    /// Values that are impossible for the muscle are refused.
     pub(super) fn muscles(&self) -> Result<Vec<Muscle>, FileError> {
         let mut ground = self.muscle.clone();
         let mut found = vec![];
         let mut axes: Vec<&Placed<'_>> = self.axes.iter().collect();
-        // What follows from other numbers is set after them.
+        // Quantities derived from others are set after them.
         axes.sort_by_key(|placed| match placed.axis.quantity {
             Quantity::ElasticGroup => 2,
             Quantity::Slenderness => 1,
@@ -110,7 +111,7 @@ impl Family<'_, '_> {
         Ok(found)
     }
 
-    /// The muscle with another value of an axis, or why it can't have it.
+    /// The muscle with another value on an axis, or the reason why that value is impossible.
     fn with(&self, muscle: &Muscle, quantity: &Quantity, value: f64) -> Result<Muscle, String> {
         let positive = |name: &str| {
             if value > 0.0 {
@@ -142,14 +143,15 @@ impl Family<'_, '_> {
         }
     }
 
-    /// Whether the force is infinite at the contraction 0 somewhere: straight fibres that don't stretch.
+    /// Whether the force is infinite at the contraction 0 anywhere: it is for straight fibres that don't
+    /// stretch.
     pub(super) fn is_singular(&self) -> bool {
         let stretches =
             self.muscle.fibre().is_some() || self.varies(&Quantity::Parameter(Parameter::FibreStiffness));
         let misalignment = Quantity::Parameter(Parameter::Misalignment);
         let axis = self.axes.iter().find(|placed| placed.axis.quantity == misalignment);
         let is_straight = match axis.map(|placed| &placed.axis.range) {
-            // None in a braid.
+            // A braid has no misalignment.
             None => self.muscle.get(Parameter::Misalignment) == Some(0.0),
             Some(Range::List(values)) => values.contains(&0.0),
             Some(Range::Between { from, to, .. }) => {
@@ -159,7 +161,7 @@ impl Family<'_, '_> {
         is_straight && !stretches
     }
 
-    /// Whether any of these muscles needs the integration of its meridian, where the method may choose.
+    /// Whether any of these muscles needs the integration of its meridian if the method may be chosen.
     pub(super) fn shoots(&self, muscles: &[Muscle]) -> bool {
         let shoots = |muscle: &Muscle| {
             Problem::new(muscle, Pressure::pa(self.pressure)).is_ok_and(|problem| problem.shoots())
@@ -167,7 +169,7 @@ impl Family<'_, '_> {
         muscles.iter().any(shoots)
     }
 
-    /// Why the method is not possible.
+    /// The reason why the method is impossible; none if it is possible.
     pub(super) fn obstacle(&self, approach: Approach, shoots: bool) -> Option<&'static str> {
         let is_cylinder = Parts::of(self.muscle).ends == Ends::Cylinder;
         match approach {
@@ -180,7 +182,7 @@ impl Family<'_, '_> {
     }
 }
 
-/// The muscle with another value of an effect's number.
+/// The muscle with another value of a number of an effect.
 fn with_effect(
     muscle: &Muscle,
     catalogue: &Catalogue,
@@ -210,7 +212,7 @@ fn ends(range: &Range) -> [Option<f64>; 2] {
     }
 }
 
-/// Refuses fibres that can't be counted.
+/// Refuses numbers of fibres that aren't valid.
 fn check_whole(placed: &Placed<'_>) -> Result<(), FileError> {
     let strange = match &placed.axis.range {
         Range::List(values) => values.iter().copied().find(|value| value.fract() != 0.0),

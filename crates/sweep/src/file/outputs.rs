@@ -5,7 +5,7 @@ use bulge_muscles::{FileError, Parameter};
 
 use crate::output::{Output, Variable};
 
-/// The outputs that a table of the file names, if it does; `has` says which numbers the muscle has.
+/// The outputs that the file names, if it names any; `has` tells whether the muscle has a parameter.
 pub(super) fn outputs(
     settings: &Settings<'_>,
     has: &dyn Fn(Parameter) -> bool,
@@ -30,7 +30,7 @@ pub(super) fn outputs(
     })
 }
 
-/// The outputs that a table of a file names, if it does, each once.
+/// The list of outputs in a table of a file, if there is one. Each may be named once.
 pub(crate) fn listed<'a, T: PartialEq>(
     settings: &Settings<'a>,
     named: impl Fn(Setting<'a>, &str) -> Result<T, FileError>,
@@ -54,7 +54,7 @@ pub(crate) fn listed<'a, T: PartialEq>(
     Ok(Some(outputs))
 }
 
-/// What is said of a name that no output has.
+/// The error for a name that no output has.
 pub(crate) fn unknown<'n>(
     settings: &Settings<'_>,
     item: Setting<'_>,

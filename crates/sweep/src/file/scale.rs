@@ -1,19 +1,19 @@
-//! Values of an axis in text: numbers, lists and ranges with units of its dimension.
+//! Values of an axis as text: numbers, lists and ranges, with units of the axis's dimension.
 
 use bulge_muscles::settings::shortened;
 use bulge_muscles::{Angle, Dimension, LearntValue, Parameter, Quantity as _, units};
 
-/// The word for the contraction at which the force vanishes.
+/// The keyword for the contraction at which the force vanishes.
 const LIMIT: &str = "limit";
 
-/// What the values of an axis are measured in.
+/// Dimension and unit of the values of an axis.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Scale {
     dimension: Dimension,
     is_angle: bool,
     /// SI unit; "1" for a pure number.
     pub(super) unit: String,
-    /// Two values as they may be written, the smaller one first.
+    /// Two example values, the smaller one first.
     example: [String; 2],
 }
 
@@ -23,27 +23,27 @@ impl Scale {
         Self { dimension, is_angle, unit: unit.to_owned(), example }
     }
 
-    /// Of the contraction.
+    /// Scale of the contraction.
     pub(super) fn contraction() -> Self {
         Self::new(Dimension::NONE, false, "1", ["1 %", "20 %"])
     }
 
-    /// Of the pressure.
+    /// Scale of the pressure.
     pub(super) fn pressure() -> Self {
         Self::new(Dimension::PRESSURE, false, "Pa", ["1 bar", "4 bar"])
     }
 
-    /// Of l0/R.
+    /// Scale of the slenderness l0/R.
     pub(super) fn slenderness() -> Self {
         Self::new(Dimension::NONE, false, "1", ["4", "20"])
     }
 
-    /// Of the elastic group.
+    /// Scale of the elastic group.
     pub(super) fn elastic_group() -> Self {
         Self::new(Dimension::NONE, false, "1", ["1e-5", "1e-3"])
     }
 
-    /// Of a number of the muscle.
+    /// Scale of a parameter of the muscle.
     pub(super) fn parameter(parameter: Parameter) -> Self {
         let (dimension, example) = match parameter.unit() {
             "rad" => (Dimension::NONE, ["20 deg", "30 deg"]),
@@ -56,7 +56,7 @@ impl Scale {
         Self::new(dimension, parameter.unit() == "rad", parameter.unit(), example)
     }
 
-    /// Of a number of an effect.
+    /// Scale of a number of an effect.
     pub(super) fn effect(value: &LearntValue) -> Self {
         let is_angle = is_angle(&value.unit);
         let unit = if is_angle { "rad".to_owned() } else { value.dimension.to_string() };
@@ -65,19 +65,19 @@ impl Scale {
         Self { dimension: value.dimension, is_angle, unit, example }
     }
 
-    /// What a range of such values looks like.
+    /// An example of a range.
     pub(super) fn range_example(&self) -> String {
         let [low, high] = &self.example;
         format!("write such as `range = \"{low}..{high}\"`")
     }
 
-    /// What a list of such values looks like.
+    /// An example of a list.
     pub(super) fn list_example(&self) -> String {
         let [low, high] = &self.example;
         format!("write such as `list = [\"{low}\", \"{high}\"]`")
     }
 
-    /// One value in SI; a bare number takes the unit `inherited`, if there is one.
+    /// One value in SI. A bare number takes the unit `inherited`, if one is given.
     pub(super) fn one(&self, text: &str, inherited: Option<&str>) -> Result<f64, String> {
         let read = |text: &str| units::any(text).map_err(|error| error.to_string());
         let (mut text, mut found) = (text.trim().to_owned(), read(text)?);
@@ -99,14 +99,14 @@ impl Scale {
         ))
     }
 
-    /// "20,40,60" or "1,2,3 bar": numbers without a unit take that of the last one.
+    /// Reads "20,40,60" or "1,2,3 bar": numbers without a unit take the unit of the last one.
     pub(super) fn list(&self, text: &str) -> Result<Vec<f64>, String> {
         let last = text.rsplit(',').next().unwrap_or_default();
         let unit = unit_of(last)?;
         text.split(',').map(|item| self.one(item, Some(&unit))).collect()
     }
 
-    /// "1..3 bar": both ends, the upper one none if it is the word `limit`.
+    /// Reads "1..3 bar" into both ends. The upper end is none for the word `limit`.
     pub(super) fn range(&self, text: &str) -> Result<(f64, Option<f64>), String> {
         let Some((from, to)) = text.split_once("..") else {
             return Err(format!("`{}` is no range: two values with `..` between them", shortened(text)));

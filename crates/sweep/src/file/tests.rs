@@ -1,4 +1,4 @@
-//! Sweep files: every key, every default, and what is answered to every mistake.
+//! Sweep files: every key, every default, and the message for every mistake.
 
 mod mistakes;
 
@@ -30,7 +30,7 @@ fn refused(text: &str, parts: &[&str]) {
     }
 }
 
-/// A folder of its own that is deleted afterwards.
+/// A temporary folder, deleted afterwards.
 fn folder(files: &[(&str, &str)]) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     for (name, text) in files {
@@ -62,7 +62,7 @@ fn every_key_is_read() {
             "{key}"
         );
     }
-    // What is in comments holds as well, where it fits together.
+    // The lines in comments are valid as well, as far as they are compatible.
     let fixed = SWEEP_EXAMPLE.replace("# contraction", "contraction").replace("# chunk", "chunk");
     let fixed = fixed
         .replace("[axes.contraction]\nrange = \"0.5 %..limit\"", "[axes.length]\nrange = \"80..120 mm\"");
@@ -87,7 +87,7 @@ fn what_is_left_out_has_a_default() {
         (table.design, wish.outputs, wish.gradient),
         (None, vec![Output::ForceF, Output::VolumeV], 1e-4)
     );
-    // A meridian to integrate takes longer.
+    // Points that need the integration of a meridian take longer, so chunks are smaller.
     assert_eq!((read(BRAID).chunk, short.chunk), (2048, 65_536));
     assert_eq!(read(&format!("method = \"shooting\"\n{SHORT}")).chunk, 2048);
     assert_eq!(read(&format!("chunk = 7\n{BRAID}")).chunk, 7);
@@ -121,7 +121,7 @@ fn axes_by_name_by_key_and_of_effects() {
     let long = text.replace("\"coulomb", "\"effects.coulomb");
     let long = Plan::from_toml(&long, "s.toml", Some(folder.path())).unwrap();
     assert_eq!((&long.axes[1].name, &long.axes[1].quantity), (&plan.axes[1].name, &plan.axes[1].quantity));
-    // The same by another name.
+    // The same axis under another name.
     assert!(of("coulomb-friction.force", "fibre.stiffness").contains("duplicate"));
     let twice = of(
         "[axes.\"coulomb-friction.force\"]\nrange = \"1..20 N\"",
@@ -155,7 +155,7 @@ fn a_sweep_beside_its_muscle() {
 
 #[test]
 fn braids_and_members_that_need_each_other() {
-    // The number of fibres makes their stiffness possible, and a wall the bladder.
+    // A number of fibres is needed for their stiffness, and a wall for the bladder.
     let text = format!("{BRAID}[axes.fibres]\nlist = [60, 80]\n[axes.fibre_stiffness]\nlist = \"5 kN\"\n");
     assert_eq!(read(&text).points(), 40);
     let continuous = "muscle = \"ppam-1\"\ncontraction = \"10 %\"\n[axes.elastic_group]\nlist = [1e-4]\n";
@@ -173,7 +173,7 @@ fn braids_and_members_that_need_each_other() {
     let folder = folder(&[("m.toml", STRETCHY)]);
     let stretchy = zero.replace("ppam-2-r16", "m.toml");
     assert!(Plan::from_toml(&stretchy, "s.toml", Some(folder.path())).is_ok());
-    // The braid and its fittings have a radius each.
+    // The braid and its fittings each have a radius.
     let radii = "[axes.radius]\nlist = [\"10 mm\"]\n[axes.fitting_radius]\nlist = [\"9 mm\"]\n";
     assert_eq!(read(&format!("{BRAID}{radii}")).axes.len(), 3);
     // Numbers of fibres from a range.

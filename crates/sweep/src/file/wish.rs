@@ -1,4 +1,4 @@
-//! The table of a sweep file.
+//! The `[table]` of a sweep file.
 
 use bulge_muscles::settings::{Keys, Settings};
 use bulge_muscles::{Dimension, FileError, Parameter};
@@ -8,7 +8,7 @@ use super::outputs::outputs;
 use crate::output::Output;
 use crate::plan::{Quantity, Range, TableForm, TableRequirements};
 
-/// Keys of the table, with an example of each; the outputs first.
+/// Keys of the table, each with an example; the outputs come first.
 pub(super) const TABLE: Keys = &[
     ("outputs", "outputs = [\"force_f\", \"volume_v\"]"),
     ("tolerance", "tolerance = 1e-6"),
@@ -21,15 +21,16 @@ pub(super) const TABLE: Keys = &[
 const MOST_AXES: usize = 4;
 /// Most outputs of a table.
 const MOST_OUTPUTS: usize = 8;
-/// Bounds of its numbers.
+/// Allowed ranges of the tolerance and of the gradient.
 const TOLERANCE: [f64; 2] = [1e-10, 0.1];
 const GRADIENT: [f64; 2] = [1e-8, 1.0];
 const BYTES: [u64; 2] = [1 << 10, 64 << 20];
 const CHECKS: [u64; 2] = [100_000, 1_000_000_000];
-/// Units of memory with their bytes.
+/// Units of memory with their sizes in bytes.
 const UNITS: [(&str, f64); 5] = [("B", 1.0), ("kB", 1e3), ("KiB", 1024.0), ("MB", 1e6), ("MiB", 1_048_576.0)];
 
-/// The table that a file wants over these axes; `usual` are the outputs of the sweep, and `has` says which numbers the muscle has.
+/// The table that a file requests over these axes. `usual` are the outputs of the sweep; `has` tells whether
+/// the muscle has a parameter.
 pub(super) fn wish(
     settings: &Settings<'_>,
     axes: &[Placed<'_>],
@@ -49,14 +50,14 @@ pub(super) fn wish(
     Ok(Some(TableRequirements { outputs, ..limits(&table)? }))
 }
 
-/// The table that the file of a joint wants, which states the outputs itself.
+/// The table that a joint file requests. The joint file states the outputs elsewhere.
 pub(crate) fn without_outputs(settings: &Settings<'_>) -> Result<Option<TableRequirements>, FileError> {
     let Some(table) = settings.table("table", "`[table]`", &TABLE[1..])? else { return Ok(None) };
     table.check_keys()?;
     limits(&table).map(Some)
 }
 
-/// What a table must reach, without its outputs.
+/// Requirements on a table, without its outputs.
 fn limits(table: &Settings<'_>) -> Result<TableRequirements, FileError> {
     let bytes = max_size(table)?;
     let forms = [
@@ -116,7 +117,7 @@ fn checks(table: &Settings<'_>) -> Result<u64, FileError> {
     Err(table.error(table.value_span("checks"), what, "write such as `checks = 131072`"))
 }
 
-/// A number of bytes, bare or with a unit.
+/// A number of bytes, with or without a unit.
 fn max_size(table: &Settings<'_>) -> Result<Option<u64>, FileError> {
     let Some(value) = table.get("max_size") else { return Ok(None) };
     let Some(bytes) = value.whole().or_else(|| value.text().and_then(bytes)) else {
@@ -132,7 +133,7 @@ fn max_size(table: &Settings<'_>) -> Result<Option<u64>, FileError> {
     Err(table.unreadable("max_size", value, what))
 }
 
-/// "64 KiB" in bytes, parts of a byte left out.
+/// Converts such as "64 KiB" to bytes; fractions of a byte are dropped.
 fn bytes(text: &str) -> Option<u64> {
     let text = text.trim();
     let (number, unit) = text.split_at(text.find(|c: char| c.is_ascii_alphabetic())?);

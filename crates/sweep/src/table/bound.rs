@@ -1,9 +1,10 @@
-//! A bound of a table's error by subdivision.
+//! A bound of the error of a table, by subdivision.
 //!
-//! Every cell is divided; at the middle of each part the error against the polynomial that stands for the solver is computed together with that of the
-//! neighbours at the part's faces. Between them a smooth error rises by at most an eighth of its second difference along each axis. To the largest
-//! of these the misfit of the polynomial at the solver is added, and it is never less than what was measured. The bound is as sure as the error is
-//! smooth on a part of a cell: it is no proof.
+//! Every cell is divided into parts. The error against the polynomial, which stands for the solver, is
+//! computed in the middle of each part and at the middles of its faces. Between these points a smooth error
+//! rises by at most an eighth of its second difference along each axis. The misfit between polynomial and
+//! solver is added to the largest of these values. The bound is never less than the measured error. It relies
+//! on the error being smooth on a part of a cell; it is no proof.
 
 use bulge_table::{Form, Table};
 use rayon::prelude::*;
@@ -13,11 +14,12 @@ use super::domain::Domain;
 use super::field::NoValue;
 use super::polynomial::Polynomial;
 
-/// Most parts in all, where cells are divided; an undivided cell is one part.
+/// Most parts in total if cells are divided; an undivided cell is one part.
 const MOST_PARTS: usize = 24_000;
-/// Multiplications that the bound may take: where every cell would take more, as many of them as that, evenly spread.
+/// Most multiplications for the bound. If all cells would take more, only as many evenly spread ones are used
+/// as this allows.
 const MOST_WORK: usize = 3_000_000_000;
-/// Parts of a cell along an axis, at most.
+/// Most parts of a cell along an axis.
 const PARTS: usize = 3;
 /// Points at which the polynomial is compared with the solver.
 const POINTS: u64 = 1000;
@@ -31,7 +33,7 @@ pub(crate) fn bound(
     nodes: &[usize],
 ) -> Result<Vec<f64>, NoValue> {
     let axes = nodes.len();
-    // Cells of a spline; of a polynomial as many as it has orders.
+    // Cells of a spline. For polynomials there are as many cells as orders.
     let less = if table.form() == Form::Spline { 3 } else { 0 };
     let cells: Vec<usize> = nodes.iter().map(|n| n.saturating_sub(less).max(1)).collect();
     let all = |each: usize| cells.iter().map(|cells| cells * each).product::<usize>();
@@ -82,7 +84,7 @@ pub(crate) fn bound(
     Ok(worst.iter().zip(misfit).map(|(error, misfit)| error + misfit).collect())
 }
 
-/// The middle of a part by its number.
+/// Middle of the part with the given number.
 fn numbered(parts: &[usize], mut number: usize) -> Vec<f64> {
     let mut middle = vec![0.0; parts.len()];
     for (middle, parts) in middle.iter_mut().zip(parts).rev() {
@@ -116,7 +118,7 @@ fn errors(
             let over = if output.is_singular { 1.0 / unit[0] } else { 1.0 };
             let factor = over * if output.vanishes { 1.0 - unit[0] } else { 1.0 };
             let exact = values[o] * factor;
-            // Within the error of the edge a point may lie outside the table.
+            // Within the error of the edge, a point may lie outside the table.
             let found = if is_inside { found[o] } else { exact };
             (found - exact) / exact.abs().max(FLOOR * scales[o] * over)
         })

@@ -1,4 +1,5 @@
-//! Building a table: coordinates, edge, polynomials in place of the solver, then the smallest table of a form that meets the tolerance.
+//! Builds a table: coordinates, edge, polynomials in place of the solver, then the smallest table of a form
+//! that meets the tolerance.
 
 use bulge_table::{Certificate, Form, MOST_ORDERS, Table, TableError};
 use rayon::prelude::*;
@@ -13,39 +14,39 @@ use super::field::{Field, NoValue};
 use super::polynomial::Polynomial;
 use crate::plan::TableForm;
 
-/// Part of the tolerance, times the floor, to which polynomials follow the solver.
+/// Polynomials follow the solver to this fraction of the tolerance times the floor.
 const FOLLOW: f64 = 0.05;
-/// The solver itself is not more exact.
+/// Accuracy of the solver itself.
 const SOLVER: f64 = 1e-13;
-/// Points at which a candidate is measured on the way.
+/// Points at which a candidate is measured during the search.
 const ON_THE_WAY: u64 = 2048;
-/// Number of the first certificate point: candidates are measured at others.
+/// Number of the first certificate point. Candidates are measured at other points.
 const FIRST_CHECK: u64 = 1 << 20;
-/// Points from which errors along one axis, and scales, are estimated.
+/// Points from which scales, and errors along one axis, are estimated.
 const ESTIMATE: u64 = 512;
-/// Cells with which the errors along one axis are estimated.
+/// Number of cells with which the errors along one axis are estimated.
 const ESTIMATE_CELLS: usize = 32;
 /// Most tries to meet the tolerance.
 const MOST_TRIES: usize = 12;
-/// Other proportions of cells that are tried on each axis.
+/// Other proportions of cells that are tried for each axis.
 const TILTS: [f64; 4] = [0.75, 0.88, 1.14, 1.33];
-/// Tolerances from which single precision is tried.
+/// Single precision is tried from this tolerance on.
 const SINGLE: f64 = 4e-7;
 
-/// What a table must reach, and how it is called.
+/// Requirements on a table, and its text.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Requirements {
     /// Largest relative error of the values.
     pub tolerance: f64,
     /// Largest relative error of the gradients.
     pub gradient: f64,
-    /// Most bytes.
+    /// Largest size in bytes.
     pub max_bytes: usize,
     /// Its form.
     pub form: TableForm,
-    /// How many points certify it.
+    /// Number of points at which the table is certified.
     pub checks: u64,
-    /// Where it comes from, as JSON.
+    /// Origin of the table, as JSON.
     pub text: String,
 }
 
@@ -54,7 +55,7 @@ pub struct Requirements {
 pub struct Built {
     /// Its bytes.
     pub bytes: Vec<u8>,
-    /// Whether the tolerance was met; else the size limit came first.
+    /// Whether the tolerance was met; otherwise the size limit was reached first.
     pub is_met: bool,
     /// Errors of each output.
     pub certificates: Vec<Certificate>,
@@ -66,10 +67,10 @@ pub enum BuildError {
     /// The solver has no value at a point of the domain.
     #[error("no table: {0}; leave the region out of the ranges of the axes")]
     NoValue(#[from] NoValue),
-    /// It can't be written.
+    /// The table can't be encoded.
     #[error(transparent)]
     Encode(#[from] EncodeError),
-    /// What was written can't be read back.
+    /// The encoded table can't be read back.
     #[error("the table was not written as it is read: {0}")]
     Table(#[from] TableError),
     /// Not even the smallest table fits.
@@ -84,7 +85,7 @@ pub enum BuildError {
     },
 }
 
-/// A table on the way.
+/// A table during the search.
 #[derive(Debug, Clone)]
 struct Candidate {
     form: Form,
@@ -92,7 +93,7 @@ struct Candidate {
     nodes: Vec<usize>,
 }
 
-/// Everything that candidates share.
+/// Data shared by all candidates.
 struct Builder<'a> {
     domain: Domain<'a>,
     fit: Polynomial,
@@ -101,7 +102,8 @@ struct Builder<'a> {
     wish: &'a Requirements,
 }
 
-/// Builds a table of a field. Parallel; the same bytes on any number of threads. `told` hears what is going on.
+/// Builds a table of a field. It runs in parallel and gives the same bytes on any number of threads. `told`
+/// receives messages on the progress.
 ///
 /// # Errors
 /// [`BuildError`].
@@ -160,7 +162,7 @@ fn scales(fit: &Polynomial, field: &dyn Field, axes: usize) -> Vec<f64> {
     scales
 }
 
-/// Largest difference between the stored edge and the solver's.
+/// Largest difference between the stored edge and the edge found by the solver.
 fn edge_error(domain: &Domain<'_>) -> Result<f64, NoValue> {
     let Some(edge) = &domain.edge else { return Ok(0.0) };
     let errors: Vec<f64> = (0..ESTIMATE)
@@ -234,7 +236,8 @@ impl<'a> Builder<'a> {
         records + edge + self.wish.text.len() + each * outputs * nodes
     }
 
-    /// How far a candidate is from what is wished: 1 just meets it, measured at a few points.
+    /// Largest error of a candidate relative to the allowed one, measured at a few points: 1 just meets the
+    /// requirements.
     fn ratio(&self, candidate: &Candidate) -> Result<f64, BuildError> {
         let empty = vec![Certificate::default(); self.scales.len()];
         let bytes = self.bytes(candidate, &empty, [0, 0])?;
@@ -249,7 +252,8 @@ impl<'a> Builder<'a> {
         certificates.iter().map(one).fold(0.0, f64::max)
     }
 
-    /// The smallest table of a form that meets the wish, or the best that the size allows; and how far it is from the wish.
+    /// The smallest table of a form that meets the requirements, or the best one that the size allows, and
+    /// its error ratio.
     fn best(&self, form: Form) -> Result<(f64, Candidate), BuildError> {
         match form {
             Form::Spline => self.spline(),
@@ -257,12 +261,13 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// Splines with as few nodes as meet the wish, or as many as the size allows; and how far they are from it.
+    /// Splines with the fewest nodes that meet the requirements, or as many nodes as the size allows, and the
+    /// error ratio.
     fn spline(&self) -> Result<(f64, Candidate), BuildError> {
         let axes = self.fit.orders.len();
         let mut needed: Vec<f64> = (0..axes).map(|axis| self.cells_needed(axis)).collect();
         let mut best = self.splines(&needed)?;
-        // The errors of the axes are estimates: a little more on one at the cost of the others may do better.
+        // The errors of the axes are estimates. More cells on one axis and fewer on the others may do better.
         for axis in 0..axes {
             for factor in TILTS {
                 let mut other = needed.clone();
@@ -277,7 +282,7 @@ impl<'a> Builder<'a> {
         Ok(best)
     }
 
-    /// The smallest splines with cells in the given proportion.
+    /// The smallest splines whose cells have the given proportions.
     fn splines(&self, cells: &[f64]) -> Result<(f64, Candidate), BuildError> {
         let is_single = self.wish.tolerance >= SINGLE;
         let at = |scale: f64, is_single: bool| Candidate {
@@ -289,7 +294,7 @@ impl<'a> Builder<'a> {
         self.fewest(is_single, 0.25, &at)
     }
 
-    /// Polynomials with as few orders as meet the wish.
+    /// Polynomials with the fewest orders that meet the requirements.
     fn chebyshev(&self) -> Result<(f64, Candidate), BuildError> {
         let orders = self.fit.orders.clone();
         let at = |scale: f64, is_single: bool| Candidate {
@@ -300,7 +305,7 @@ impl<'a> Builder<'a> {
         };
         let is_single = self.wish.tolerance >= SINGLE;
         let (mut ratio, mut best) = self.fewest(is_single, 0.1, &at)?;
-        // Order by order, the axis that saves most first.
+        // Drop orders one by one, beginning with the axis that saves most.
         let mut axes: Vec<usize> = (0..orders.len()).collect();
         axes.sort_by_key(|axis| Reverse(best.nodes[*axis]));
         for axis in axes {
@@ -317,8 +322,8 @@ impl<'a> Builder<'a> {
         Ok((ratio, best))
     }
 
-    /// The smallest scale of nodes that meets the wish within the size limit, by steps of the error's order; double precision where single
-    /// doesn't do.
+    /// The smallest scale of nodes that meets the requirements within the size limit. The steps follow from
+    /// the order of the error. Double precision is used where single precision isn't enough.
     fn fewest(
         &self,
         is_single: bool,
@@ -327,9 +332,10 @@ impl<'a> Builder<'a> {
     ) -> Result<(f64, Candidate), BuildError> {
         let limit = self.wish.max_bytes;
         let mut found: Option<(f64, Candidate)> = None;
+        // Single precision comes first; double is tried only if single fails to meet the requirements.
         for is_single in [true, false].into_iter().filter(|single| is_single || !single) {
             let (mut scale, mut low, mut high) = (1.0, 0.0, f64::INFINITY);
-            // The largest scale that fits.
+            // Start from the largest scale that fits.
             while self.size(&at(scale, is_single)) > limit && scale > 1e-3 {
                 scale *= 0.9;
             }
@@ -357,6 +363,7 @@ impl<'a> Builder<'a> {
                 } else {
                     low = scale;
                 }
+                // The error is taken as a power of the scale; a step out of the bracket becomes a bisection.
                 let mut next = scale * ratio.powf(order).clamp(0.5, 2.0) * 1.005;
                 if !(next > low && next < high) {
                     next = if high.is_finite() { 0.5 * (low + high) } else { 1.05 * low };
@@ -373,8 +380,8 @@ impl<'a> Builder<'a> {
         found.ok_or_else(|| BuildError::TooSmall { needed: self.size(&at(1e-3, is_single)), limit })
     }
 
-    /// Cells along an axis for its share of the tolerance, from the error of splines along this axis alone: values of fourth order,
-    /// slopes of third.
+    /// Number of cells along an axis for its share of the tolerance. It follows from the error of splines
+    /// along this axis alone: fourth order in the values, third order in the slopes.
     fn cells_needed(&self, axis: usize) -> f64 {
         let (axes, outputs) = (self.fit.orders.len(), self.fit.outputs);
         let cells = ESTIMATE_CELLS as f64;
@@ -406,13 +413,15 @@ impl<'a> Builder<'a> {
                 worst
             })
             .reduce(|| [0.0; 2], |a, b| [a[0].max(b[0]), a[1].max(b[1])]);
+        // Half of the tolerance, divided equally among the axes.
         let share = 0.5 / axes as f64;
         let value = (worst[0] / (share * self.wish.tolerance)).powf(0.25);
         let slope = (worst[1] / (share * self.wish.gradient)).powf(1.0 / 3.0);
         cells * value.max(slope).max(1.0 / cells)
     }
 
-    /// The table with its certificate; finer where the many points of it find a larger error than the few before.
+    /// The table with its certificate. It is refined if the many certificate points find a larger error than
+    /// the few points before.
     fn certified(&self, mut candidate: Candidate) -> Result<Built, BuildError> {
         let checks = [self.wish.checks, FIRST_CHECK];
         let empty = vec![Certificate::default(); self.scales.len()];
@@ -424,7 +433,7 @@ impl<'a> Builder<'a> {
                 measured(&self.domain, &table, &self.scales, (FIRST_CHECK, self.wish.checks))?;
             let bounds = bound(&self.domain, &self.fit, &table, &self.scales, &candidate.nodes)?;
             for (certificate, bound) in certificates.iter_mut().zip(bounds) {
-                // What the samples between have shown is a lower end of any bound.
+                // The largest error measured at the samples is a lower limit of any bound.
                 certificate.bound = bound.max(certificate.value_max);
             }
             let ratio = self.worst(&certificates);

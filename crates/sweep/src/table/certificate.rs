@@ -1,4 +1,4 @@
-//! What a table's errors are: measured against the solver at points off the grid, and bounded by subdivision.
+//! The errors of a table: measured against the solver at points off the grid, and bounded by subdivision.
 //!
 //! ```text
 //! error of the value       |y - y*|/max(|y*|, floor)                           floor = 0.001 max |y| u^k, over the root of the part of the way to the upper end if k = 1
@@ -6,9 +6,9 @@
 //! ```
 //! A point that lies outside the table by no more than the error of its fitted end is left out.
 //!
-//! The points are those of the additive recurrence of the generalised golden ratio (M. Roberts 2018): x_k = frac(k (g^-1, g^-2, ...)) with
-//! g^(d+1) = g + 1. Every second one is uniform in the axes themselves, the others in the coordinates of the table, where layers are as wide as the
-//! rest.
+//! The points are those of the additive recurrence of the generalised golden ratio (M. Roberts 2018): x_k =
+//! frac(k (g^-1, g^-2, ...)) with g^(d+1) = g + 1. Every second point is uniform in the axes themselves. The
+//! others are uniform in the coordinates of the table, in which boundary layers are as wide as the rest.
 
 use bulge_table::format::MOST_AXES;
 use bulge_table::{Certificate, Table};
@@ -19,11 +19,11 @@ use super::coordinate::{Coordinate, Coordinates, point_of};
 use super::domain::Domain;
 use super::field::NoValue;
 
-/// Values below this part of the largest are compared with it.
+/// Values below this fraction of the largest value are compared with that fraction.
 pub(crate) const FLOOR: f64 = 1e-3;
-/// Points of one task: fixed, so that sums don't depend on the number of threads.
+/// Points of one task. The number is fixed, so that sums don't depend on the number of threads.
 const TASK: u64 = 1024;
-/// Fractions keep away from the ends by this.
+/// Fractions keep this distance from the ends.
 const INSIDE: f64 = 1e-9;
 
 /// Errors of all outputs at one point, or summed over many.
@@ -46,7 +46,7 @@ impl Errors {
     }
 }
 
-/// What the sequence advances by in 1 to 4 dimensions.
+/// Increments of the sequence in 1 to 4 dimensions.
 static STEPS: LazyLock<[Vec<f64>; MOST_AXES]> = LazyLock::new(|| {
     std::array::from_fn(|i| {
         let axes = i + 1;
@@ -73,7 +73,7 @@ pub(crate) fn check_point(domain: &Domain<'_>, k: u64) -> Result<Vec<f64>, NoVal
     point_of(domain.field.axes(), &plain, &unit, &|others| Ok(domain.upper_end(others)))
 }
 
-/// Measures a table at `count` points from the number `first` on.
+/// Measures a table at `count` points, beginning with number `first`.
 pub(crate) fn measured(
     domain: &Domain<'_>,
     table: &Table<'_>,
@@ -130,7 +130,7 @@ fn errors_at(
     };
     let (mut found, mut slopes) = (vec![0.0; outputs], vec![0.0; outputs * axes]);
     if table.sample(point, &mut found, &mut slopes).is_none() {
-        // Within the error of the edge a point may lie outside the table.
+        // Within the error of the edge, a point may lie outside the table.
         let at_edge = (high - point[0]).abs() <= 1e-6 * width(0);
         let outside = NoValue(format!("the table has no value at {point:?}"));
         return if at_edge { Ok(vec![Errors::default(); outputs]) } else { Err(outside) };
@@ -181,7 +181,7 @@ mod tests {
             }
             let mean = f64::from(count) / cells.len() as f64;
             let worst = cells.iter().map(|n| (f64::from(*n) - mean).abs()).fold(0.0, f64::max);
-            // Independent points would be off by 3 sqrt(mean).
+            // Independent points would deviate by 3 sqrt(mean).
             assert!(worst < 1.2 * mean.sqrt() + 1.0, "{axes}: {worst} of {mean}");
         }
     }

@@ -1,10 +1,11 @@
-//! From the unit coordinates of a table back to a point, and the choice of their poles.
+//! The map from the unit coordinates of a table back to a point, and the choice of the poles.
 //!
 //! ```text
 //! v = q/Q,   q = s/(s + c),   s = x - low or its root;     c infinite: q = s
 //! ```
-//! A pole c below the width of the axis moves points to the lower end, where a layer may be thin: it is chosen by what the table's form makes of
-//! the outputs along lines through the domain, Chebyshev coefficients that fall fast or splines with small errors.
+//! A pole c below the width of the axis concentrates points at the lower end, where a boundary layer may be
+//! thin. The pole is chosen by the outputs along lines through the domain: their Chebyshev coefficients must
+//! fall fast, or their splines have small errors, depending on the form of the table.
 
 use bulge_table::Form;
 use rayon::prelude::*;
@@ -13,18 +14,18 @@ use super::certificate::FLOOR;
 use super::field::{Field, FieldAxis, NoValue};
 use super::polynomial::{basis, cosines, gauss_points};
 
-/// Poles that are tried, over the width of the axis in s.
+/// Poles that are tried, relative to the width of the axis in s.
 const POLES: [f64; 15] =
     [f64::INFINITY, 4.0, 2.5, 1.6, 1.0, 0.63, 0.4, 0.25, 0.16, 0.1, 0.063, 0.04, 0.025, 0.016, 0.01];
 /// Rounds over all axes.
 const ROUNDS: usize = 2;
 /// Points of a line.
 const POINTS: usize = 28;
-/// Coefficients from this one on are the tail that a pole of polynomials is judged by.
+/// The coefficients from this one on form the tail by which a pole is judged for polynomials.
 const TAIL: usize = 10;
-/// Cells of the spline that a pole of splines is judged by.
+/// Cells of the spline by which a pole is judged for splines.
 const CELLS: usize = 16;
-/// Points in each of them.
+/// Points in each of these cells.
 const IN_A_CELL: usize = 3;
 
 /// The coordinate of an axis.
@@ -43,12 +44,12 @@ impl Coordinate {
         if self.pole.is_infinite() { s } else { s / (s + self.pole) }
     }
 
-    /// The point of a part v of the q at `high`.
+    /// The point whose q is the fraction v of q(`high`).
     pub(crate) fn point(&self, v: f64, high: f64) -> f64 {
         self.of_q(v * self.q(high))
     }
 
-    /// The point of a q.
+    /// The point with the given q.
     pub(crate) fn of_q(&self, q: f64) -> f64 {
         let s = if self.pole.is_infinite() { q } else { self.pole * q / (1.0 - q) };
         self.low + if self.is_root { s * s } else { s }
@@ -58,20 +59,20 @@ impl Coordinate {
 /// The coordinates of all axes of a field.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Coordinates {
-    /// Of each axis; of a fitted axis 0 where all others are at their lower ends.
+    /// Coordinate of each axis. For a fitted axis 0 it holds where all other axes are at their lower ends.
     pub(crate) axes: Vec<Coordinate>,
-    /// How the logarithm of the pole of a fitted axis 0 grows with the coordinates of the others.
+    /// Growth of the logarithm of the pole of a fitted axis 0 with the coordinates of the other axes.
     pub(crate) tilt: Vec<f64>,
 }
 
 impl Coordinates {
-    /// The coordinate of axis 0 at unit coordinates of the others.
+    /// The coordinate of axis 0 at unit coordinates of the other axes.
     pub(crate) fn first(&self, others: &[f64]) -> Coordinate {
         let growth: f64 = self.tilt.iter().zip(others).map(|(tilt, v)| tilt * v).sum();
         Coordinate { pole: self.axes[0].pole * growth.exp(), ..self.axes[0] }
     }
 
-    /// The unit coordinates of values of the axes 1...
+    /// The unit coordinates of values of axis 1 and the following ones.
     pub(crate) fn units(&self, highs: &[f64], others: &[f64]) -> Vec<f64> {
         let one =
             |((x, coordinate), high): ((&f64, &Coordinate), &f64)| coordinate.q(*x) / coordinate.q(*high);
@@ -91,7 +92,7 @@ pub(crate) fn coordinates(field: &dyn Field, form: Form) -> Result<Coordinates, 
     let mut chosen =
         Coordinates { axes: axes.iter().enumerate().map(one).collect(), tilt: vec![0.0; axes.len() - 1] };
     let ends = [0.02, 0.5, 0.98];
-    // What is best on one axis depends a little on the others.
+    // The best pole of one axis depends slightly on the other axes.
     for _ in 0..ROUNDS {
         for axis in (1..axes.len()).rev() {
             let lines = lines(axes.len(), axis, &[&ends; 4]);
@@ -102,7 +103,7 @@ pub(crate) fn coordinates(field: &dyn Field, form: Form) -> Result<Coordinates, 
     Ok(chosen)
 }
 
-/// Pole and tilt of axis 0: a layer at its lower end may be thinner where another axis is longer.
+/// Pole and tilt of axis 0: a boundary layer at its lower end may get thinner along another axis.
 fn first_axis(field: &dyn Field, chosen: &mut Coordinates, ends: &[f64], form: Form) -> Result<(), NoValue> {
     let count = chosen.axes.len();
     let others = count - 1;
@@ -124,12 +125,13 @@ fn first_axis(field: &dyn Field, chosen: &mut Coordinates, ends: &[f64], form: F
         };
         *tilt = (side(2)? / side(0)?).ln() / (ends[2] - ends[0]);
     }
+    // The best pole applies in the middle of the other axes; the stored one refers to their lower ends.
     chosen.axes[0].pole = middle * (-0.5 * tilt.iter().sum::<f64>()).exp();
     chosen.tilt = tilt;
     Ok(())
 }
 
-/// Unit coordinates of lines along an axis, one for every combination of `ends` of the others.
+/// Unit coordinates of lines along an axis, one for each combination of `ends` of the other axes.
 fn lines(axes: usize, along: usize, ends: &[&[f64]; 4]) -> Vec<Vec<f64>> {
     let mut lines = vec![vec![0.0; axes]];
     for axis in (0..axes).filter(|axis| *axis != along) {
@@ -148,7 +150,7 @@ fn lines(axes: usize, along: usize, ends: &[&[f64]; 4]) -> Vec<Vec<f64>> {
     lines
 }
 
-/// The pole with which the outputs along lines of an axis are met best.
+/// The pole with which a table meets the outputs along lines of an axis best.
 fn best_pole(
     field: &dyn Field,
     chosen: &Coordinates,
@@ -172,7 +174,7 @@ fn best_pole(
     Ok(best.map_or(f64::INFINITY, |(_, pole)| *pole))
 }
 
-/// Length of an axis in s; of a fitted one where the others are in their middle.
+/// Length of an axis in s. For a fitted axis it is taken in the middle of the other axes.
 fn width(field: &dyn Field, chosen: &Coordinates, axis: usize) -> Result<f64, NoValue> {
     let axes = field.axes();
     let high = if let Some(high) = axes[axis].high {
@@ -185,7 +187,7 @@ fn width(field: &dyn Field, chosen: &Coordinates, axis: usize) -> Result<f64, No
     Ok(if chosen.axes[axis].is_root { length.sqrt() } else { length })
 }
 
-/// The largest error that a table makes of any output along lines of an axis.
+/// The largest error of a table in any output along lines of an axis.
 fn worst_error(
     field: &dyn Field,
     coordinates: &Coordinates,
@@ -223,12 +225,13 @@ fn largest(sample: &[f64]) -> f64 {
     sample.iter().fold(f64::MIN_POSITIVE, |size, value| size.max(value.abs()))
 }
 
-/// What the coefficients from [`TAIL`] on amount to.
+/// Sum of the magnitudes of the coefficients from [`TAIL`] on, relative to the largest sample.
 fn tail(coefficients: &[f64], sample: &[f64]) -> f64 {
     coefficients[TAIL..].iter().map(|c| c.abs()).sum::<f64>() / largest(sample)
 }
 
-/// The error of a cubic Hermite spline of [`CELLS`] cells, relative to the value but for small ones.
+/// Error of a cubic Hermite spline of [`CELLS`] cells, relative to the value, or to the floor for small
+/// values.
 fn spline_error(coefficients: &[f64], sample: &[f64]) -> f64 {
     let floor = FLOOR * largest(sample);
     let at = |u: f64| {
@@ -256,7 +259,7 @@ pub(crate) fn hermite(t: f64) -> [f64; 4] {
     [(1.0 + 2.0 * t) * r * r, t * r * r, t * t * (3.0 - 2.0 * t), -t * t * r]
 }
 
-/// The point of unit coordinates, with the upper end of axis 0 from `end`.
+/// The point at unit coordinates; `end` gives the upper end of axis 0.
 pub(crate) fn point_of(
     axes: &[FieldAxis],
     coordinates: &Coordinates,
@@ -299,7 +302,7 @@ pub(crate) fn reduced(
     Ok(())
 }
 
-/// The four cubic B-splines of a cell at t in \[0, 1\] of it.
+/// The four cubic B-splines of a cell at its local coordinate t in \[0, 1\].
 pub(crate) fn b_splines(t: f64) -> [f64; 4] {
     let r = 1.0 - t;
     [

@@ -1,4 +1,5 @@
-//! A field with its coordinates and its fitted edge: all that is needed to go between points and unit coordinates.
+//! A field with its coordinates and its fitted edge. Together they convert between points and unit
+//! coordinates.
 
 use bulge_table::Form;
 
@@ -6,12 +7,12 @@ use super::coordinate::{Coordinates, coordinates, point_of, reduced};
 use super::edge::Edge;
 use super::field::{Field, NoValue};
 
-/// Part of the tolerance that the edge may take.
+/// Fraction of the tolerance that the edge may take.
 const OF_TOLERANCE: f64 = 0.2;
-/// Part of the size limit that the edge may take.
+/// The edge may take the size limit divided by this number.
 const OF_SIZE: usize = 4;
 
-/// See the module.
+/// A field, its coordinates and its edge; see the module.
 pub(crate) struct Domain<'a> {
     pub(crate) field: &'a dyn Field,
     pub(crate) coordinates: Coordinates,
@@ -21,7 +22,7 @@ pub(crate) struct Domain<'a> {
 }
 
 impl<'a> Domain<'a> {
-    /// Chooses the coordinates of a field and fits its edge for a table of a tolerance and a size.
+    /// Chooses the coordinates of a field and fits its edge, for a table of the given tolerance and size.
     pub(crate) fn new(
         field: &'a dyn Field,
         form: Form,
@@ -33,10 +34,11 @@ impl<'a> Domain<'a> {
         let mut highs: Vec<f64> = field.axes().iter().map(|axis| axis.high.unwrap_or(f64::NAN)).collect();
         let mut edge = None;
         if field.axes()[0].high.is_none() && field.axes().len() == 1 {
-            // Nothing that the end could depend on.
+            // There are no other axes on which the end could depend.
             highs[0] = field.upper_end(&[])?;
         } else if field.axes()[0].high.is_none() {
-            // What vanishes at the edge is compared with a part `floor` of its largest value.
+            // The error of an output that vanishes at the edge is relative to a fraction `floor` of its
+            // largest value.
             let wanted = OF_TOLERANCE * tolerance * floor;
             let fitted = Edge::fitted(field, &coordinates, wanted, most_bytes / OF_SIZE)?;
             highs[0] = fitted.high;
@@ -45,13 +47,13 @@ impl<'a> Domain<'a> {
         Ok(Self { field, coordinates, edge, highs })
     }
 
-    /// The upper end of axis 0 at values of the others, as the edge's polynomial says it.
+    /// The upper end of axis 0 at values of the other axes, from the polynomial of the edge.
     pub(crate) fn upper_end(&self, others: &[f64]) -> f64 {
         let fitted = |edge: &Edge| edge.upper_end(&self.coordinates, &self.highs, others);
         self.edge.as_ref().map_or(self.highs[0], fitted)
     }
 
-    /// The point of unit coordinates.
+    /// The point at unit coordinates.
     pub(crate) fn point(&self, unit: &[f64]) -> Result<Vec<f64>, NoValue> {
         point_of(self.field.axes(), &self.coordinates, unit, &|others| Ok(self.upper_end(others)))
     }
@@ -61,7 +63,7 @@ impl<'a> Domain<'a> {
         reduced(self.field, &self.coordinates, unit, &|others| Ok(self.upper_end(others)), values)
     }
 
-    /// What makes each coordinate 1 at the upper end; of a fitted axis any positive number.
+    /// Factors that make each coordinate 1 at the upper end. On a fitted axis any positive number would do.
     pub(crate) fn scales(&self) -> Vec<f64> {
         self.coordinates.axes.iter().zip(&self.highs).map(|(c, high)| 1.0 / c.q(*high)).collect()
     }

@@ -1,4 +1,5 @@
-//! The fitted upper end of axis 0: K = 1/q(edge), with the pole c, over the other axes as cubic B-splines.
+//! The fitted upper end (edge) of axis 0: K = 1/q(edge) and the pole c, as cubic B-splines over the other
+//! axes.
 
 use rayon::prelude::*;
 
@@ -7,13 +8,13 @@ use super::coordinate::{Coordinate, Coordinates, b_splines, point_of};
 use super::field::{Field, NoValue};
 use super::polynomial::Polynomial;
 
-/// Orders of the polynomial between solver and spline.
+/// Most orders along an axis of the polynomial between solver and spline.
 const MOST_ORDERS: usize = 96;
 /// Points at which the spline is compared with the polynomial.
 const POINTS: u64 = 4000;
 /// Most nodes along an axis.
 const MOST_NODES: usize = 4096;
-/// The polynomial goes as far as the solver's root does.
+/// Wanted error of the polynomial; the root found by the solver is not more accurate.
 const WANTED: f64 = 1e-13;
 
 /// An edge, ready to be stored.
@@ -22,16 +23,16 @@ pub(crate) struct Edge {
     /// Nodes on each axis; 0 on the first.
     pub(crate) nodes: Vec<usize>,
     pub(crate) numbers: Vec<f64>,
-    /// Largest relative error of K and c at the points compared.
+    /// Largest relative error of K and c at the points where they were compared.
     pub(crate) error: f64,
     /// Largest upper end at these points.
     pub(crate) high: f64,
-    /// K and c as the solver says them, nearly.
+    /// K and c as polynomials that follow the solver closely.
     fit: Polynomial,
 }
 
 impl Edge {
-    /// The edge of a field to a relative error of K below `wanted`, or as good as `most_bytes` allow.
+    /// Fits the edge of a field to a relative error of K below `wanted`, or as well as `most_bytes` allow.
     pub(crate) fn fitted(
         field: &dyn Field,
         coordinates: &Coordinates,
@@ -39,7 +40,7 @@ impl Edge {
         most_bytes: usize,
     ) -> Result<Self, NoValue> {
         let others = &field.axes()[1..];
-        // The axes beyond the first have ends of their own.
+        // The axes after the first have ends of their own.
         let alone = Coordinates { axes: coordinates.axes[1..].to_vec(), tilt: Vec::new() };
         let inverse = |unit: &[f64], values: &mut [f64]| {
             let point = point_of(others, &alone, unit, &|_| Err(NoValue(String::new())))?;
@@ -83,7 +84,7 @@ impl Edge {
             off(0).max(off(1))
         };
         let error = (0..POINTS).into_par_iter().map(at).reduce(|| 0.0, f64::max);
-        // The largest end, at points and in the corners.
+        // Largest end, at the points and in the corners.
         let corners = (0..1_usize << nodes.len())
             .map(|corner| (0..nodes.len()).map(|i| (corner >> i & 1) as f64).collect::<Vec<f64>>());
         let high = (0..POINTS)
@@ -94,14 +95,14 @@ impl Edge {
         Self { nodes: std::iter::once(0).chain(nodes.iter().copied()).collect(), numbers, error, high, fit }
     }
 
-    /// The upper end of axis 0 as it is stored, at unit coordinates of the others.
+    /// The upper end of axis 0 as stored, at unit coordinates of the other axes.
     pub(crate) fn stored(&self, coordinates: &Coordinates, unit: &[f64]) -> f64 {
         let number = |which| spline(&self.numbers, &self.nodes[1..], unit, which);
         let first = Coordinate { pole: number(1), ..coordinates.axes[0] };
         first.of_q(1.0 / number(0))
     }
 
-    /// The upper end of axis 0 at values of the others, to the accuracy of the polynomial.
+    /// The upper end of axis 0 at values of the other axes, to the accuracy of the polynomial.
     pub(crate) fn upper_end(&self, coordinates: &Coordinates, highs: &[f64], others: &[f64]) -> f64 {
         let unit = coordinates.units(highs, others);
         let (mut values, mut by) = ([0.0; 2], vec![0.0; 2 * unit.len()]);
@@ -110,7 +111,7 @@ impl Edge {
     }
 }
 
-/// One of the two numbers of a B-spline at unit coordinates: the reader's formula, axis by axis.
+/// One of the two numbers of a B-spline at unit coordinates, by the formula of the reader, axis by axis.
 fn spline(numbers: &[f64], nodes: &[usize], unit: &[f64], number: usize) -> f64 {
     let mut places = Vec::with_capacity(nodes.len());
     for (u, n) in unit.iter().zip(nodes) {

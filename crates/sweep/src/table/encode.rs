@@ -1,4 +1,4 @@
-//! The bytes of a table: the writer to `bulge_table`'s reader.
+//! Encodes a table as bytes; `bulge_table` reads them.
 
 use bulge_table::format::{
     AXIS, FITTED, HEADER, MAGIC, MOST_AXES, MOST_OUTPUTS, NAME, OUTPUT, ROOT, UNIT, VERSION,
@@ -7,7 +7,7 @@ use bulge_table::{Certificate, Form, crc64};
 
 use super::field::{FieldAxis, FieldOutput};
 
-/// A table before it becomes bytes.
+/// A table before it is encoded.
 #[derive(Debug, Clone)]
 pub(crate) struct Draft<'a> {
     pub(crate) form: Form,
@@ -18,10 +18,11 @@ pub(crate) struct Draft<'a> {
     /// Largest value on each axis.
     pub(crate) highs: &'a [f64],
     pub(crate) poles: &'a [f64],
-    /// What makes each coordinate 1 at the upper end.
+    /// Factors that make each coordinate 1 at the upper end.
     pub(crate) scales: &'a [f64],
     pub(crate) nodes: &'a [usize],
-    /// Nodes of the edge on each axis (0 on the first), with their numbers; none if it isn't fitted.
+    /// Numbers of edge nodes on each axis (0 on the first), and the edge coefficients; none if the edge isn't
+    /// fitted.
     pub(crate) edge: Option<(&'a [usize], &'a [f64])>,
     pub(crate) edge_error: f64,
     pub(crate) outputs: &'a [FieldOutput],
@@ -31,7 +32,7 @@ pub(crate) struct Draft<'a> {
     pub(crate) text: &'a str,
 }
 
-/// Why a table can't be written.
+/// Why a table can't be encoded.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum EncodeError {
     /// A name or unit that is too long for its field.
@@ -59,7 +60,7 @@ pub enum EncodeError {
 }
 
 impl Draft<'_> {
-    /// The bytes.
+    /// Encodes the table.
     pub(crate) fn bytes(&self) -> Result<Vec<u8>, EncodeError> {
         let (axes, outputs) = (self.axes.len(), self.outputs.len());
         if axes > MOST_AXES || outputs > MOST_OUTPUTS {
@@ -116,6 +117,7 @@ impl Draft<'_> {
             }
         }
         bytes.extend(self.text.as_bytes());
+        // The checksum covers all bytes before it.
         let checksum = crc64(&bytes);
         bytes.extend(checksum.to_le_bytes());
         Ok(bytes)

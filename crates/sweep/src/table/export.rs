@@ -1,4 +1,4 @@
-//! Tables in other forms: Rust and C sources, CSV, JSON, and the polynomials that papers print.
+//! Exports of tables: Rust and C sources, CSV, JSON, and polynomials in the form printed in papers.
 
 mod c_header;
 mod csv;
@@ -21,14 +21,14 @@ use bulge_table::{Axis, Output, Table};
 /// Why a table can't be exported.
 #[derive(Debug, thiserror::Error)]
 pub enum ExportError {
-    /// A name that the language doesn't take.
+    /// A name that is invalid in the language.
     #[error("`{name}` is no name for {language}: {instead}")]
     Name {
         /// The name.
         name: String,
         /// The language.
         language: &'static str,
-        /// What a name looks like.
+        /// Description of a valid name.
         instead: &'static str,
     },
     /// A grid without inner points.
@@ -44,16 +44,16 @@ pub enum ExportError {
     TooManyRows {
         /// Points per axis.
         points: usize,
-        /// Axes.
+        /// Number of axes.
         axes: usize,
     },
-    /// No polynomial of this table: it lacks an axis or output, or has one too many.
+    /// The table has no such polynomial: it lacks an axis or output, or has one too many.
     #[error("no polynomial of this table: {what}")]
     NotOfThisTable {
-        /// What is missing or too much.
+        /// The missing or superfluous axis or output.
         what: String,
     },
-    /// A range of contractions that isn't one.
+    /// A range of contractions that is empty or begins at 0 or below.
     #[error("no polynomial from {from} % to {to} %: the contractions must rise, from more than 0")]
     Range {
         /// Lower end in %.
@@ -61,7 +61,7 @@ pub enum ExportError {
         /// Upper end in %.
         to: f64,
     },
-    /// The curve ends within the range.
+    /// The curve ends inside the range.
     #[error("there is no value at the contraction {percent:.4} %: choose a range inside the domain")]
     Outside {
         /// Contraction in %.
@@ -70,7 +70,7 @@ pub enum ExportError {
     /// A muscle that isn't shipped.
     #[error(transparent)]
     Muscle(#[from] PresetError),
-    /// A value that the muscle can't have.
+    /// A value that is impossible for the muscle.
     #[error(transparent)]
     Value(#[from] MuscleError),
     /// No equilibrium.
@@ -91,7 +91,7 @@ fn outputs<'a>(table: &Table<'a>) -> Vec<Output<'a>> {
     (0..table.outputs()).filter_map(|o| table.output(o)).collect()
 }
 
-/// The coefficients of the edge and of the outputs.
+/// Coefficients of the edge and of the outputs.
 fn coefficients(table: &Table<'_>) -> [Vec<f64>; 2] {
     let double = |bytes: &[u8]| bytes.first_chunk().map_or(f64::NAN, |chunk| f64::from_le_bytes(*chunk));
     let single =
@@ -105,7 +105,8 @@ fn coefficients(table: &Table<'_>) -> [Vec<f64>; 2] {
     [edge.chunks_exact(8).map(double).collect(), data]
 }
 
-/// What the sources say of a table: axes with ranges, outputs with certified errors, and where it comes from. `quoted` makes text safe in a comment.
+/// Description of a table for source files: axes with ranges, outputs with certified errors, and the origin.
+/// `quoted` makes text safe inside a comment.
 fn described(table: &Table<'_>, quoted: &dyn Fn(&str) -> String) -> Vec<String> {
     let unit = |unit: &str| if unit == "1" { String::new() } else { format!(" {}", quoted(unit)) };
     let mut lines = vec![format!("{}, {} bytes", table.form().name(), table.bytes().len()), String::new()];

@@ -1,4 +1,5 @@
-//! What is tabulated: outputs over a domain whose first axis may end where the others say.
+//! Fields that can be tabulated: outputs over a domain. The upper end of the first axis may depend on the
+//! other axes.
 
 /// One axis of a domain.
 #[derive(Debug, Clone, PartialEq)]
@@ -9,7 +10,7 @@ pub struct FieldAxis {
     pub unit: String,
     /// Lower end.
     pub low: f64,
-    /// Upper end; none on axis 0 where [`Field::upper_end`] says it.
+    /// Upper end. None on axis 0 if it depends on the other axes; [`Field::upper_end`] then gives it.
     pub high: Option<f64>,
 }
 
@@ -20,7 +21,7 @@ pub struct FieldOutput {
     pub name: String,
     /// Its unit; "1" for a pure number.
     pub unit: String,
-    /// Whether it grows as the inverse root of the distance from the lower end of axis 0.
+    /// Whether it grows like the inverse square root of the distance from the lower end of axis 0.
     pub is_singular: bool,
     /// Whether it vanishes at the upper end of axis 0.
     pub vanishes: bool,
@@ -33,19 +34,19 @@ pub struct NoValue(pub String);
 
 /// Smooth outputs over a domain: a family of muscles, or a joint.
 pub trait Field: Sync {
-    /// The axes, the one with the movable end first.
+    /// The axes; the axis with the movable end comes first.
     fn axes(&self) -> &[FieldAxis];
 
     /// The outputs.
     fn outputs(&self) -> &[FieldOutput];
 
-    /// Upper end of axis 0 at values of the others.
+    /// Upper end of axis 0 at the given values of the other axes.
     ///
     /// # Errors
     /// If there is none.
     fn upper_end(&self, others: &[f64]) -> Result<f64, NoValue>;
 
-    /// All outputs at a point. Slightly beyond the upper end they go on smoothly.
+    /// All outputs at a point. They continue smoothly slightly beyond the upper end.
     ///
     /// # Errors
     /// If there is no value.
@@ -54,6 +55,6 @@ pub trait Field: Sync {
     /// All outputs and their derivatives by the axes: `gradients[o * axes + i]`.
     ///
     /// # Errors
-    /// If there is no value, or none beside it.
+    /// If there is no value at the point or next to it.
     fn gradients(&self, point: &[f64], values: &mut [f64], gradients: &mut [f64]) -> Result<(), NoValue>;
 }

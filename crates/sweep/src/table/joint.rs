@@ -1,4 +1,4 @@
-//! A joint with the table that its file wants, and the joint as a field to tabulate: over the angle and both pressures.
+//! A joint with the table that its file requests, and the joint as a field over the angle and both pressures.
 
 use bulge_design::joint::{Checks, Joint, JointError, Pull};
 use bulge_muscles::FileError;
@@ -13,10 +13,10 @@ use crate::file::outputs::{listed, unknown};
 use crate::file::wish;
 use crate::plan::TableRequirements;
 
-/// Most equilibria of a muscle that are kept.
+/// Most equilibria that are cached for each muscle.
 const MOST_KEPT: usize = 1 << 16;
 
-/// What a table of a joint may hold.
+/// Outputs that a table of a joint may hold.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum JointOutput {
@@ -35,7 +35,7 @@ pub enum JointOutput {
 }
 
 impl JointOutput {
-    /// All of them.
+    /// All outputs.
     pub const ALL: [Self; 6] = [
         Self::Torque,
         Self::Stiffness,
@@ -45,7 +45,8 @@ impl JointOutput {
         Self::ContractionAntagonist,
     ];
 
-    /// Its name, the place of what it is among torque, its slope and the contraction, and what either muscle has in it.
+    /// Its name; its index among torque, slope of the torque, and contraction; and the weights of both
+    /// muscles.
     const fn parts(self) -> (&'static str, usize, [f64; 2]) {
         match self {
             Self::Torque => ("torque", 0, [1.0, 1.0]),
@@ -70,20 +71,21 @@ impl JointOutput {
     }
 }
 
-/// A joint with what is to be tabulated of it.
+/// A joint and the outputs that are to be tabulated.
 #[derive(Debug, Clone, Serialize)]
 pub struct JointTable {
     /// The joint.
     #[serde(flatten)]
     pub joint: Joint,
-    /// What is tabulated.
+    /// Outputs of the table.
     pub outputs: Vec<JointOutput>,
-    /// What its table must reach, if one is wanted; the outputs are those of the joint, not of the wish, which has none.
+    /// Requirements on the table, if one is requested. Its outputs are those above; the requirements
+    /// themselves hold none.
     pub table: Option<TableRequirements>,
 }
 
 impl JointTable {
-    /// Reads a joint file, as [`Joint::read`] does, with its outputs and its table.
+    /// Reads a joint file as [`Joint::read`] does, and also its outputs and its table.
     ///
     /// # Errors
     /// As [`Joint::read`].
@@ -104,7 +106,7 @@ fn wanted(settings: &Settings<'_>) -> Result<(Vec<JointOutput>, Option<TableRequ
     Ok((outputs.unwrap_or_else(|| vec![JointOutput::Torque, JointOutput::Stiffness]), table))
 }
 
-/// Equilibria of a muscle by the bits of angle and pressure.
+/// Cached equilibria of a muscle. The keys are the bits of angle and pressure.
 type Kept = Mutex<HashMap<[u64; 2], Pull>>;
 
 /// A joint as a field: angle \[rad\], pressure of the agonist and of the antagonist \[Pa\].
@@ -113,12 +115,12 @@ pub struct JointField<'a> {
     table: &'a JointTable,
     axes: Vec<FieldAxis>,
     outputs: Vec<FieldOutput>,
-    /// On a grid each muscle's equilibria come again at every pressure of the other.
+    /// On a grid the equilibria of each muscle recur at every pressure of the other muscle.
     kept: [Kept; 2],
 }
 
 impl<'a> JointField<'a> {
-    /// The field of a joint and its outputs.
+    /// The field of a joint with its outputs.
     #[must_use]
     pub fn new(table: &'a JointTable) -> Self {
         let axis = |name: &str, unit: &str, [low, high]: [f64; 2]| FieldAxis {
@@ -145,10 +147,10 @@ impl<'a> JointField<'a> {
         }
     }
 
-    /// A muscle's pull, from those kept if it is there.
+    /// The pull of a muscle, from the cache if it is there.
     fn pull(&self, which: usize, angle: f64, pressure: f64) -> Result<Pull, JointError> {
         let key = [angle.to_bits(), pressure.to_bits()];
-        // A poisoned lock loses speed only.
+        // A poisoned lock only costs speed.
         if let Ok(kept) = self.kept[which].lock()
             && let Some(pull) = kept.get(&key)
         {
@@ -187,7 +189,7 @@ impl<'a> JointField<'a> {
         let pulls = self.both(angle, pressures)?;
         self.filled(&pulls, values);
         let needs = |k: usize| outputs.iter().any(|output| output.parts().1 == k);
-        // By the angle, and by the muscle's own pressure.
+        // Derivatives by the angle and by the muscle's own pressure.
         let mut slopes = pulls.map(|pull| [[pull.by_angle, 0.0], [0.0; 2], [pull.contraction_by_angle, 0.0]]);
         for ((slopes, muscle), pressure) in slopes.iter_mut().zip(joint.muscles()).zip(pressures) {
             if needs(0) {
@@ -206,7 +208,7 @@ impl<'a> JointField<'a> {
     }
 }
 
-/// Angle and pressures of a point of the field.
+/// Angle and pressures at a point of the field.
 fn parts(point: &[f64]) -> Result<(f64, [f64; 2]), NoValue> {
     match point {
         [angle, agonist, antagonist] => Ok((*angle, [*agonist, *antagonist])),

@@ -1,4 +1,4 @@
-//! A family of muscles as a field to tabulate: the contraction first, up to its limit.
+//! A family of muscles as a field. The contraction is the first axis and ends at its limit.
 
 use super::{Field, FieldAxis, FieldOutput, NoValue};
 use crate::family::Family;
@@ -6,11 +6,11 @@ use crate::family_error::FamilyError;
 use crate::output::Output;
 use crate::plan::{Axis, End, Plan, Quantity, Range, TableRequirements};
 
-/// A field of a plan's family and its table's outputs.
+/// The field of the family of a plan, with the outputs of its table.
 #[derive(Debug)]
 pub struct MuscleField {
     family: Family,
-    /// Place in the plan of each axis of the field.
+    /// Index in the plan of each axis of the field.
     places: Vec<usize>,
     axes: Vec<FieldAxis>,
     outputs: Vec<FieldOutput>,
@@ -25,7 +25,7 @@ impl MuscleField {
     pub fn new(plan: &Plan, wish: &TableRequirements) -> Result<Self, FamilyError> {
         let family = Family::new(plan)?;
         let mut places: Vec<usize> = (0..plan.axes.len()).collect();
-        // The contraction comes first; of the others the order stays.
+        // The contraction comes first; the order of the other axes stays.
         places.sort_by_key(|i| plan.axes[*i].quantity != Quantity::Contraction);
         let ends = |axis: &Axis| match &axis.range {
             Range::Between { from, to: End::Value(to), .. } => (*from, Some(*to)),
@@ -73,7 +73,7 @@ impl MuscleField {
         Ok(Self { family, places, axes, outputs, kinds: wish.outputs.clone() })
     }
 
-    /// Values in the order of the plan's axes.
+    /// Values in the order of the axes of the plan.
     fn planned(&self, point: &[f64]) -> Vec<f64> {
         let mut planned = vec![0.0; point.len()];
         for (place, value) in self.places.iter().zip(point) {
@@ -83,7 +83,8 @@ impl MuscleField {
     }
 }
 
-/// Refuses a contraction beyond the limit of a muscle in the corners and middles of the other axes: a table must not push.
+/// Refuses a contraction beyond the limit of any muscle in the corners and middles of the other axes, because
+/// a tabulated muscle must not push.
 fn ends_before_limit(family: &Family, plan: &Plan, contraction: f64) -> Result<(), FamilyError> {
     let count = plan.axes.len();
     for corner in 0..3_usize.pow(u32::try_from(count).unwrap_or(0)) {

@@ -1,5 +1,5 @@
-//! Tensor products of Chebyshev polynomials of several outputs on the unit cube: fitted in Gauss points until the coefficients have fallen, then
-//! evaluated in place of the solver.
+//! Tensor products of Chebyshev polynomials for several outputs on the unit cube. They are fitted at Gauss
+//! points until the coefficients have decayed, and are then evaluated instead of the solver.
 
 use rayon::prelude::*;
 use std::f64::consts::PI;
@@ -8,47 +8,48 @@ use super::field::NoValue;
 
 /// Orders of the first try.
 const FIRST_ORDERS: usize = 8;
-/// Coefficients at the end of each axis that must be small.
+/// Number of coefficients at the end of each axis that must be small.
 const LAST: usize = 2;
-/// Two tries in a row that don't lessen the tail by this much have met the noise of the solver.
+/// Two tries in a row that don't reduce the tail by this factor have reached the noise of the solver.
 const PROGRESS: f64 = 0.5;
 /// Most values of a fit.
 const MOST_VALUES: usize = 4_000_000;
 
-/// Outputs of unit coordinates.
+/// A function from unit coordinates to outputs.
 type Function<'a> = &'a (dyn Fn(&[f64], &mut [f64]) -> Result<(), NoValue> + Sync);
 
-/// Polynomials of `outputs` outputs; the last axis varies fastest, then the outputs.
+/// Polynomials of `outputs` outputs. The outputs vary fastest, then the last axis.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Polynomial {
     pub(crate) orders: Vec<usize>,
     pub(crate) outputs: usize,
     pub(crate) coefficients: Vec<f64>,
-    /// What is left out along each axis, over the largest value, at most.
+    /// Bound of the omitted part along each axis, relative to the largest value.
     pub(crate) tails: Vec<f64>,
 }
 
-/// Chebyshev points of the first kind on \[0, 1\]: ends left out.
+/// Chebyshev points of the first kind on \[0, 1\], without the ends.
 pub(crate) fn gauss_points(count: usize) -> Vec<f64> {
     let n = count as f64;
     (0..count).map(|k| 0.5 - 0.5 * (PI * (k as f64 + 0.5) / n).cos()).collect()
 }
 
-/// The matrix that takes values in `count` Gauss points to the first `orders` coefficients, row by row.
+/// Matrix from values at `count` Gauss points to the first `orders` coefficients, row by row.
 pub(crate) fn cosines(orders: usize, count: usize) -> Vec<f64> {
     let n = count as f64;
     (0..orders)
         .flat_map(|i| {
             (0..count).map(move |k| {
                 let factor = if i == 0 { 1.0 } else { 2.0 } / n;
-                // The points rise, their angles fall from pi.
+                // The points rise while their angles fall from pi.
                 factor * (i as f64 * PI * (1.0 - (k as f64 + 0.5) / n)).cos()
             })
         })
         .collect()
 }
 
-/// Multiplies the axis `axis` of a tensor of the given shape by a matrix of `rows` rows; what follows the axes are `inner` numbers.
+/// Multiplies a tensor of the given shape along the axis `axis` by a matrix of `rows` rows. `inner` numbers
+/// follow the axes.
 pub(crate) fn along(
     tensor: &[f64],
     shape: &[usize],
@@ -75,7 +76,7 @@ pub(crate) fn along(
     product
 }
 
-/// The sum over the last axis of a tensor with weights.
+/// Weighted sum over the last axis of a tensor.
 fn contracted(tensor: &[f64], outputs: usize, weights: &[f64]) -> Vec<f64> {
     let mut sums = vec![0.0; tensor.len() / weights.len()];
     for (sums, block) in sums.chunks_exact_mut(outputs).zip(tensor.chunks_exact(outputs * weights.len())) {
@@ -88,7 +89,7 @@ fn contracted(tensor: &[f64], outputs: usize, weights: &[f64]) -> Vec<f64> {
     sums
 }
 
-/// T_i(2u - 1) and its derivative by u.
+/// T_i(2u - 1) and its derivative with respect to u.
 pub(crate) fn basis(u: f64, orders: usize) -> [Vec<f64>; 2] {
     let x = 2.0 * u - 1.0;
     let (mut values, mut slopes) = (Vec::with_capacity(orders), Vec::with_capacity(orders));
@@ -103,8 +104,9 @@ pub(crate) fn basis(u: f64, orders: usize) -> [Vec<f64>; 2] {
 }
 
 impl Polynomial {
-    /// Fits a function of unit coordinates until what is left out is below `wanted` of the largest value of each output, or no order helps
-    /// any more. Parallel; the same on any number of threads.
+    /// Fits a function of unit coordinates until the omitted part is below `wanted` of the largest value of
+    /// each output, or until a higher order no longer helps. The fit runs in parallel and doesn't depend on
+    /// the number of threads.
     pub(crate) fn fitted(
         axes: usize,
         outputs: usize,
@@ -165,7 +167,8 @@ impl Polynomial {
         Ok(fit)
     }
 
-    /// Sum of the last coefficients along an axis, at the worst place across it: what is left out is about as large.
+    /// Sum of the last coefficients along an axis, at the worst place across it. The omitted part is about as
+    /// large.
     fn tail(&self, axis: usize, sizes: &[f64]) -> f64 {
         let (length, outputs) = (self.orders[axis], self.outputs);
         let across: usize = self.orders[axis + 1..].iter().product();
@@ -185,7 +188,7 @@ impl Polynomial {
     /// Values of all outputs and their derivatives by the coordinates at a point: `by[i * outputs + o]`.
     pub(crate) fn at(&self, unit: &[f64], values: &mut [f64], by: &mut [f64]) {
         let axes = self.orders.len();
-        // Contract the last axis first: one tensor for the values, and one for each derivative met so far.
+        // Contract the last axis first, with one tensor for the values and one for each derivative so far.
         let mut tensors: Vec<Vec<f64>> = Vec::new();
         for axis in (0..axes).rev() {
             let [value, slope] = basis(unit[axis], self.orders[axis]);
@@ -202,7 +205,7 @@ impl Polynomial {
         }
     }
 
-    /// The first orders along each axis.
+    /// The polynomials truncated to the given orders along each axis.
     pub(crate) fn truncated(&self, orders: &[usize]) -> Self {
         let mut kept = Vec::with_capacity(orders.iter().product::<usize>() * self.outputs);
         for (mut place, values) in self.coefficients.chunks_exact(self.outputs).enumerate() {
@@ -218,8 +221,8 @@ impl Polynomial {
         Self { orders: orders.to_vec(), outputs: self.outputs, coefficients: kept, tails: self.tails.clone() }
     }
 
-    /// Coefficients of the cubic B-splines with `nodes` of them along each axis that interpolate the polynomials in the ends of all cells, with
-    /// their slopes at the ends of the axes.
+    /// Coefficients of cubic B-splines with `nodes` coefficients along each axis. They interpolate the
+    /// polynomials at the ends of all cells, and the slopes at the ends of the axes.
     pub(crate) fn splines(&self, nodes: &[usize]) -> Vec<f64> {
         let mut tensor = self.coefficients.clone();
         let mut shape = self.orders.clone();
@@ -232,7 +235,8 @@ impl Polynomial {
     }
 }
 
-/// The matrix from Chebyshev coefficients to those of the interpolating B-spline with `count` >= 4, row by row: for each order
+/// The matrix from Chebyshev coefficients to the coefficients of the interpolating B-spline with `count` >=
+/// 4, row by row. For each order:
 ///
 /// ```text
 /// (c_{k-1} + 4 c_k + c_{k+1})/6 = T(k - 1),  k = 1 .. n - 2,     (c_2 - c_0)/2 = h T'(0),     (c_{n-1} - c_{n-3})/2 = h T'(1)
@@ -242,7 +246,7 @@ fn interpolation(count: usize, orders: usize) -> Vec<f64> {
     let inner = count - 2;
     let nodes: Vec<[Vec<f64>; 2]> = (0..inner).map(|k| basis(k as f64 / cells, orders)).collect();
     let mut matrix = vec![0.0; count * orders];
-    // Thomas' elimination of (1 4 1) rows whose first and last are (4 2) and (2 4) after the end conditions.
+    // Thomas elimination for rows (1 4 1); by the end conditions the first row is (4 2) and the last (2 4).
     let below = |k: usize| if k == inner - 1 { 2.0 } else { 1.0 };
     let (mut upper, mut pivots) = (vec![0.5; inner], vec![4.0; inner]);
     for k in 1..inner {
@@ -296,7 +300,7 @@ mod tests {
                 assert!((found - exact).abs() < 1e-10, "{unit:?}: {found} {exact}");
             }
         }
-        // A linear axis needs no more than what its tail is judged by.
+        // A linear axis needs no more orders than its tail is judged by.
         assert!(fit.orders[2] < fit.orders[0] + 5);
     }
 
@@ -352,7 +356,7 @@ mod tests {
                 spline(&line, u)[0]
             };
             let at = |o: usize| spline(&(0..6).map(|j| across(j, o)).collect::<Vec<_>>(), v)[0];
-            // Cubics are met exactly.
+            // Cubics are reproduced exactly.
             assert!((at(0) - u * u * u * (1.0 + v)).abs() < 1e-12 && (at(1) - v * v + u).abs() < 1e-12);
         }
     }
@@ -362,7 +366,7 @@ mod tests {
         let fit = Polynomial::fitted(3, 2, 40, 1e-13, &waves).unwrap();
         let short = fit.truncated(&[2, 3, 1]);
         assert_eq!(short.coefficients.len(), 12);
-        // Coefficient (1, 2, 0) of the output 1.
+        // Coefficient (1, 2, 0) of output 1.
         let (n, m) = (fit.orders[1], fit.orders[2]);
         assert_eq!(short.coefficients[11].to_bits(), fit.coefficients[((n + 2) * m) * 2 + 1].to_bits());
     }

@@ -1,4 +1,4 @@
-//! The table of a plan: its family as a field, and what the table says of itself.
+//! The table of a plan: builds it from the family of the plan, and describes it.
 
 use bulge_table::{Table, TableError};
 use serde::Serialize;
@@ -9,24 +9,24 @@ use crate::family_error::FamilyError;
 use crate::output::Output;
 use crate::plan::{Plan, TableRequirements};
 
-/// Format of what a table says of itself.
+/// Format of the description in a table.
 pub(crate) const SCHEMA: &str = "bulge.table/1";
 
 /// Why a plan has no table.
 #[derive(Debug, thiserror::Error)]
 pub enum TabulateError {
-    /// The family.
+    /// The family can't be made.
     #[error("no table: {0}")]
     Family(#[from] FamilyError),
-    /// The building.
+    /// The table can't be built.
     #[error(transparent)]
     Build(#[from] BuildError),
-    /// What it says of itself.
+    /// The description can't be written as JSON.
     #[error("the table's description can't be written as JSON: {0}")]
     Json(#[from] serde_json::Error),
 }
 
-/// Builds the table that a plan wishes. `told` hears what is going on.
+/// Builds the table that a plan requests. `told` receives messages on the progress.
 ///
 /// # Errors
 /// [`TabulateError`].
@@ -35,7 +35,7 @@ pub fn tabulate(plan: &Plan, wish: &TableRequirements, told: &dyn Fn(&str)) -> R
     Ok(build(&field, &wish.with_text(table_text(plan, wish)?), told)?)
 }
 
-/// What the table of a plan says of itself: tables with the same text are the same.
+/// The description stored in the table of a plan. Tables with the same text are the same.
 ///
 /// # Errors
 /// If a number of the plan has no JSON.
@@ -74,7 +74,7 @@ fn meaning(output: Output) -> Option<&'static str> {
 }
 
 impl TableRequirements {
-    /// The wish, with what the table is to say of itself.
+    /// The requirements together with the description that the table is to store.
     #[must_use]
     pub fn with_text(&self, text: String) -> Requirements {
         Requirements {
@@ -88,14 +88,14 @@ impl TableRequirements {
     }
 }
 
-/// A table in words and numbers.
+/// Description of a table.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct TableDescription {
-    /// `bulge.table/1`.
+    /// Format of the description: `bulge.table/1`.
     pub schema: &'static str,
-    /// How the outputs are stored.
+    /// Form in which the outputs are stored.
     pub form: &'static str,
-    /// Size of the table.
+    /// Size of the table in bytes.
     pub bytes: usize,
     /// Bytes of a coefficient.
     pub coefficient_bytes: usize,
@@ -107,7 +107,7 @@ pub struct TableDescription {
     pub checks: u64,
     /// Largest error of the fitted upper end of the first axis, in its unit.
     pub edge_error: f64,
-    /// Where it comes from.
+    /// Origin of the table.
     pub from: Value,
 }
 
@@ -124,7 +124,7 @@ pub struct AxisDescription {
     pub high: f64,
     /// Whether the upper end depends on the other axes.
     pub is_fitted: bool,
-    /// Coefficients along it.
+    /// Number of coefficients along it.
     pub coefficients: usize,
 }
 
@@ -137,11 +137,11 @@ pub struct OutputDescription {
     pub unit: String,
     /// Largest relative error of the value.
     pub error: f64,
-    /// Its root mean square.
+    /// Root mean square of the relative error of the value.
     pub error_rms: f64,
     /// Largest relative error of the gradient.
     pub gradient_error: f64,
-    /// Its root mean square.
+    /// Root mean square of the relative error of the gradient.
     pub gradient_error_rms: f64,
     /// Bound of the relative error of the value, by subdivision.
     pub bound: f64,

@@ -1,4 +1,4 @@
-//! Sweeps and tables through the public API: one program of tests, one module for each part.
+//! Tests of sweeps and tables through the public API, in one program with one module for each part.
 
 mod run;
 mod table;

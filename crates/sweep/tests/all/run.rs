@@ -1,4 +1,5 @@
-//! Sweeps in their folders: the same bytes however they are run, nothing lost and nothing doubled, and every number that of the solver.
+//! Sweeps in their folders: the bytes don't depend on how they are run, no point is lost or doubled, and
+//! every number is that of the solver.
 
 #![expect(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on has failed")]
 
@@ -40,7 +41,7 @@ fn go(plan: &Plan, folder: &Path, options: &RunOptions) -> Result<Summary, Sweep
     run(plan, folder, options, &|_| {})
 }
 
-/// A whole run into a folder of its own.
+/// A whole run into its own folder.
 fn whole(plan: &Plan, csv: bool) -> TempDir {
     let folder = TempDir::new().unwrap();
     let options = RunOptions { csv, ..RunOptions::default() };
@@ -53,7 +54,7 @@ fn resume() -> RunOptions {
     RunOptions { resume: true, ..RunOptions::default() }
 }
 
-/// Every file below a folder, by its path in it.
+/// Every file below a folder, with its path in the folder.
 fn files(folder: &Path) -> BTreeMap<PathBuf, (Vec<u8>, SystemTime)> {
     let mut found = BTreeMap::new();
     let mut folders = vec![folder.to_owned()];
@@ -127,7 +128,7 @@ fn the_same_bytes_on_any_number_of_threads() {
     }
 }
 
-/// A run shares a chunk among threads, in parts; whoever asks for a piece has it computed in one go.
+/// A run may share a chunk among threads in parts, while a piece is computed in one go.
 #[test]
 fn chunks_in_parts_are_the_chunks_in_one_piece() {
     let plan = plan(
@@ -135,7 +136,7 @@ fn chunks_in_parts_are_the_chunks_in_one_piece() {
          [axes.slenderness]\nrange = \"2..12\"\npoints = 9\n\
          [axes.contraction]\nrange = \"1 %..40 %\"\npoints = 1000\n",
     );
-    // More threads than chunks: all of them are shared, also where there is one processor.
+    // There are more threads than chunks, so all chunks are shared, even on a single processor.
     let pool = rayon::ThreadPoolBuilder::new().num_threads(3).build().unwrap();
     let folder = pool.install(|| whole(&plan, true));
     let found = bytes(folder.path());
@@ -161,7 +162,7 @@ fn stopped_and_resumed_is_as_if_never_stopped() {
         let summary = go(&plan, folder.path(), &part).unwrap();
         assert_eq!((summary.chunks, summary.computed, summary.is_complete), (2, 2, false));
         assert!(!folder.path().join("manifest.json").exists());
-        // Nothing that is there is computed again, here or by the run that completes it.
+        // Nothing in the folder is computed again, neither here nor by the run that completes it.
         assert_eq!(go(&plan, folder.path(), &part).unwrap().computed, 0);
         let summary = go(&plan, folder.path(), &RunOptions { csv: true, ..resume() }).unwrap();
         assert_eq!((summary.chunks, summary.computed), (plan.chunks(), plan.chunks() - 2));
@@ -197,7 +198,7 @@ fn altered(path: &Path, change: impl Fn(&mut Vec<u8>)) {
     fs::write(path, bytes).unwrap();
 }
 
-/// What is damaged, how, and what is said of it.
+/// The damaged file, the damage, and the expected message.
 const DAMAGE: [Damage; 11] = [
     ("points/000001.parquet", |p| altered(p, |b| b[100] ^= 4), Some("is damaged or truncated")),
     (
@@ -270,7 +271,7 @@ fn several_damages_are_all_named_in_order() {
 fn half_written_files_are_swept_up() {
     let plan = plan(CLOSED);
     let expected = bytes(whole(&plan, false).path());
-    // Also where the process was killed before the plan was there.
+    // This includes a process that was killed before it wrote the plan.
     for has_plan in [true, false] {
         let folder = if has_plan { whole(&plan, false) } else { TempDir::new().unwrap() };
         for name in ["", "points", "chunks"] {
@@ -304,7 +305,7 @@ fn the_unfinished_files_of_others_at_work_are_left_alone() {
     assert!(!other.exists());
 }
 
-/// Each begins when others write: whoever looks for half-written files must not take theirs.
+/// Each process begins while others write. A search for unfinished files must not take theirs.
 #[test]
 fn many_begin_at_once_and_none_removes_what_another_writes() {
     let plan = plan(&CLOSED.replace("chunk = 64", "chunk = 5"));
@@ -351,7 +352,7 @@ fn csv_may_be_asked_for_later() {
     let summary = go(&plan, folder.path(), &RunOptions { csv: true, ..resume() }).unwrap();
     assert!(summary.damaged.is_empty());
     assert!(bytes(folder.path()) == bytes(expected.path()));
-    // And what has CSV counts as done where none is asked for.
+    // Chunks that have CSV count as finished if none is requested.
     assert_eq!(go(&plan, folder.path(), &resume()).unwrap().computed, 0);
 }
 
@@ -375,7 +376,7 @@ fn another_sweep_is_refused_with_the_line_that_differs() {
             assert!(message.contains(&folder.path().display().to_string()) && message.lines().count() < 30);
         }
     }
-    // Its name and its table don't decide the numbers of the points.
+    // Name and table don't determine the numbers of the points.
     let renamed = plan(&format!("name = \"other\"\n{CLOSED}[table]\n"));
     assert_eq!(go(&renamed, folder.path(), &resume()).unwrap().computed, 0);
     assert!(files(folder.path()).keys().eq(before.keys()));
@@ -405,7 +406,7 @@ fn chunks_that_do_not_exist_are_refused() {
         );
     }
     assert!(!path.exists());
-    // The last of equal parts ends where the sweep does.
+    // The last of equal parts ends at the end of the sweep.
     let summary = go(&plan, &path, &RunOptions { chunks: Some(3..9), ..RunOptions::default() }).unwrap();
     assert_eq!(summary.chunks, 2);
     let table_only = CLOSED.replace("points = 7\n", "").replace("points = 41\n", "") + "[table]\n";
@@ -432,13 +433,13 @@ fn folders_merge_into_one() {
     let summary = go(&plan, folder.path(), &options).unwrap();
     assert_eq!((summary.computed, summary.is_complete), (0, true));
     assert!(bytes(folder.path()) == bytes(expected.path()));
-    // A damaged chunk isn't taken over, but computed.
+    // A damaged chunk is computed instead of being taken over.
     altered(&merge[1].join("points/000003.parquet"), |b| b[9] ^= 1);
     let folder = TempDir::new().unwrap();
     let summary = go(&plan, folder.path(), &options).unwrap();
     assert_eq!((summary.computed, summary.is_complete), (1, true));
     assert!(bytes(folder.path()) == bytes(expected.path()));
-    // Nor is another sweep, or a folder without one.
+    // Another sweep is not taken over, nor a folder without one.
     let other = whole(&self::plan(&CLOSED.replace("4..12", "4..13")), false);
     let empty = TempDir::new().unwrap();
     for (from, says) in [(&other, "- \"value\": 13.0"), (&empty, "holds no sweep")] {
@@ -451,7 +452,7 @@ fn folders_merge_into_one() {
 /// Whether there is an equilibrium at a value.
 type Exists = fn(f64) -> bool;
 
-/// Rows without equilibrium hold a reason and no number; the others numbers and no reason.
+/// Rows without equilibrium hold a reason and no number; all other rows hold numbers and no reason.
 fn assert_whole(plan: &Plan, rows: &[BTreeMap<String, Field>]) {
     assert_eq!(rows.len() as u128, plan.points());
     for (i, row) in rows.iter().enumerate() {
@@ -484,7 +485,8 @@ fn points_without_equilibrium_say_why() {
             "[axes.fibres]\nlist = [20, 30, 40]",
         ));
     fibres.axes[0].range = Range::List(vec![2.0, 20.5, 40.0]);
-    // (plan, the axis that decides, from which value on there are equilibria, what is said of the others)
+    // (plan, the axis that decides, the value from which on there are equilibria, the reason given for the
+    // others)
     let cases: [(Plan, &str, Exists, &str); 5] = [
         (
             plan(
@@ -525,7 +527,8 @@ fn points_without_equilibrium_say_why() {
     }
 }
 
-/// A range to the limit ends where the fibres slacken, if that comes before the force vanishes; and points beyond are told that limit.
+/// A range up to the limit ends where the fibres slacken, if they do so before the force vanishes. The error
+/// for points beyond names that limit.
 #[test]
 fn a_range_ends_where_fibres_slacken() {
     let folder = TempDir::new().unwrap();
@@ -548,7 +551,7 @@ fn a_range_ends_where_fibres_slacken() {
     let found = rows_of(&to_limit);
     assert_eq!(found.iter().find_map(reason), None);
     let limit = number(&found[4], "contraction").unwrap();
-    // The muscle still pulls where its fibres slacken.
+    // The muscle still pulls at the point where its fibres slacken.
     assert!(number(&found[4], "force").unwrap() > 1.0, "{limit}");
     let named = format!("{:.4} % on", 100.0 * limit);
     let beyond = rows_of(&sweep("10 %..50 %"));
@@ -562,7 +565,7 @@ fn a_range_ends_where_fibres_slacken() {
 
 #[test]
 fn a_range_that_begins_beyond_the_limit_says_so() {
-    // Slender muscles contract further: 45 % exists for some of them only.
+    // Slender muscles contract further, so that only some of them reach 45 %.
     let plan = plan(&CLOSED.replace("2 %..limit", "42 %..limit").replace("4..12", "4..40"));
     let folder = whole(&plan, false);
     let rows = rows(folder.path());
@@ -578,7 +581,7 @@ fn follow(muscle: &Muscle, pressure: f64, contraction: f64) -> (Problem, Respons
     (problem, response)
 }
 
-/// What an output must be, from the solver alone.
+/// The expected value of an output, computed with the solver alone.
 fn expected(muscle: &Muscle, problem: &Problem, response: &Response, output: Output) -> f64 {
     let (length, pressure) = (muscle.length().si(), problem.pressure().si());
     let a = muscle
@@ -615,7 +618,7 @@ fn expected(muscle: &Muscle, problem: &Problem, response: &Response, output: Out
     }
 }
 
-/// A plan's text with all outputs that its muscle has.
+/// The text of a plan with all outputs that are possible for its muscle.
 fn with_outputs(text: &str, variables: &[Variable]) -> Plan {
     let mut plan = plan(text);
     plan.outputs = Output::PLAIN.to_vec();
@@ -663,7 +666,7 @@ fn every_output_is_the_solver_s() {
             for output in &plan.outputs {
                 let name = output.name();
                 let (found, wanted) = (at(&name), expected(&muscle, &problem, &response, *output));
-                // The slopes come from another derivation than the gradients.
+                // The slopes are derived independently of the gradients.
                 let within = if name.contains("_by_contraction") { 1e-7 } else { 1e-11 };
                 assert!(
                     (found - wanted).abs() <= within * wanted.abs() + 1e-13,
@@ -736,7 +739,7 @@ fn effects_of_the_muscle_file_act() {
         assert_close(force, wanted.force_n, 1e-12, "force");
         assert_close(stiffness, wanted.stiffness_n_per_m, 1e-12, "stiffness");
     }
-    // Its number as an axis: the muscle with that number in its file.
+    // A number of an effect as an axis gives the muscle that has that number in its file.
     let axis = sweep("muscle.toml")
         + "[axes.\"hoop-elasticity.stiffness\"]\nlist = [\"0.5 kN/m\", \"1 kN/m\", \"2 kN/m\"]\n";
     let varied = Plan::from_toml(&axis, "sweep.toml", Some(folder.path())).unwrap();
@@ -795,7 +798,7 @@ fn csv_has_the_same_numbers() {
             let heading: Vec<&str> = lines.next().unwrap().split(',').collect();
             assert_eq!((heading[0], *heading.last().unwrap()), ("index", "infeasible"));
             for line in lines {
-                // A reason may hold commas: it is the last cell.
+                // A reason may contain commas, but it is the last cell.
                 let cells: Vec<&str> = line.splitn(heading.len(), ',').collect();
                 assert_eq!(cells.len(), heading.len());
                 assert_eq!(cells[0], at.to_string());

@@ -1,4 +1,5 @@
-//! Certified tables of muscles: gradients, errors at points that nobody has seen, edges, sizes, and the same bytes on any number of threads.
+//! Certified tables of muscles: gradients, errors at new points, edges, sizes, and the same bytes on any
+//! number of threads.
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
@@ -21,7 +22,7 @@ fn plan(text: &str) -> Plan {
     Plan::from_toml(text, "sweep.toml", None).unwrap()
 }
 
-/// A plan and its wish with few checks: as many as a file asks for would take long here.
+/// A plan and its requirements with few checks; the number that a file must have would take too long here.
 fn wished(text: &str, checks: u64) -> (Plan, TableRequirements) {
     let plan = plan(text);
     let wish = TableRequirements { checks, ..plan.table.clone().unwrap() };
@@ -38,12 +39,13 @@ fn look<const A: usize>(table: &Table<'_>, point: [f64; A]) -> Option<[(f64, [f6
     Some(found.map(|sample| (sample.value, sample.gradient)))
 }
 
-/// Relative difference, small values against a thousandth of the largest: as `bulge_table::Certificate` defines it.
+/// Relative difference. Small values are compared with a thousandth of the largest, as
+/// `bulge_table::Certificate` defines it.
 fn off(found: f64, exact: f64, scale: f64) -> f64 {
     (found - exact).abs() / exact.abs().max(1e-3 * scale)
 }
 
-/// A muscle, axes with their ranges and a point, and how exact gradients are.
+/// A muscle, its axes with ranges, a point, and the expected accuracy of the gradients.
 type Case<'a> = (&'a str, &'a [(&'a str, &'a str, f64)], f64);
 
 #[test]
@@ -130,7 +132,7 @@ fn gradients_of_a_family_are_its_differences() {
 
 #[test]
 fn a_family_with_whole_fibres_has_gradients_too() {
-    // Between whole numbers there is nothing, but f, v and F go on: n sin(2 pi/n) is what they depend on.
+    // f, v and F continue between whole numbers of fibres, because they depend on n sin(2 pi/n).
     let plan = plan("muscle = \"ppam-2-r16\"\ncontraction = 0.2\n[axes.fibres]\nlist = [40]\n");
     let family = Family::new(&plan).unwrap();
     let outputs = [Output::ForceF, Output::Force];
@@ -142,7 +144,8 @@ fn a_family_with_whole_fibres_has_gradients_too() {
     assert!(gradients[0].abs() < 1e-12 * values[0]);
 }
 
-/// Largest errors of values and gradients of f and v at random points of a table over (contraction, slenderness), and of its edge.
+/// Largest errors of values and gradients of f and v at random points of a table over (contraction,
+/// slenderness), and the largest error of its edge.
 fn fresh_errors(plan: &Plan, table: &Table<'_>, points: usize) -> ([[f64; 2]; 2], f64) {
     let family = Family::new(plan).unwrap();
     let scales = [0, 1].map(|o| table.output(o).unwrap().certificate.scale);
@@ -186,7 +189,8 @@ fn a_certified_table_keeps_its_promise_where_nobody_looked() {
         for (o, [value, gradient]) in worst.into_iter().enumerate() {
             let promised = table.output(o).unwrap().certificate;
             assert_eq!(promised, certificates[o]);
-            // A little more than was measured may be found elsewhere, but not more than is wished or bounded.
+            // Slightly more than the measured error may occur elsewhere, but not more than the tolerance or
+            // the bound.
             assert!(
                 value <= wish.tolerance && gradient <= wish.gradient,
                 "{form:?} {o}: {value:e} {gradient:e}"
@@ -218,7 +222,7 @@ fn force_and_volume_of_a_table_belong_together() {
         let problem = Problem::new(&radius, Pressure::bar(1.0)).unwrap();
         let response = problem.follow(contraction, Approach::Auto).unwrap();
         let [(f, _), (v, by_v)] = look(&table, [contraction, slenderness]).unwrap();
-        // F = p l0^2 a f, V = l0^3 v; the work of the gas is that of the force: f = dv/d(contraction).
+        // F = p l0^2 a f, V = l0^3 v. The work of the gas equals that of the force, so f = dv/d(contraction).
         let scale = 1e5 * length * length * a;
         worst[0] = worst[0].max((scale * f - response.force_n).abs() / response.force_n.max(1e-3 * scale));
         worst[1] = worst[1].max((length.powi(3) * v / response.volume_m3 - 1.0).abs());
@@ -239,7 +243,7 @@ fn outside_there_is_nothing() {
         for contraction in [high + 1e-12, high + 0.01, 0.02 - 1e-12, -0.1, f64::NAN, f64::INFINITY] {
             assert!(look(&table, [contraction, slenderness]).is_none(), "{contraction} {slenderness}");
         }
-        // The force at the edge is that of the limit: none.
+        // The force at the edge is that at the limit, which is zero.
         let [(f, _), (v, _)] = look(&table, [high, slenderness]).unwrap();
         assert!(f.abs() < 1e-9 && v > 0.0);
     }
@@ -297,7 +301,7 @@ fn a_table_says_where_it_comes_from() {
     assert_eq!(description.from["name"], "ppam-2-r16");
     let names: Vec<_> = description.outputs.iter().map(|output| output.name.as_str()).collect();
     assert_eq!(names, ["force_f", "volume_v"]);
-    // A table that would be another one has another text: other outputs, other checks, another tolerance.
+    // A different table has a different text: other outputs, other checks, another tolerance.
     let others = [
         TableRequirements { outputs: vec![Output::Force, Output::Volume], ..wish.clone() },
         TableRequirements { checks: 4096, ..wish.clone() },
@@ -337,7 +341,7 @@ fn a_braid_has_a_table() {
 
 #[test]
 fn three_axes_have_a_table() {
-    // The contraction comes first in a table wherever it stands in the file.
+    // The contraction comes first in a table, wherever it is in the file.
     let text = "muscle = \"ppam-2-r16\"\n[axes.elastic_group]\nrange = \"0.005..0.01\"\n[axes.contraction]\nrange = \"5 %..limit\"\n\
         [axes.slenderness]\nrange = \"6..7\"\n[table]\ntolerance = 1e-3\ngradient = 1e-2\n";
     let (plan, wish) = wished(text, 512);

@@ -1,4 +1,5 @@
-//! The end of a filling: the last bit to equal pressures, the balance of energy, and the times to parts of the pressure.
+//! The end of a filling: the last part before equal pressures, the energy balance, and the times to fractions
+//! of the pressure.
 
 use bulge_numerics::dop853::step;
 use bulge_numerics::root::illinois;
@@ -8,7 +9,8 @@ use super::{Energy, GasModel, History, Supply};
 use crate::gas::{CP_AIR, GAMMA, GasError};
 
 impl Run<'_> {
-    /// The rest in closed form, from w = 1e-3 or less to equal pressures; whether there is time for it.
+    /// Completes the filling in closed form from w = 1e-3 or less to equal pressures, and tells whether the
+    /// time suffices.
     ///
     /// ```text
     /// x = sin(theta),   dtheta/dt = |k| dx/dm,   dx/dm = (1 - x)/|dm|
@@ -30,7 +32,7 @@ impl Run<'_> {
             let there = self.moment(&with(part), phase)?;
             Ok::<_, GasError>((there.pressure / there.supply).ln())
         };
-        // The gap is all but linear in the mass over such a bit of it.
+        // Over such a small part the gap is almost linear in the mass.
         let (mut last, mut part) = (0.0, -gap(0.0)? * y[1]);
         let mut before = gap(0.0)?;
         for _ in 0..8 {
@@ -41,6 +43,7 @@ impl Run<'_> {
             }
             (last, before, part) = (part, here, next);
         }
+        // The remaining angle pi/2 - theta, divided by dtheta/dt = |k| (1 - x)/|dm|.
         let opening = 1.0 - now.x;
         let time = if opening > 0.0 {
             (opening * (1.0 + now.x)).sqrt().atan2(now.x) * part.abs() / (now.choked.abs() * opening)
@@ -53,6 +56,7 @@ impl Run<'_> {
         *y = with(part);
         y[2] += time;
         let mut end = self.sample(y, phase)?;
+        // The pressures are equal, so the flow is exactly 0.
         end.flow_kg_per_s = 0.0;
         track.samples.push(end);
         Ok(true)
@@ -68,7 +72,7 @@ impl Run<'_> {
         let filling = self.filling;
         let first = filling.start_pressure_pa;
         let last = track.samples.last().map_or(first, |sample| sample.pressure_pa);
-        // Of a vessel the last pressure is only known once it is reached.
+        // For a vessel, the final pressure is known only when it is reached.
         let (final_pressure_pa, known) = match filling.supply {
             Supply::Constant { pressure_pa, .. } => (pressure_pa, true),
             Supply::Vessel { .. } => (last, settled),
@@ -107,7 +111,7 @@ impl Run<'_> {
         Ok(Energy { enthalpy_j, heat_j, internal_j, work_j: enthalpy_j + heat_j - internal_j })
     }
 
-    /// When a gauge pressure is first passed.
+    /// Time at which a gauge pressure is first passed.
     fn time_of(&self, target: f64, track: &Track) -> Result<Option<f64>, GasError> {
         let rounding = 1e-12 * (target + self.filling.chamber.ambient_pa());
         if track.samples.first().is_some_and(|sample| (sample.pressure_pa - target).abs() <= rounding) {

@@ -1,7 +1,9 @@
-//! The states of a chamber as functions of the pressure, interpolated: an integration asks for thousands of them.
+//! Interpolated states of a chamber as functions of the pressure, because an integration needs thousands of
+//! them.
 //!
-//! Over a panel of pressures contraction, force and volume are polynomials of degree 16 through equilibria at Chebyshev points. A panel whose polynomials
-//! miss an equilibrium between the points by more than 1e-10 is halved; after ten halvings, or where equilibria are missing, each state is solved.
+//! On a panel of pressures, contraction, force and volume are polynomials of degree 16 through equilibria at
+//! Chebyshev points. A panel is halved if its polynomials miss an equilibrium between the points by more than
+//! 1e-10. After ten halvings, or if equilibria are missing, each state is solved.
 
 use std::cell::{Cell, RefCell};
 
@@ -10,11 +12,12 @@ use crate::gas::chamber::{Chamber, Inside, LEAST_PRESSURE_PA};
 
 /// Degree of the polynomials.
 const DEGREE: usize = 16;
-/// Largest misfit: of the volume and of the force to theirs, of the contraction as it is.
+/// Largest misfit, relative for volume and force, absolute for the contraction.
 const MISFIT: f64 = 1e-10;
-/// Halvings of a panel.
+/// Most halvings of a panel.
 const DEPTH: u32 = 10;
-/// Where on a panel, from -1 to 1, the polynomials are tried: between points, near the ends and the middle.
+/// Positions on a panel, from -1 to 1, at which the polynomials are tested: between points, near the ends and
+/// near the middle.
 const TRIED: [f64; 3] = [-0.991, 0.094, 0.829];
 
 /// Contraction, force, volume.
@@ -28,19 +31,19 @@ enum Panel {
     Direct,
 }
 
-/// A chamber with what is known of its states.
+/// A chamber with its interpolated states.
 #[derive(Debug)]
 pub(super) struct Path<'a> {
     chamber: &'a Chamber<'a>,
     /// Largest gauge pressure that is interpolated.
     most: f64,
-    /// Off the support and on it.
+    /// Panels off the support and on it.
     panels: [RefCell<Panel>; 2],
     near: Cell<Option<f64>>,
 }
 
 impl<'a> Path<'a> {
-    /// For gauge pressures up to `most`.
+    /// A path for gauge pressures up to `most`.
     pub(super) const fn new(chamber: &'a Chamber<'a>, most: f64) -> Self {
         let panels = [RefCell::new(Panel::Unknown), RefCell::new(Panel::Unknown)];
         Self { chamber, most, panels, near: Cell::new(None) }
@@ -120,12 +123,13 @@ impl<'a> Path<'a> {
     }
 }
 
-/// Chebyshev points from -1 to 1, the ends among them.
+/// Chebyshev points from -1 to 1, including the ends.
 fn point(k: usize) -> f64 {
     -(std::f64::consts::PI * k as f64 / DEGREE as f64).cos()
 }
 
-/// Barycentric interpolation (J.-P. Berrut, L. N. Trefethen, SIAM Review 46, 2004): weights (-1)^k, half at the ends.
+/// Barycentric interpolation (J.-P. Berrut, L. N. Trefethen, SIAM Review 46, 2004) with weights (-1)^k,
+/// halved at the ends.
 fn interpolated(values: &[Values; DEGREE + 1], x: f64) -> Values {
     let (mut sum, mut weights) = ([0.0; 3], 0.0);
     for (k, value) in values.iter().enumerate() {

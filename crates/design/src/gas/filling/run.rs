@@ -1,4 +1,5 @@
-//! The integration of a filling: phases, events between them, the end, and the times to parts of the pressure.
+//! The integration of a filling: phases, events between them, the end, and the times to fractions of the
+//! pressure.
 
 use std::cell::{Cell, RefCell};
 
@@ -10,42 +11,42 @@ use super::{Filling, GasModel, History, Sample, Supply};
 use crate::gas::chamber::{Inside, with_gas};
 use crate::gas::{CP_AIR, GAMMA, GasError, R_AIR};
 
-/// Local error of a step against the scales of the state.
+/// Local error of a step relative to the scales of the state.
 const TOLERANCE: f64 = 1e-11;
-/// w^2 at which the rest is taken in closed form.
+/// Value of w^2 from which the rest is taken in closed form.
 const END: f64 = 1e-6;
-/// Part of the temperature up to which wall and gas are as warm as each other.
+/// Relative temperature difference below which wall and gas count as equally warm.
 const AS_WARM: f64 = 1e-6;
-/// Rates that may be missing within a step: ten times shortened.
+/// Most failed rates within a step; they suffice to shorten it ten times.
 const MOST_FAILURES: u32 = 150;
-/// Part of the time of the filling below which a step is no step.
+/// Fraction of the time of the filling below which a step is too small.
 const LEAST_STEP: f64 = 1e-7;
-/// Steps and events after which something is wrong.
+/// Most steps and events before an error is assumed.
 const MOST_STEPS: usize = 2_000_000;
 
-/// z = ln(P (V + Vd)^n), mass, time, heat from the wall, enthalpy that came in.
+/// z = ln(P (V + Vd)^n), mass, time, heat from the wall, and incoming enthalpy.
 pub(super) type State = [f64; 5];
 
-/// What stays the same while an integration goes on.
+/// Conditions that stay the same during a phase of the integration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Phase {
     flow: Flow,
-    /// On the support.
+    /// Whether the load is on the support.
     pub(super) resting: bool,
-    /// From the supply into the chamber.
+    /// Whether the flow is from the supply into the chamber.
     pub(super) inward: bool,
 }
 
-/// How the air flows.
+/// Regime of the flow.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Flow {
     Choked,
     Subsonic,
-    /// As the heat lets it; the variable is the time.
+    /// Flow controlled by the heat. The integration variable is the time.
     Slow,
 }
 
-/// What ends a phase.
+/// Event that ends a phase.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Event {
     Choking,
@@ -55,7 +56,7 @@ enum Event {
     Time,
 }
 
-/// A state in the terms of the equations; pressures absolute.
+/// A state in the quantities of the equations. Pressures are absolute.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Moment {
     pub(super) inside: Inside,
@@ -63,7 +64,7 @@ pub(super) struct Moment {
     pub(super) temperature: f64,
     pub(super) supply: f64,
     pub(super) x: f64,
-    /// Choked flow, with its sign.
+    /// Choked flow with its sign.
     pub(super) choked: f64,
 }
 
@@ -73,9 +74,9 @@ pub(super) struct Run<'a> {
     exponent: f64,
     pub(super) supply_k: f64,
     pub(super) start_mass: f64,
-    /// Mass, time and energy of the problem.
+    /// Scales of mass, time and energy.
     scales: State,
-    /// Last gauge pressure, where the next search starts.
+    /// Last gauge pressure, from which the next search starts.
     near: Cell<f64>,
     reason: RefCell<Option<String>>,
     failures: Cell<u32>,
@@ -83,7 +84,7 @@ pub(super) struct Run<'a> {
 
 pub(super) struct Track {
     pub(super) samples: Vec<Sample>,
-    /// What leads from each sample to the next.
+    /// Start, phase and step of each piece between samples.
     pub(super) pieces: Vec<(State, Phase, f64)>,
 }
 
@@ -128,6 +129,7 @@ pub(super) fn run(filling: &Filling<'_>) -> Result<History, GasError> {
         if end.is_none() {
             end = Some(run.integrate(&mut y, &mut phase, &mut track, span, &mut steps)?);
         }
+        // Without heat the rest has a closed form; with heat, the slow phase follows.
         if end == Some(Event::Met) && !run.has_heat() {
             settled = run.meet(&mut y, phase, &mut track)?;
         }
@@ -156,7 +158,7 @@ impl Run<'_> {
         }
     }
 
-    /// Absolute pressure of the supply when the chamber holds a mass.
+    /// Absolute pressure of the supply when the chamber holds the given mass.
     fn supply(&self, mass: f64) -> f64 {
         let ambient = self.filling.chamber.ambient_pa();
         match self.filling.supply {
@@ -195,7 +197,7 @@ impl Run<'_> {
         Ok(Moment { inside, pressure, temperature, supply, x: orifice.opening(ratio), choked })
     }
 
-    /// Derivatives by s, in the slow phase by the time.
+    /// Derivatives with respect to s; in the slow phase, with respect to time.
     pub(super) fn rates(&self, y: &State, phase: Phase) -> Result<State, GasError> {
         let now = self.moment(y, phase)?;
         let heat = self.heat(now.temperature);
@@ -216,7 +218,7 @@ impl Run<'_> {
         Ok([z, mass, time, heat * time, enthalpy])
     }
 
-    /// The flow that keeps the ratio of the pressures while heat flows.
+    /// Flow that keeps the ratio of the pressures constant while heat flows.
     ///
     /// ```text
     /// (gamma - 1)(cp T_in m' + Q)/(P V) = (1 + gamma dlnV/dlnP) dlnP/dt,     dlnP/dt = dlnPs/dt = -m' R Ts/(Vs Ps)
@@ -256,8 +258,9 @@ impl Run<'_> {
         })
     }
 
-    /// Rates for the integrator: not a number where there is no equilibrium, so that it shortens its step. A step whose end alone has none is not
-    /// shortened by it: after some failures the rates are numbers again, so that it comes back, and the filling ends.
+    /// Rates for the integrator. They are NaN where there is no equilibrium, so that it shortens its step. If
+    /// only the end of a step has none, this doesn't shorten the step. After some failures the rates are
+    /// therefore numbers again, so that the step returns and the filling ends.
     pub(super) fn right_hand_side(&self, y: &State, phase: Phase) -> State {
         self.rates(y, phase).unwrap_or_else(|error| {
             *self.reason.borrow_mut() = Some(error.to_string());
@@ -266,7 +269,7 @@ impl Run<'_> {
         })
     }
 
-    /// Negative before the event, positive after it.
+    /// Event function: negative before the event, positive after it.
     fn event(&self, event: Event, y: &State, phase: Phase) -> Result<f64, GasError> {
         let now = self.moment(y, phase)?;
         Ok(match event {
@@ -290,7 +293,8 @@ impl Run<'_> {
         })
     }
 
-    /// Through the phases until the pressures meet, wall and gas are as warm as each other, or the time is over.
+    /// Integrates through the phases until the pressures are equal, wall and gas are equally warm, or the
+    /// time is over.
     fn integrate(
         &self,
         y: &mut State,
@@ -322,7 +326,7 @@ impl Run<'_> {
             if self.failures.get() > MOST_FAILURES {
                 return Err(self.stopped(&before, now, ""));
             }
-            // A step so small because of what lies beyond it: the end of all equilibria.
+            // A step is this small only because there are no equilibria beyond it.
             if h < LEAST_STEP * self.scales[2] && self.reason.borrow().is_some() {
                 return Err(self.stopped(y, now, ""));
             }
@@ -341,7 +345,7 @@ impl Run<'_> {
         Err(self.stopped(y, *phase, "too many steps: the orifice is far too large or too small for the time"))
     }
 
-    /// The first event of a step, to which the state and the step are then taken back.
+    /// The first event in a step. State and step are then reset to it.
     fn first_event(
         &self,
         before: &State,
@@ -357,6 +361,7 @@ impl Run<'_> {
         let mut f = |y: &State| self.right_hand_side(y, phase);
         let mut first = None;
         for event in candidates {
+            // Each event shortens the step, so that only an earlier one can replace it.
             if self.event(*event, y, phase)? > 0.0 {
                 let slope = f(before);
                 let value = |part: f64| {

@@ -1,4 +1,5 @@
-//! Fillings against closed forms, against conservation laws, and against quadratures that share nothing with the integration.
+//! Fillings against closed forms, against conservation laws, and against quadratures that are independent of
+//! the integration.
 
 use super::*;
 use crate::gas::examples::{braid, learnt, pleated, soft};
@@ -80,7 +81,8 @@ fn a_supply_too_weak_to_choke_fills_on_a_sine_alone() {
     assert!((found.samples.last().unwrap().time_s / time - 1.0).abs() < 1e-8);
 }
 
-/// Subsonic venting to the ambient, r = p0/P: dt = -dP/(rate P w(p0/P)), by Simpson's rule in theta with r = b + (1 - b) sin(theta).
+/// Subsonic venting to the ambient with r = p0/P: dt = -dP/(rate P w(p0/P)), by Simpson's rule in theta with
+/// r = b + (1 - b) sin(theta).
 #[test]
 fn a_rigid_vessel_blows_down_exponentially() {
     let blow = Filling { supply: Supply::ambient(), start_pressure_pa: 6e5, ..filling(litre(), 0.0) };
@@ -120,24 +122,24 @@ fn an_evacuated_vessel_heats_to_gamma_times_the_supply() {
         Filling { gas: GasModel::adiabatic(), start_pressure_pa: start - P0, ..filling(litre(), 6e5) };
     let found = evacuated.run().unwrap();
     let last = found.samples.last().unwrap();
-    // U2 - U1 = cp Ts (m2 - m1).
+    // Energy balance: U2 - U1 = cp Ts (m2 - m1).
     let supply = 6e5 + P0;
     let came = (supply - start) * 1e-3 / (GAMMA * R_AIR * T0);
     let exact = supply * 1e-3 / (R_AIR * (came + start * 1e-3 / (R_AIR * T0)));
     assert!((last.temperature_k / exact - 1.0).abs() < 1e-9, "{} {exact}", last.temperature_k);
     assert!((last.temperature_k / (GAMMA * T0) - 1.0).abs() < 1e-5);
-    // From the ambient the gas is a mixture: less hot.
+    // From the ambient the gas is a mixture and gets less hot.
     let full = Filling { start_pressure_pa: 0.0, ..evacuated }.run().unwrap();
     let came = 6e5 * 1e-3 / (GAMMA * R_AIR * T0);
     let exact = supply * 1e-3 / (R_AIR * (came + P0 * 1e-3 / (R_AIR * T0)));
     assert!((full.samples.last().unwrap().temperature_k / exact - 1.0).abs() < 1e-9);
-    // Adiabatic filling is gamma times as fast as isothermal filling, at the same temperature of the supply.
+    // At the same supply temperature, adiabatic filling is gamma times as fast as isothermal filling.
     let rate = GAMMA * C * RHO * R_AIR * T0 / 1e-3;
     let time = (B - P0 / supply + FRAC_PI_2 * (1.0 - B)) / rate;
     assert!((full.samples.last().unwrap().time_s / time - 1.0).abs() < 1e-8);
 }
 
-/// Emptying without heat: T goes as P^((gamma - 1)/gamma), and while choked dP/dt = -gamma R T m'/V.
+/// Emptying without heat: T varies like P^((gamma - 1)/gamma), and while choked dP/dt = -gamma R T m'/V.
 #[test]
 fn adiabatic_blow_down_is_isentropic() {
     let blow = Filling {
@@ -168,7 +170,7 @@ fn lifting(muscle: &MuscleWithEffects, load: f64) -> Filling<'_> {
     filling(chamber.with_dead_volume(2e-5).unwrap(), 4e5)
 }
 
-/// The work of the gas by the balance of energy is what load and atmosphere got.
+/// The work of the gas from the energy balance equals the work on load and atmosphere.
 #[test]
 fn energy_is_conserved_while_a_load_goes_up() {
     for (muscle, load) in [(pleated(), 400.0), (braid(), 300.0)] {
@@ -182,7 +184,7 @@ fn energy_is_conserved_while_a_load_goes_up() {
             let energy = found.energy.unwrap();
             let error = energy.work_j / wanted - 1.0;
             assert!(error.abs() < 1e-7, "{heat}: {error:e} {energy:?}");
-            // Internal energy from the samples, enthalpy from the air.
+            // Internal energy from the samples, enthalpy from the mass of air.
             let internal = CV_AIR * (last.mass_kg * last.temperature_k - first.mass_kg * first.temperature_k);
             assert!((energy.internal_j / internal - 1.0).abs() < 1e-7);
             assert!((energy.enthalpy_j / (CP_AIR * T0 * found.air_kg) - 1.0).abs() < 1e-9);
@@ -209,7 +211,7 @@ fn the_time_is_that_of_a_quadrature() {
         }
         let t90 = found.time_90_s.unwrap();
         assert!((t90 / time - 1.0).abs() < 1e-4, "{t90} {time}");
-        // More samples are more steps: the times stay.
+        // More samples take more steps, but the times don't change.
         let fine = Filling { samples: 300, ..setup }.run().unwrap();
         let [a, b] = [&found, &fine].map(|found| found.samples.last().unwrap().time_s);
         assert!((a / b - 1.0).abs() < 1e-8 && (t90 / fine.time_90_s.unwrap() - 1.0).abs() < 1e-8, "{a} {b}");
@@ -239,7 +241,7 @@ fn mass_is_what_flowed_and_the_load_is_carried() {
         }
     }
     assert!(lifted > 50 && lifted < found.samples.len());
-    // Down again: the load comes back to its support, and the air that came in is out.
+    // On the way down the load returns to its support, and the same mass of air flows out.
     let down = Filling { supply: Supply::ambient(), start_pressure_pa: 4e5, ..setup }.run().unwrap();
     let last = down.samples.last().unwrap();
     assert!((last.contraction - 0.05).abs() < 1e-12 && last.pressure_pa.abs() < 1e-6 && down.settled);
@@ -258,12 +260,12 @@ fn a_held_inextensible_muscle_is_a_vessel() {
     assert!((one.time_99_s.unwrap() / other.time_99_s.unwrap() - 1.0).abs() < 1e-9);
     assert!((one.samples.last().unwrap().time_s / other.samples.last().unwrap().time_s - 1.0).abs() < 1e-9);
     for (a, b) in one.samples.iter().zip(&other.samples) {
-        // Steps of another size, by rounding.
+        // Rounding leads to steps of another size.
         assert!((a.pressure_pa - b.pressure_pa).abs() < 0.1 && (a.time_s - b.time_s).abs() < 1e-7);
         let pull = held.at(1e5).unwrap().force_n * a.pressure_pa / 1e5;
         assert!((a.force_n - pull).abs() < 1e-6);
     }
-    // Below the least pressure that is solved, too.
+    // This also holds below the least pressure that is solved.
     assert!((held.at(40.0).unwrap().force_n / held.at(4e5).unwrap().force_n - 1e-4).abs() < 1e-12);
     assert!(held.at(0.0).unwrap().force_n.abs() < 1e-12);
 }
@@ -283,7 +285,7 @@ fn springs_are_laws() {
     assert!((a.contraction - b.contraction).abs() < 1e-8 && a.contraction > 0.05);
     assert!((a.force_n / law(a.contraction) - 1.0).abs() < 1e-8, "{a:?}");
     assert!((a.time_s / b.time_s - 1.0).abs() < 1e-7);
-    // A load that falls with the contraction (a linkage) has its balance too.
+    // A load that decreases with the contraction (a linkage) has a balance as well.
     let falling = |e: f64| 150.0 * (1.0 - 2.0 * e);
     let chamber = Chamber::muscle(&muscle, Load::Law(&falling)).unwrap();
     let found = chamber.at(2e5).unwrap();
@@ -299,12 +301,12 @@ fn a_vessel_shares_its_air() {
     assert!((found.air_kg / (4e5 * 1e-3 / (R_AIR * T0)) - 1.0).abs() < 1e-10);
     assert!(found.settled && found.final_pressure_pa.to_bits() == last.pressure_pa.to_bits());
     assert!(found.time_90_s.unwrap() < found.time_99_s.unwrap());
-    // A vessel without end is a constant supply.
+    // An infinitely large vessel is a constant supply.
     let endless = Supply::Vessel { pressure_pa: 6e5, temperature_k: T0, volume_m3: 1e6 };
     let [a, b] = [Filling { supply: endless, ..filling(litre(), 0.0) }, filling(litre(), 6e5)]
         .map(|setup| setup.run().unwrap().samples.last().unwrap().time_s);
     assert!((a / b - 1.0).abs() < 1e-7, "{a} {b}");
-    // Less time than it takes.
+    // The computed time is shorter than the filling takes.
     let cut = Filling { supply, longest_s: 0.01, ..filling(litre(), 0.0) }.run().unwrap();
     assert!(!cut.settled && cut.time_90_s.is_none());
     assert!((cut.samples.last().unwrap().time_s - 0.01).abs() < 1e-12);
@@ -327,7 +329,8 @@ fn walls_take_the_heat_back() {
     assert!(hottest > 1.1 * T0 && hottest < GAMMA * T0);
     let energy = found.energy.unwrap();
     assert!(energy.heat_j < 0.0 && energy.work_j.abs() < 1e-6 * energy.internal_j, "{energy:?}");
-    // While it cools at constant pressure V P = m R T gives dT/dt = -hA (T - Tw) T/(m T cp): T - Tw falls as exp(-t hA/(m cp)) for small differences.
+    // While the gas cools at constant pressure, V P = m R T gives dT/dt = -hA (T - Tw) T/(m T cp), so T - Tw
+    // decays like exp(-t hA/(m cp)) for small differences.
     let late: Vec<_> = found
         .samples
         .iter()
@@ -336,20 +339,21 @@ fn walls_take_the_heat_back() {
     let [a, b] = [late[0], late[late.len() / 2]];
     let slope = ((a.temperature_k - T0) / (b.temperature_k - T0)).ln() / (b.time_s - a.time_s);
     assert!((slope / (0.05 / (cold * CP_AIR)) - 1.0).abs() < 2e-3, "{slope}");
-    // Heated at constant pressure, the gas pushes itself out: dm/m = -dT/T, so that Q = P V cp/R ln(Tw/T), all of it enthalpy that leaves.
+    // Gas heated at constant pressure expands out of the vessel: dm/m = -dT/T, so Q = P V cp/R ln(Tw/T), all
+    // of which leaves as enthalpy.
     let gas = GasModel::Adiabatic { heat_transfer_w_per_k: 0.05, wall_temperature_k: 400.0 };
     let hot = Filling { gas, longest_s: 1e4, start_pressure_pa: 6e5, ..filling(litre(), 6e5) }.run().unwrap();
     let energy = hot.energy.unwrap();
     let heat = (6e5 + P0) * 1e-3 * CP_AIR / R_AIR * (400.0 / T0).ln();
     assert!((energy.heat_j / heat - 1.0).abs() < 1e-5 && (energy.enthalpy_j / heat + 1.0).abs() < 1e-5);
     assert!(hot.settled && hot.air_kg < 0.0);
-    // Much heat transfer is isothermal.
+    // A large heat transfer is isothermal.
     let isothermal = filling(litre(), 6e5).run().unwrap();
     let fast = warm(1e4, 5e3);
     assert!((fast.time_90_s.unwrap() / isothermal.time_90_s.unwrap() - 1.0).abs() < 1e-3);
 }
 
-/// The flow that the heat asks for keeps the pressures equal, also from a vessel and with a muscle that moves.
+/// The flow controlled by the heat keeps the pressures equal, also from a vessel and with a moving muscle.
 #[test]
 fn a_vessel_and_a_muscle_end_as_warm_as_their_walls() {
     let muscle = pleated();
@@ -361,7 +365,7 @@ fn a_vessel_and_a_muscle_end_as_warm_as_their_walls() {
     let last = found.samples.last().unwrap();
     let left = 6e5 + P0 - found.air_kg * R_AIR * T0 / 1e-3;
     assert!(((last.pressure_pa + P0) / left - 1.0).abs() < 1e-6, "{last:?} {left}");
-    // As the isothermal filling ends: the same air, shared.
+    // The end is that of the isothermal filling: the same air, shared.
     let isothermal = Filling { gas: GasModel::Isothermal, ..setup }.run().unwrap();
     let end = isothermal.samples.last().unwrap();
     assert!((last.pressure_pa / end.pressure_pa - 1.0).abs() < 2e-6);
@@ -412,7 +416,7 @@ fn what_cannot_be_is_said() {
     assert!(litre().with_ambient(-1.0).is_err() && litre().on_support(1.0).is_err());
     let muscle = braid();
     assert!(Chamber::muscle(&muscle, Load::Force(f64::NAN)).is_err());
-    // A muscle holds no vacuum.
+    // A muscle can't hold a vacuum.
     let held = Chamber::muscle(&muscle, Load::Held(0.1)).unwrap();
     assert!(matches!(
         Filling { start_pressure_pa: -10.0, ..filling(held, 1e5) }.run(),
@@ -422,11 +426,12 @@ fn what_cannot_be_is_said() {
     let equal = Filling { start_pressure_pa: 6e5, ..good }.run().unwrap();
     assert!(equal.settled && equal.air_kg.abs() < 1e-18);
     assert_eq!((equal.time_90_s, equal.samples.len()), (Some(0.0), 1));
-    // A load without support, more than the muscle can carry as the pressure falls: its fibres are drawn straight.
+    // A load without support that exceeds what the muscle can carry as the pressure falls, so that its fibres
+    // are drawn straight.
     let hung = Chamber::muscle(&muscle, Load::Force(300.0)).unwrap();
-    // F = p pi r0^2 2/sin^2(alpha0) at the straight fibres.
+    // F = p pi r0^2 2/sin^2(alpha0) with straight fibres.
     let straight = 300.0 * 25_f64.to_radians().sin().powi(2) / (2e-4 * std::f64::consts::PI);
-    // Wherever the steps fall.
+    // The result doesn't depend on the positions of the steps.
     for conductance in [C, 1.01 * C, 0.37 * C] {
         let orifice = Orifice::new(conductance, B).unwrap();
         let vented =

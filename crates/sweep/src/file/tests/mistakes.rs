@@ -1,4 +1,4 @@
-//! Mistaken sweep files: each message says where, what, and what to write instead.
+//! Wrong sweep files: each message states the place, the mistake, and the correction.
 
 use super::*;
 
@@ -23,7 +23,7 @@ fn scattered(text: &str) -> String {
     format!("{text}\n{}", TABLE.replace("0 %..", "1 %.."))
 }
 
-/// Mistaken files, each with parts of the answer: place, what, cure.
+/// Wrong files, each with parts of the expected message: place, mistake, correction.
 type Mistakes<'m> = &'m [(String, [&'m str; 3])];
 
 #[track_caller]
@@ -307,7 +307,7 @@ fn axes_are_known_and_not_too_many() {
     let five = TABLE.replace("[table]", &format!("{}[table]", axes.concat()));
     refused(&five, &["s.toml:12:", "5 axes", "at most 4"]);
     assert_eq!(read(&five.replace("[axes.pleat_depth]\nrange = \"1..2 mm\"\n", "")).axes.len(), 4);
-    // 65536^4 = 2^64 points would wrap to none.
+    // 65536^4 = 2^64 points would wrap to 0.
     let grid = axes.concat().replace("\"\n", "\"\npoints = 65536\n");
     let grid = format!("muscle = \"ppam-2-r16\"\ncontraction = 0.1\n{grid}");
     refused(&grid, &["more than 281474976710656 points", "fewer"]);

@@ -1,4 +1,4 @@
-//! A table as a C99 header: the coefficients, and a function that repeats the lookup.
+//! A table as a C99 header: the coefficients, and a function that evaluates the lookup.
 
 mod body;
 mod literal;
@@ -13,18 +13,20 @@ use literal::{double, single};
 /// Longest line of numbers.
 const WIDTH: usize = 110;
 
-/// A self-contained header (C99, `<stddef.h>` and `<math.h>` only): `static const` arrays with the coefficients as they are stored, and
+/// A self-contained header (C99, only `<stddef.h>` and `<math.h>`). It has `static const` arrays with the
+/// coefficients as stored, and the function
 ///
 /// ```text
 /// static inline int NAME_at(const double x[A], double y[O], double dy[O][A]);
 /// ```
-/// which returns 1 and writes the outputs with their derivatives by the axes, or returns 0 outside the domain and for a NaN and writes nothing. It is
-/// the lookup of `bulge_table`, to rounding.
+/// The function returns 1 and writes the outputs and their derivatives by the axes. Outside the domain and
+/// for a NaN it returns 0 and writes nothing. It agrees with the lookup of `bulge_table` to rounding.
 ///
 /// # Errors
-/// [`ExportError::Name`] if the name isn't of letters, digits and underscores.
+/// [`ExportError::Name`] if the name has characters other than letters, digits and underscores, or doesn't
+/// begin with a letter.
 pub fn c_header(table: &Table<'_>, name: &str) -> Result<String, ExportError> {
-    // A leading underscore belongs to the compiler.
+    // Names with a leading underscore are reserved for the compiler.
     let is_name = name.starts_with(|c: char| c.is_ascii_alphabetic())
         && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
     if !is_name {
@@ -54,7 +56,7 @@ pub fn c_header(table: &Table<'_>, name: &str) -> Result<String, ExportError> {
     Ok(text)
 }
 
-/// Text in a comment: nothing in it may end the comment, open another, or start a trigraph.
+/// Makes text safe in a comment: it can't end the comment, open another, or start a trigraph.
 fn plain(text: &str) -> String {
     let plain: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
     plain.replace("*/", "* /").replace("/*", "/ *").replace("??", "? ?")
@@ -74,7 +76,7 @@ fn array(text: &mut String, kind: &str, name: &str, numbers: impl ExactSizeItera
     text.push_str("\n};\n\n");
 }
 
-/// The functions of one coordinate that the lookup needs.
+/// Writes the functions of one coordinate that the lookup needs.
 fn helpers(text: &mut String, table: &Table<'_>, name: &str) {
     let is_spline = table.form() == Form::Spline;
     if is_spline || table.is_fitted() {
@@ -85,7 +87,7 @@ fn helpers(text: &mut String, table: &Table<'_>, name: &str) {
     }
 }
 
-/// The largest number of coefficients that a place takes along an axis.
+/// Largest number of coefficients along an axis that one point uses.
 fn widest(table: &Table<'_>) -> usize {
     match table.form() {
         Form::Spline => 4,

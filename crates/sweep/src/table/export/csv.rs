@@ -5,12 +5,14 @@ use std::fmt::Write as _;
 
 use super::{ExportError, MOST_ROWS, axes, outputs};
 
-/// Part of the width of axis 0 that the grid keeps away from a fitted edge and from a singular lower end, where the lookup has no value.
+/// Fraction of the width of axis 0 by which the grid stays away from a fitted edge and from a singular lower
+/// end, where the lookup has no value.
 const INSIDE: f64 = 1e-9;
 
-/// Rows of `points_per_axis` equal steps on each axis, the last one fastest: coordinates, outputs, and the outputs' derivatives by each axis. A
-/// fitted axis 0 goes to its edge at the other coordinates. Numbers have as many digits as reading them back needs;
-/// cells without a value are empty.
+/// Rows on a grid of `points_per_axis` equally spaced points on each axis; the last axis varies fastest. A
+/// row holds the coordinates, the outputs, and the derivatives of the outputs by each axis. A fitted axis 0
+/// ends at its edge, which depends on the other coordinates. Numbers have as many digits as are needed to
+/// read them back exactly; cells without a value are empty.
 ///
 /// # Errors
 /// [`ExportError::TooFewPoints`] or [`ExportError::TooManyRows`].
@@ -50,6 +52,7 @@ pub fn csv(table: &Table<'_>, points_per_axis: usize) -> Result<String, ExportEr
             let (low, mut high) = (axes[i].low, axes[i].high);
             let mut part = part;
             if i == 0 {
+                // The other coordinates are set already, because axis 0 is the last of this loop.
                 high = table.upper_end(&point).unwrap_or(high);
                 let least = if is_singular { INSIDE } else { 0.0 };
                 let most = if table.is_fitted() { 1.0 - INSIDE } else { 1.0 };
@@ -71,7 +74,7 @@ pub fn csv(table: &Table<'_>, points_per_axis: usize) -> Result<String, ExportEr
     Ok(text)
 }
 
-/// A field of the header; names and units may hold anything.
+/// A field of the header, quoted where needed because names and units may hold any characters.
 fn quoted(field: &str) -> String {
     if field.contains([',', '"', '\n', '\r']) {
         format!("\"{}\"", field.replace('"', "\"\""))

@@ -1,19 +1,22 @@
-//! A table as JSON: everything that its bytes hold, to rebuild the lookup elsewhere.
+//! A table as JSON. It holds everything in the bytes of the table, so that the lookup can be rebuilt
+//! elsewhere.
 
 use bulge_table::Table;
 use serde_json::{Value, json};
 
 use super::{axes, coefficients, outputs};
 
-/// Axes, outputs with their certificates, form, edge, coefficients and provenance. The equations of the lookup stand in the documentation of
-/// `bulge_table`; the order of the coefficients is that of its format. A linear coordinate has the pole `null`.
+/// Axes, outputs with their certificates, form, edge, coefficients and origin. The documentation of
+/// `bulge_table` states the equations of the lookup; the coefficients are in the order of its format. A
+/// linear coordinate has the pole `null`.
 ///
-/// The numbers are written so that reading them back gives the same bits; coefficients of single precision as the equal double.
+/// Reading the numbers back gives the same bits. Coefficients of single precision are written as the equal
+/// double.
 #[must_use]
 pub fn json(table: &Table<'_>) -> Value {
     let [edge, data] = coefficients(table);
     let [checks, seed] = table.checks();
-    // What isn't JSON stays text.
+    // Text that isn't JSON stays text.
     let text = table.text();
     let source = serde_json::from_str(text).unwrap_or_else(|_| Value::from(text));
     let axes: Vec<Value> = axes(table)

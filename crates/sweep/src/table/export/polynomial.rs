@@ -1,11 +1,13 @@
-//! Polynomials of force and volume in the form that S1 prints (eqs. 31 and 32, Tables 1 and 2), for muscles of one slenderness.
+//! Polynomials of force and volume in the form printed in S1 (eqs. 31 and 32, Tables 1 and 2), for muscles of
+//! one slenderness.
 //!
 //! ```text
 //! F = p l0^2 (f4 k^3 + f3 k^2 + f2 k + f1 + f0/k)                 S1 eq. 31
 //! V = l0^3 (v5 k^5 + v4 k^4 + v3 k^3 + v2 k^2 + v1 k + v0)        S1 eq. 32
 //! F in N, V in ml, p in bar, l0 in m, contraction k in %
 //! ```
-//! As in the paper the force is multiplied by k, so that its rise towards k = 0 doesn't rule, and a polynomial of fourth degree is fitted to it.
+//! As in the paper, the force is multiplied by k, so that its rise towards k = 0 doesn't dominate. A
+//! polynomial of fourth degree is fitted to the product.
 
 mod fit;
 mod s1;
@@ -21,26 +23,26 @@ use fit::{Fitted, fit, value};
 
 /// Points of a fit.
 const POINTS: usize = 400;
-/// Points at which its errors are measured.
+/// Points at which the errors of the fit are measured.
 const CHECKS: usize = 2000;
-/// Pascals of a bar, and millilitres of a cubic metre: what turns f and v into numbers of the paper.
+/// Pascals per bar, and millilitres per cubic metre: they convert f and v to the units of the paper.
 const BAR: f64 = 1e5;
 const MILLILITRES: f64 = 1e6;
-/// Length of the paper's muscle \[m\]: errors are stated for it.
+/// Length of the muscle in the paper \[m\], for which errors are stated.
 pub const S1_LENGTH: f64 = 0.11;
 
-/// How far a polynomial is from its curve.
+/// Deviation of a polynomial from its curve.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct FitError {
     /// Largest error.
     pub largest: f64,
     /// Root mean square over the range.
     pub rms: f64,
-    /// Largest error over the largest value in the range.
+    /// Largest error divided by the largest value in the range.
     pub of_full_scale: f64,
 }
 
-/// Force and volume polynomials of a slenderness.
+/// Force and volume polynomials of one slenderness.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct PapersPolynomial {
     /// f4, f3, f2, f1, f0 of eq. 31.
@@ -49,17 +51,19 @@ pub struct PapersPolynomial {
     pub volume: [f64; 6],
     /// Contractions of the fit \[%\].
     pub range_percent: [f64; 2],
-    /// l0/R for which it holds, where that is known.
+    /// Slenderness l0/R for which the polynomials hold, if it is known.
     pub slenderness: Option<f64>,
-    /// Number of fibres for which it holds; none for n -> infinity.
+    /// Number of fibres for which the polynomials hold; none for n -> infinity.
     pub fibres: Option<u32>,
     /// Errors of the force \[N/bar\] of a muscle of 110 mm.
     pub force_error: FitError,
     /// Errors of the volume \[ml\] of a muscle of 110 mm.
     pub volume_error: FitError,
-    /// Bounds of the condition numbers of the two least-squares problems, in the Chebyshev polynomials in which they are solved.
+    /// Bounds of the condition numbers of the two least-squares problems, in the Chebyshev basis in which
+    /// they are solved.
     pub condition: [f64; 2],
-    /// Largest sum of |terms| over the largest |sum| in the range, of k f and of v: the coefficients need as many more digits.
+    /// Largest sum of |terms| divided by the largest |sum| in the range, for k f and for v. The coefficients
+    /// need more digits by this factor.
     pub cancellation: [f64; 2],
 }
 
@@ -77,13 +81,15 @@ impl PapersPolynomial {
     }
 }
 
-/// The polynomials of a table of `force_f` and `volume_v` over the contraction, and over the slenderness l0/R, which is then needed. `fibres` is
-/// the number n of the factor (n/2 pi) sin(2 pi/n) that f leaves out; none for n -> infinity. The range is in %.
+/// The polynomials of a table of `force_f` and `volume_v` over the contraction. If the table also has the
+/// slenderness l0/R as an axis, it must be given. `fibres` is the number n of the factor (n/2 pi) sin(2 pi/n)
+/// that f leaves out; none for n -> infinity. The range is in %.
 ///
-/// 400 Chebyshev points, least squares by orthogonal polynomials.
+/// The fit is a least-squares fit at 400 Chebyshev points, by orthogonal polynomials.
 ///
 /// # Errors
-/// [`ExportError::NotOfThisTable`], [`ExportError::Range`], or [`ExportError::Outside`] where the table has no value.
+/// [`ExportError::NotOfThisTable`], [`ExportError::Range`], or [`ExportError::Outside`] where the table has
+/// no value.
 pub fn papers_polynomial(
     table: &Table<'_>,
     slenderness: Option<f64>,
@@ -123,7 +129,7 @@ pub fn papers_polynomial(
     fitted(curve, slenderness, fibres, range_percent)
 }
 
-/// The polynomials of a curve f, v over the contraction in %.
+/// The polynomials of a curve f, v given over the contraction in %.
 fn fitted(
     mut curve: impl FnMut(f64) -> Result<[f64; 2], ExportError>,
     slenderness: Option<f64>,
@@ -168,7 +174,7 @@ fn fitted(
     })
 }
 
-/// Chebyshev points of the first kind, which lie inside.
+/// Chebyshev points of the first kind. They all lie inside the range.
 fn chebyshev_points([from, to]: [f64; 2]) -> impl Iterator<Item = f64> {
     (0..POINTS).map(move |i| {
         let t = -((i as f64 + 0.5) * PI / POINTS as f64).cos();
@@ -176,7 +182,7 @@ fn chebyshev_points([from, to]: [f64; 2]) -> impl Iterator<Item = f64> {
     })
 }
 
-/// Errors on the way.
+/// Errors accumulated so far.
 #[derive(Debug, Clone, Copy, Default)]
 struct Errors {
     largest: f64,
@@ -239,7 +245,7 @@ mod tests {
             assert!((found / wanted - 1.0).abs() < 1e-3, "{found} {wanted}");
         }
         assert!((found.force_error.largest - model.force_error.largest).abs() < 0.01);
-        // More fibres pull more.
+        // With more fibres the force is larger.
         let many = papers_polynomial(&one, None, None, [5.0, 35.0]).unwrap();
         assert!((found.force[4] / many.force[4] - 0.995_893).abs() < 1e-6);
 

@@ -1,18 +1,19 @@
-//! A table as Rust source: its bytes in a static, and the lookup.
+//! A table as Rust source: its bytes as a static, and the lookup.
 
 use bulge_table::Table;
 use std::fmt::Write as _;
 
 use super::{ExportError, described};
 
-/// Bytes on a line.
+/// Number of bytes in a line.
 const ON_A_LINE: usize = 20;
 
-/// A self-contained module: the table's bytes as `pub static NAME: [u8; N]`, and `lookup()`, which checks them and gives a
-/// `bulge_table::Lookup`. It needs the crate `bulge-table` only.
+/// A self-contained module with the bytes of the table as `pub static NAME: [u8; N]`, and `lookup()`, which
+/// checks them and returns a `bulge_table::Lookup`. It depends only on the crate `bulge-table`.
 ///
 /// # Errors
-/// [`ExportError::Name`] if the name isn't of capital letters, digits and underscores.
+/// [`ExportError::Name`] if the name has characters other than capital letters, digits and underscores, or
+/// doesn't begin with a capital letter.
 pub fn rust_source(table: &Table<'_>, name: &str) -> Result<String, ExportError> {
     let is_name = name.starts_with(|c: char| c.is_ascii_uppercase())
         && name.chars().all(|c| c.is_ascii_uppercase() || c.is_ascii_digit() || c == '_');

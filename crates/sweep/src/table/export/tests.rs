@@ -1,4 +1,4 @@
-//! Exports of tables with random coefficients: every form, number of axes and outputs.
+//! Exports of tables with random coefficients, for every form and every number of axes and outputs.
 
 use super::*;
 use bulge_numerics::Random;
@@ -8,7 +8,7 @@ use std::io::Write as _;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-/// What a random table is like.
+/// Properties of a random table.
 #[derive(Debug, Clone, Copy)]
 struct Like {
     form: u8,
@@ -21,7 +21,7 @@ struct Like {
 
 const PLAIN: Like = Like { form: 1, bytes: 8, axes: 2, outputs: 2, flags: 0, text: "{\"from\": \"*/ ??/\"}" };
 
-/// The bytes of a table whose axes go from i to i + 1.5, the one after the first without pole.
+/// The bytes of a table whose axes go from i to i + 1.5. The axis after the first has no pole.
 fn random_table(like: Like, seed: u64) -> Vec<u8> {
     let mut random = Random::new(seed, 0);
     let Like { axes, outputs, .. } = like;
@@ -83,7 +83,7 @@ fn random_table(like: Like, seed: u64) -> Vec<u8> {
     bytes
 }
 
-/// Points inside and outside, on the ends, and what is no number.
+/// Points inside, outside and at the ends, and NaN.
 fn points(table: &Table<'_>, count: usize) -> Vec<Vec<f64>> {
     let mut random = Random::new(3, 0);
     let axes = axes(table);
@@ -116,7 +116,8 @@ int main(void) {
 }
 ";
 
-/// Compiles the header of a table and asks it at points: for each 1 or 0, the outputs and the derivatives.
+/// Compiles the header of a table and evaluates it at points. For each point it returns 1 or 0, the outputs
+/// and the derivatives.
 fn asked_in_c(folder: &Path, table: &Table<'_>, points: &[Vec<f64>]) -> Vec<f64> {
     std::fs::write(folder.join("t.h"), c_header(table, "t").unwrap()).unwrap();
     let size = format!("enum {{ A = {}, O = {} }};\n", table.axes(), table.outputs());
@@ -136,7 +137,7 @@ fn asked_in_c(folder: &Path, table: &Table<'_>, points: &[Vec<f64>]) -> Vec<f64>
     answer.chunks_exact(8).map(|chunk| f64::from_ne_bytes(chunk.try_into().unwrap())).collect()
 }
 
-/// Compares C with the lookup; the number of points inside.
+/// Compares the C code with the lookup; returns the number of points inside.
 fn compared(folder: &Path, like: Like) -> usize {
     let bytes = random_table(like, 11);
     let table = Table::from_bytes(&bytes).unwrap();
@@ -155,7 +156,7 @@ fn compared(folder: &Path, like: Like) -> usize {
         }
         inside += 1;
         let found = (&answer[1..=o], &answer[1 + o..]);
-        // The coefficients, and so the terms of a sum, are about 1.
+        // The coefficients are about 1, and so are the terms of a sum.
         for (exact, found) in values.iter().zip(found.0) {
             assert!(
                 (exact - found).abs() <= 1e-13 * exact.abs().max(0.1),
@@ -163,7 +164,7 @@ fn compared(folder: &Path, like: Like) -> usize {
             );
         }
         for (exact, found) in gradients.chunks_exact(a).zip(found.1.chunks_exact(a)) {
-            // Its terms cancel, and are as large as its largest component.
+            // The terms cancel; they are as large as the largest component.
             let size = exact.iter().fold(0.1_f64, |size, x| size.max(x.abs()));
             for (exact, found) in exact.iter().zip(found) {
                 assert!((exact - found).abs() <= 1e-13 * size, "{like:?} {point:?}: {exact} {found}");
@@ -216,7 +217,7 @@ fn the_header_describes_the_table() {
         "axis 1: axis,1, 1 to 2.5 Pa",
         "output 1: output 1 N, largest relative error 1.00e-7 (bound 5.00e-7), of the gradient 3.00e-7",
         "errors measured at 1000 points from number 7 on",
-        // The comment goes on.
+        // The comment is not ended.
         "from: {\"from\": \"* / ? ?/\"}",
         "#ifndef KNEE_H",
         "static const double knee_coefficients[60]",
@@ -289,7 +290,7 @@ fn json_holds_everything() {
     // The shortest digits that read back as the same bits.
     assert!(value.to_string().contains(&format!("\"edge\":[{:?},{:?},", edge[0], edge[1])));
     assert_eq!((list("edge"), list("coefficients")), (edge, data));
-    // What isn't JSON stays text.
+    // Text that isn't JSON stays text.
     let bytes = random_table(Like { text: "by hand", ..PLAIN }, 5);
     assert_eq!(json(&Table::from_bytes(&bytes).unwrap())["source"], "by hand");
 }

@@ -7,7 +7,7 @@ use super::super::{axes, outputs};
 use super::literal::double;
 use super::widest;
 
-/// Appends the function. Writing to text doesn't fail.
+/// Appends the lookup function. Writing to a string can't fail.
 pub(super) fn body(text: &mut String, table: &Table<'_>, name: &str) {
     let _ = written(text, table, name);
 }
@@ -45,7 +45,7 @@ fn written(text: &mut String, table: &Table<'_>, name: &str) -> fmt::Result {
     writeln!(text, "    return 1;\n}}\n")
 }
 
-/// The coordinate of an axis with two fixed ends.
+/// Writes the coordinate of an axis with two fixed ends.
 fn plain_axis(text: &mut String, i: usize, axis: &Axis<'_>) -> fmt::Result {
     let (low, high, scale) = (double(axis.low), double(axis.high), double(axis.scale));
     writeln!(text, "    if (!(x[{i}] >= {low} && x[{i}] <= {high})) {{\n        return 0;\n    }}")?;
@@ -69,11 +69,11 @@ fn stretched(text: &mut String, pole: f64) -> fmt::Result {
     )
 }
 
-/// The coordinate of axis 0, which may be a root, and end at the fitted edge.
+/// Writes the coordinate of axis 0, which may be a root and may end at the fitted edge.
 fn first_axis(text: &mut String, table: &Table<'_>, name: &str, axes: &[Axis<'_>]) -> fmt::Result {
     let axis = &axes[0];
     let (low, high) = (double(axis.low), double(axis.high));
-    // At the lower end itself the root has no derivative.
+    // At the lower end itself, the root has no derivative.
     let least = if table.is_root() { double(f64::MIN_POSITIVE) } else { "0.0".to_owned() };
     let end = if table.is_fitted() { String::new() } else { format!(" && x[0] <= {high}") };
     writeln!(text, "    s = x[0] - {low};\n    if (!(s >= {least}{end})) {{\n        return 0;\n    }}")?;
@@ -99,7 +99,7 @@ fn first_axis(text: &mut String, table: &Table<'_>, name: &str, axes: &[Axis<'_>
         writeln!(text, "        u = q * {scale};\n        own[0] = by * {scale}{by};\n    }}")?;
     }
     let is_singular = outputs(table).iter().any(|output| output.is_singular);
-    // Rounding may pass the ends; this refuses NaN as well.
+    // Rounding may exceed the ends slightly. The condition also refuses NaN.
     let least = if is_singular { double(f64::MIN_POSITIVE) } else { "0.0".to_owned() };
     let most = double(1.0 + 4.0 * f64::EPSILON);
     writeln!(
@@ -108,7 +108,7 @@ fn first_axis(text: &mut String, table: &Table<'_>, name: &str, axes: &[Axis<'_>
     )
 }
 
-/// The numbers K and c of the edge with their derivatives by the coordinates.
+/// Writes the numbers K and c of the edge with their derivatives by the coordinates.
 fn edge(text: &mut String, name: &str, axes: &[Axis<'_>]) -> fmt::Result {
     let nodes: Vec<usize> = axes.iter().map(|axis| axis.edge_nodes).collect();
     let a = axes.len();
@@ -124,7 +124,7 @@ fn edge(text: &mut String, name: &str, axes: &[Axis<'_>]) -> fmt::Result {
     Ok(())
 }
 
-/// The basis functions at the coordinates.
+/// Writes the basis functions at the coordinates.
 fn places(text: &mut String, table: &Table<'_>, name: &str, axes: &[Axis<'_>]) -> fmt::Result {
     for (i, axis) in axes.iter().enumerate() {
         let nodes = axis.nodes;
@@ -140,7 +140,8 @@ fn places(text: &mut String, table: &Table<'_>, name: &str, axes: &[Axis<'_>]) -
     Ok(())
 }
 
-/// A sum of coefficients times basis functions over the axes from `first` on, from the last axis to the first as the lookup does.
+/// A sum of coefficients times basis functions over the axes from `first` on. Like the lookup, it proceeds
+/// from the last axis to the first.
 struct Sum<'a> {
     /// The result is `prefix[o]` and `prefix_by[i][o]`.
     prefix: &'static str,
@@ -152,7 +153,8 @@ struct Sum<'a> {
 }
 
 impl Sum<'_> {
-    /// Appends it; `count` says how many functions an axis has, and the names are those of cells, values and slopes.
+    /// Appends the sum. `count` gives the number of functions of an axis; the names are those of cells,
+    /// values and slopes.
     fn write(
         &self,
         text: &mut String,
@@ -167,7 +169,7 @@ impl Sum<'_> {
         self.level(text, self.first, count, names)
     }
 
-    /// The loop over one axis.
+    /// Writes the loop over one axis.
     fn level(
         &self,
         text: &mut String,
@@ -222,13 +224,13 @@ impl Sum<'_> {
     }
 }
 
-/// A loop over the outputs.
+/// Writes a loop over the outputs.
 fn each(text: &mut String, outputs: usize, depth: usize, line: &str) -> fmt::Result {
     let pad = "    ".repeat(depth);
     writeln!(text, "{pad}for (size_t o = 0; o < {outputs}; o++) {{\n{pad}    {line}\n{pad}}}")
 }
 
-/// The factors (1 - u)^j/u^k of the outputs, and the chain rule.
+/// Writes the factors (1 - u)^j/u^k of the outputs, and the chain rule.
 fn factors(text: &mut String, table: &Table<'_>, axes: usize) -> fmt::Result {
     writeln!(text, "    u = at[0];")?;
     for (o, output) in outputs(table).iter().enumerate() {

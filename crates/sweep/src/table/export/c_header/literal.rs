@@ -1,4 +1,4 @@
-//! Floating-point numbers as C writes them exactly: hexadecimal literals.
+//! Floating-point numbers as hexadecimal literals, which C reads exactly.
 
 /// A double: `-0x1.8p-1` is -0.75.
 pub(super) fn double(x: f64) -> String {
@@ -8,7 +8,7 @@ pub(super) fn double(x: f64) -> String {
     if exponent == 0 && fraction == 0 {
         return format!("{sign}0.0");
     }
-    // Below the normal numbers the leading digit is 0.
+    // Subnormal numbers have the leading digit 0.
     let (lead, power) = if exponent == 0 { (0, -1022) } else { (1, exponent.cast_signed() - 1023) };
     let digits = format!("{fraction:013x}");
     let digits = digits.trim_end_matches('0');
@@ -16,7 +16,7 @@ pub(super) fn double(x: f64) -> String {
     format!("{sign}0x{lead}{point}{digits}p{power:+}")
 }
 
-/// A float; `x` is one.
+/// A float; `x` must be representable as one.
 pub(super) fn single(x: f64) -> String {
     format!("{}f", double(x))
 }

@@ -1,16 +1,17 @@
-//! Least-squares polynomials: in Chebyshev polynomials of the range made orthogonal on the points, then turned into powers.
+//! Least-squares polynomials. The Chebyshev polynomials of the range are made orthogonal on the points; the
+//! result is converted to powers.
 
-/// A polynomial with how well it was determined.
+/// A polynomial and the conditioning of its fit.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Fitted<const N: usize> {
-    /// Of the powers N - 1 to 0.
+    /// Coefficients of the powers N - 1 to 0.
     pub(super) coefficients: [f64; N],
-    /// Bound of the condition number of the problem that was solved, ||R|| ||R^-1|| (Frobenius).
+    /// Bound of the condition number of the solved problem, ||R|| ||R^-1|| (Frobenius).
     pub(super) condition: f64,
 }
 
 impl<const N: usize> Fitted<N> {
-    /// Largest sum of |terms| over the largest |sum| in a range: what cancels in powers.
+    /// Largest sum of |terms| divided by the largest |sum| in a range: the cancellation in the power basis.
     pub(super) fn cancellation(&self, [from, to]: [f64; 2]) -> f64 {
         let terms = self.coefficients.map(f64::abs);
         let largest = (0..=200)
@@ -20,16 +21,16 @@ impl<const N: usize> Fitted<N> {
     }
 }
 
-/// A polynomial, highest power first.
+/// Value of a polynomial; the highest power comes first.
 pub(super) fn value(coefficients: &[f64], x: f64) -> f64 {
     coefficients.iter().fold(0.0, |sum, coefficient| sum * x + coefficient)
 }
 
-/// Least squares through points \[x, y\] of a range. In powers of x in % the condition number would be some 1e8; in T_i(t), t from -1 to 1, it is
-/// below 20.
+/// Least-squares fit through points \[x, y\] of a range. In powers of x in % the condition number would be
+/// some 1e8; in T_i(t), with t from -1 to 1, it is below 20.
 pub(super) fn fit<const N: usize>(points: &[[f64; 2]], [from, to]: [f64; 2]) -> Fitted<N> {
     let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
-    // Columns T_i at the points, made orthonormal: Q R, with reorthogonalisation.
+    // Columns T_i at the points, orthonormalised with reorthogonalisation: Q R.
     let columns: Vec<Vec<f64>> =
         (0..N).map(|i| points.iter().map(|[x, _]| chebyshev(i, (x - middle) / half)).collect()).collect();
     let mut r = [[0.0; N]; N];
@@ -67,7 +68,7 @@ fn chebyshev(order: usize, t: f64) -> f64 {
     now
 }
 
-/// R x = b.
+/// Solves R x = b.
 fn solved<const N: usize>(r: &[[f64; N]; N], mut b: [f64; N]) -> [f64; N] {
     for i in (0..N).rev() {
         for j in i + 1..N {
@@ -89,9 +90,10 @@ fn condition<const N: usize>(r: &[[f64; N]; N]) -> f64 {
     (squares(r) * squares(&inverse)).sqrt()
 }
 
-/// A sum of T_i((x - middle)/half) in powers of x, the highest first: Clenshaw's recurrence on polynomials.
+/// Converts a sum of T_i((x - middle)/half) to powers of x, the highest first, by Clenshaw's recurrence on
+/// polynomials.
 fn powers<const N: usize>(of_basis: [f64; N], middle: f64, half: f64) -> [f64; N] {
-    // b_k = c_k + 2 t b_{k+1} - b_{k+2}; lowest power first on the way.
+    // b_k = c_k + 2 t b_{k+1} - b_{k+2}. In the recurrence the lowest power comes first.
     let (mut next, mut after) = ([0.0; N], [0.0; N]);
     for k in (0..N).rev() {
         let twice = if k == 0 { 1.0 } else { 2.0 };

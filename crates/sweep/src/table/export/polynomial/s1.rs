@@ -1,4 +1,4 @@
-//! Tables 1 and 2 of S1 beside what the model computes.
+//! Comparison of Tables 1 and 2 of S1 with the model.
 
 use bulge_fibre::{Approach, Problem};
 use bulge_muscles::{Parameter, Pressure, preset};
@@ -16,10 +16,10 @@ pub(super) const TABLE_2: [f64; 6] = [0.022_54, -2.6296, 113.82, -2386.3, 30_080
 const PRACTICAL: [f64; 2] = [5.0, 35.0];
 /// Radii that the paper names \[mm\].
 const RADII_MM: [f64; 2] = [16.0, 11.5];
-/// Upper ends of the ranges that are tried \[%\], besides the contraction limit, and lower ones.
+/// Upper ends of the ranges that are tried \[%\], besides the contraction limit, and the lower ends.
 const HIGHS: [f64; 4] = [35.0, 36.0, 38.5, 40.0];
 const LOWS: [f64; 3] = [0.0, 1.0, 5.0];
-/// Points of a fit that is tried: the paper doesn't say how many it took.
+/// Numbers of points that are tried for the fit; the paper doesn't state its number.
 const COUNTS: [u32; 3] = [16, 41, 401];
 
 /// Force per pressure at a contraction.
@@ -31,11 +31,11 @@ pub struct ForceRow {
     pub printed: f64,
     /// Eq. 28 with R = 16 mm, n = 40 \[N/bar\].
     pub computed: f64,
-    /// Printed less computed \[N/bar\].
+    /// Printed minus computed \[N/bar\].
     pub difference: f64,
 }
 
-/// Table 1 beside the model.
+/// Table 1 compared with the model.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ForceTable {
     /// From 5 to 35 % in steps of 2.5 %.
@@ -46,7 +46,7 @@ pub struct ForceTable {
     pub rms: f64,
     /// f4 to f0 fitted to the printed curve itself.
     pub refit: [f64; 5],
-    /// Largest relative difference of these from the printed ones.
+    /// Largest relative difference of these coefficients from the printed ones.
     pub refit_error: f64,
     /// Eq. 31 fitted to the computed curve from 5 to 35 %, with eq. 32.
     pub of_model: PapersPolynomial,
@@ -63,14 +63,14 @@ pub struct VolumeRow {
     pub computed: [f64; 2],
 }
 
-/// One guess at how Table 2 was fitted.
+/// One hypothesis on how Table 2 was fitted.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct VolumeSetting {
     /// Radius \[mm\].
     pub radius_mm: f64,
     /// Contractions \[%\].
     pub range_percent: [f64; 2],
-    /// Number of equally spaced points, both ends among them.
+    /// Number of equally spaced points, including both ends.
     pub points: u32,
     /// v5 to v0.
     pub volume: [f64; 6],
@@ -80,37 +80,39 @@ pub struct VolumeSetting {
     pub from_curve: f64,
 }
 
-/// Table 2 beside the model.
+/// Table 2 compared with the model.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct VolumeTable {
     /// From 0 to 40 % in steps of 5 %.
     pub rows: Vec<VolumeRow>,
-    /// What was tried, the nearest coefficients first.
+    /// All hypotheses, the one with the nearest coefficients first.
     pub settings: Vec<VolumeSetting>,
-    /// Place in `settings` of the nearest curve.
+    /// Index in `settings` of the hypothesis with the nearest curve.
     pub nearest_curve: usize,
-    /// Largest differences of the printed curve from the computed ones, R = 16 mm and 11.5 mm, from 0 to 35 % \[ml\].
+    /// Largest differences between the printed curve and the computed ones, for R = 16 mm and 11.5 mm, from 0
+    /// to 35 % \[ml\].
     pub largest: [f64; 2],
 }
 
-/// Tables 1 and 2 of S1 beside the model, with what follows in words.
+/// Tables 1 and 2 of S1 compared with the model, and the conclusions in words.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct S1Tables {
     /// Table 1.
     pub force: ForceTable,
     /// Table 2.
     pub volume: VolumeTable,
-    /// A sentence on each table.
+    /// One sentence for each table.
     pub sentences: [String; 2],
 }
 
 /// Compares Tables 1 and 2 of S1 with the closed form: l0 = 110 mm, n = 40, R = 16 mm and 11.5 mm.
 ///
-/// Table 1 was fitted to measurements that are not printed as numbers, so only its curve can be compared. Table 2 was fitted to computed volumes
-/// without saying from where to where: ranges are tried.
+/// Table 1 was fitted to measurements that are not printed as numbers, so only its curve can be compared.
+/// Table 2 was fitted to computed volumes, but the range of the fit is not stated, so several ranges are
+/// tried.
 ///
 /// # Errors
-/// If the shipped muscle or an equilibrium isn't found; neither happens.
+/// If the shipped muscle or an equilibrium isn't found. Neither happens.
 pub fn s1_tables() -> Result<S1Tables, ExportError> {
     let force = force_table()?;
     let volume = volume_table()?;
@@ -136,7 +138,7 @@ impl Curve {
     /// F \[N\] at 1 bar and V \[m^3\].
     fn at(&self, percent: f64) -> Result<[f64; 2], ExportError> {
         if percent <= 0.0 {
-            // The straight tube, whose force is infinite.
+            // This is the straight tube, whose force is infinite.
             let radius = self.radius_mm * 1e-3;
             return Ok([f64::INFINITY, std::f64::consts::PI * radius * radius * S1_LENGTH]);
         }
@@ -165,7 +167,7 @@ fn force_table() -> Result<ForceTable, ExportError> {
     let fine = steps(PRACTICAL, 601).map(row).collect::<Result<Vec<_>, _>>()?;
     let largest = fine.iter().map(|row| row.difference.abs()).fold(0.0, f64::max);
     let squares: f64 = fine.iter().map(|row| row.difference * row.difference).sum();
-    // Through forces in N at 3 bar and back: form and units are as the paper states them.
+    // Converted to forces in N at 3 bar and back, to check that form and units are as the paper states them.
     let measured: Vec<[f64; 2]> =
         fine.iter().map(|row| [row.percent, row.percent * (3.0 * row.printed) / (3.0 * square)]).collect();
     let refit: Fitted<5> = fit(&measured, PRACTICAL);
@@ -349,7 +351,7 @@ mod tests {
         assert_eq!((best.radius_mm, best.range_percent, best.points), (16.0, [0.0, 38.5], 16));
         near(best.from_coefficients, 0.0296, 1e-4);
         near(found.settings[found.nearest_curve].from_curve, 3.74, 0.01);
-        // The smaller radius is out of the question.
+        // The smaller radius is excluded.
         let other = found.settings.iter().filter(|s| s.radius_mm < 12.0);
         assert!(
             other.clone().all(|s| s.from_curve > 85.0 && s.from_coefficients > 0.2) && other.count() == 45
