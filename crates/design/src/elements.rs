@@ -99,7 +99,10 @@ fn check(extended: &MuscleWithEffects) -> Result<(), ElementsError> {
         (parts.depth > 0.0, "pleat depth"),
         (parts.is_pleated() && parts.angle != 0.0, "misaligned fibres"),
         (parts.ends == Ends::Cylinder, "cylinder without ends"),
-        (parts.fitting.is_some_and(|fitting| fitting != parts.radius), "fittings of another radius"),
+        (
+            parts.fitting.is_some_and(|fitting| (fitting - parts.radius).abs() > 0.0),
+            "fittings of another radius",
+        ),
         (parts.depth < 0.0, "gas inside a thick wall"),
     ];
     match strange.into_iter().find(|(is_there, _)| *is_there) {
