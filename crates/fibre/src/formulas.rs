@@ -86,6 +86,9 @@ impl<D: Real> Formulas<D> {
     }
 
     /// Adds the energy of the wall at a radius.
+    // Out of line: nets without formulas are most of all, and integrations spend their time around this call.
+    #[cold]
+    #[inline(never)]
     pub(crate) fn add(&self, wall: &mut Wall<D>, sigma: D, r: D, cos_rest: D) {
         let Some(energy) = &self.energy else { return };
         let per_cos = D::from(1.0) / cos_rest;
@@ -100,6 +103,8 @@ impl<D: Real> Formulas<D> {
     }
 
     /// The cross-section over R^2, if a formula gives it.
+    #[cold]
+    #[inline(never)]
     pub(crate) fn section(&self, r: D) -> Option<Section<D>> {
         let area = self.area.as_ref()?;
         let [area, area_r, area_rr]: [D; 3] = area.run(self.inputs(D::from(1.0), r));

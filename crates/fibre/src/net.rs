@@ -166,10 +166,15 @@ impl<D: Real> Net<D> {
         [cloth, self.lobes.map(|lobes| lobes.contact_radius() - self.depth)]
     }
 
+    #[inline]
+    fn section_of_formula(&self, r: D) -> Option<Section<D>> {
+        self.formulas.as_ref()?.section(r)
+    }
+
     /// The cross-section: the area A(r) on which the pressure acts, and its derivatives.
     #[inline]
     pub(crate) fn section(&self, r: D) -> Section<D> {
-        if let Some(section) = self.formulas.as_ref().and_then(|formulas| formulas.section(r)) {
+        if let Some(section) = self.section_of_formula(r) {
             return section;
         }
         let r = r + self.depth;
@@ -207,6 +212,7 @@ impl<D: Real> Net<D> {
         self.section(r).area_r
     }
 
+    #[inline]
     pub(crate) fn wall(&self, sigma: D, r: D) -> Wall<D> {
         let zero = D::from(0.0);
         let mut wall = Wall { w: zero, w_1: zero, w_2: zero, w_11: zero, w_12: zero, w_22: zero };
@@ -274,7 +280,8 @@ impl<D: Real> Net<D> {
     /// T_r: sigma T_r/(1+e)^2 + (T/(1+e) + w_11) sigma_r + w_12 = h,       sigma sigma_r = (1 + e) c T_r - q^2 r
     /// ```
     fn local_of_everything(&self, r: D, tension: D) -> Local<D> {
-        let sigma = self.sigma(r, tension);
+        let stretch = self.compliance * tension + 1.0;
+        let sigma = (stretch * stretch - self.turn * self.turn * r * r).sqrt();
         self.local_in(&self.wall(sigma, r), sigma, r, tension)
     }
 
@@ -288,6 +295,7 @@ impl<D: Real> Net<D> {
     }
 
     /// The same with a known energy of the wall.
+    #[inline]
     fn local_in(&self, w: &Wall<D>, sigma: D, r: D, tension: D) -> Local<D> {
         let c = self.compliance;
         let stretch = c * tension + 1.0;
