@@ -85,21 +85,25 @@ impl<D: Real> Formulas<D> {
         [l1, l2, l2 * self.radius, self.radius, self.pressure, self.angle, self.length]
     }
 
-    /// Adds the energy of the wall at a radius.
-    // Out of line: nets without formulas are most of all, and integrations spend their time around this call.
+    /// The energy of the wall at a radius, if a formula gives it.
+    ///
+    /// It is returned and not added in place: a reference to the sum of all parts would keep that in memory, also
+    /// in nets without formulas, which spend most of their time there.
     #[cold]
     #[inline(never)]
-    pub(crate) fn add(&self, wall: &mut Wall<D>, sigma: D, r: D, cos_rest: D) {
-        let Some(energy) = &self.energy else { return };
+    pub(crate) fn wall(&self, sigma: D, r: D, cos_rest: D) -> Option<Wall<D>> {
+        let energy = self.energy.as_ref()?;
         let per_cos = D::from(1.0) / cos_rest;
         let [w, w_1, w_2, w_11, w_12, w_22]: [D; 6] = energy.run(self.inputs(sigma * per_cos, r));
         let along = self.scale * per_cos;
-        wall.w += self.scale * w;
-        wall.w_1 += along * w_1;
-        wall.w_2 += self.scale * w_2;
-        wall.w_11 += along * per_cos * w_11;
-        wall.w_12 += along * w_12;
-        wall.w_22 += self.scale * w_22;
+        Some(Wall {
+            w: self.scale * w,
+            w_1: along * w_1,
+            w_2: self.scale * w_2,
+            w_11: along * per_cos * w_11,
+            w_12: along * w_12,
+            w_22: self.scale * w_22,
+        })
     }
 
     /// The cross-section over R^2, if a formula gives it.

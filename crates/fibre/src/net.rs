@@ -222,8 +222,14 @@ impl<D: Real> Net<D> {
         if let Some(cloth) = &self.cloth {
             cloth.add(&mut wall, sigma, r);
         }
-        if let Some(formulas) = &self.formulas {
-            formulas.add(&mut wall, sigma, r, self.cos_rest);
+        let formulas = self.formulas.as_ref();
+        if let Some(own) = formulas.and_then(|formulas| formulas.wall(sigma, r, self.cos_rest)) {
+            wall.w += own.w;
+            wall.w_1 += own.w_1;
+            wall.w_2 += own.w_2;
+            wall.w_11 += own.w_11;
+            wall.w_12 += own.w_12;
+            wall.w_22 += own.w_22;
         }
         wall
     }
