@@ -82,7 +82,7 @@ pub(crate) fn drawn_taut(net: &Net<f64>) -> Option<(f64, Unknowns)> {
     }
     let radius = drawn_out(&Net { compliance: 0.0, ..net.clone() }).0;
     let end = net.acting_at(radius);
-    let cylinder = end.balancing_tension(radius, end.push(radius), 0.0)?;
+    let cylinder = end.balance(radius, end.push(radius), 0.0)?.tension;
     // Tension of a cylinder without rubber.
     let alone = end.push(radius) / end.local(radius, cylinder).hoop_t;
     let least = 1.0 + (cylinder / alone).abs();

@@ -4,14 +4,23 @@
 use bulge_numerics::Real;
 use std::f64::consts::PI;
 
-use crate::net::Net;
+use crate::net::{Local, Net};
 
 /// Radii at which the fibres are tested for slackness.
-const SAMPLES: u32 = 16;
+const SAMPLES: usize = 16;
 /// A ratio of push to bulge that is next to nothing.
 const SLIGHT: f64 = 1e-304;
 /// Margin, as a part of H, by which H must be too small for the fibres to count as slack.
 const SLACK: f64 = 1e-12;
+
+/// The net where the meridian is parallel to the axis.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Equator<D> {
+    /// Tension of all fibres.
+    pub(crate) tension: D,
+    /// Meridional force N.
+    pub(crate) force: D,
+}
 
 impl<D: Real> Net<D> {
     /// A'(r) less the hoop term of the cloth: the part that fibres and bladder carry.
@@ -84,44 +93,46 @@ impl<D: Real> Net<D> {
         lobes.min(held)
     }
 
-    /// The tension at which the meridian has curvature `curvature` where it is parallel to the axis, at
-    /// radius `r` with the [`Net::push`] `push`: push - h = k N, with h of fibres and bladder.
+    /// The tension and force at which the meridian has curvature `curvature` where it is parallel to the axis,
+    /// at radius `r` with the [`Net::push`] `push`: push - h = k N, with h of fibres and bladder.
     ///
     /// The equation is linear in T for inextensible fibres. Otherwise a bracketed Newton's method solves it
     /// for the values, and one more step gives the derivatives. `None` if no solution has a positive tension
     /// (with a bladder: a positive meridional force), or if the fibres can't reach that radius.
-    pub(crate) fn tension_at_equator(&self, r: D, push: D, curvature: D) -> Option<D> {
-        let tension = self.balancing_tension(r, push, curvature)?;
+    pub(crate) fn at_equator(&self, r: D, push: D, curvature: D) -> Option<Equator<D>> {
+        let found = self.balance(r, push, curvature)?;
         // Rubber may carry more than the pressure. The solution for fibres that can be pushed tells when they
         // become slack.
         let holds = if self.compliance.value() != 0.0 {
             true
         } else if self.has_wall() {
-            let pull = self.cloth.map_or(D::from(0.0), |cloth| cloth.energy(r));
-            (self.without_cloth().local(r, tension).force + pull).value() > 0.0
+            found.force.value() > 0.0
         } else {
-            tension.value() > 0.0
+            found.tension.value() > 0.0
         };
-        holds.then_some(tension)
+        holds.then_some(found)
     }
 
     /// The same for either sign of tension and meridional force, as occurs with wide rubber.
-    pub(crate) fn balancing_tension(&self, r: D, push: D, curvature: D) -> Option<D> {
+    pub(crate) fn balance(&self, r: D, push: D, curvature: D) -> Option<Equator<D>> {
         // The cloth's force acts, and its hoop term is in the push.
         let bare = self.without_cloth();
         let pull = self.cloth.map_or(D::from(0.0), |cloth| cloth.energy(r));
-        let gap = |tension: D| {
-            let local = bare.local(r, tension);
+        let of = |local: &Local<D>| {
             let gap = push - local.hoop - curvature * (local.force + pull);
             (gap, local.hoop_t + curvature * local.force_t)
         };
-        let (at_zero, slope) = gap(D::from(0.0));
-        let linear = at_zero / slope;
+        let gap = |tension: D| of(&bare.local(r, tension));
+        let at_zero = bare.local(r, D::from(0.0));
+        let (residual, slope) = of(&at_zero);
+        let linear = residual / slope;
         if self.compliance.value() == 0.0 {
-            return linear.value().is_finite().then_some(linear);
+            let force = at_zero.force + at_zero.force_t * linear + pull;
+            return linear.value().is_finite().then_some(Equator { tension: linear, force });
         }
+        let stretched = |tension: D| Equator { tension, force: bare.local(r, tension).force + pull };
         if linear.value() <= 0.0 && self.has_wall() {
-            return pushed(gap, linear);
+            return pushed(gap, linear).map(stretched);
         }
         // Stretching makes the true tension smaller than the linear estimate by up to a power of the stretch.
         let mut tension = linear.value().abs() / (linear.value().abs() * self.compliance.value() + 1.0);
@@ -136,7 +147,7 @@ impl<D: Real> Net<D> {
             }
             if (newton - tension).abs() <= 1e-9 * tension {
                 // The quadratic step from here also settles the derivatives.
-                return Some(residual / slope + tension);
+                return Some(stretched(residual / slope + tension));
             }
             tension = match (newton > low && newton < high, high.is_finite()) {
                 (true, _) => newton.min(4.0 * tension),
@@ -183,7 +194,9 @@ impl Net<f64> {
             return false;
         }
         let net = self.acting_at(radius);
-        let Some(tension) = net.tension_at_equator(radius, net.push(radius), 0.0) else { return false };
+        let Some(Equator { tension, .. }) = net.at_equator(radius, net.push(radius), 0.0) else {
+            return false;
+        };
         let local = net.local(radius, tension);
         let square = local.sigma.powi(2) * (local.hoop_r - net.section(radius).area_rr) / local.force;
         (-square).max(0.0).sqrt() * 2.0 * self.half_fibre > PI
@@ -200,14 +213,14 @@ impl Net<f64> {
         let local = middle.local(mid_radius, mid_tension);
         let stored = 0.5 * self.compliance * mid_tension.powi(2) + middle.wall(local.sigma, mid_radius).w;
         let energy = local.sigma * local.force - stored;
-        (0..=SAMPLES).any(|i| {
-            let r = mid_radius + (self.end_radius - mid_radius) * f64::from(i) / f64::from(SAMPLES);
-            let sigma = (1.0 - (self.turn * r).powi(2)).sqrt();
-            let wall = self.acting_at(r).wall(sigma, r);
-            // Where fibres of their own length don't reach, sigma is NaN, and the fibres are taut.
-            energy
-                < sigma * wall.w_1 - wall.w - SLACK * energy.abs() + part * (local.sigma * local.force).abs()
-        })
+        let most = energy + SLACK * energy.abs() - part * (local.sigma * local.force).abs();
+        let way = self.end_radius - mid_radius;
+        let radii: [f64; SAMPLES] =
+            std::array::from_fn(|i| mid_radius + way * i as f64 / (SAMPLES - 1) as f64);
+        let sigmas = radii.map(|r| (1.0 - (self.turn * r).powi(2)).sqrt());
+        let walls = self.acting_walls(sigmas, radii);
+        // Where fibres of their own length don't reach, sigma is NaN, and the fibres are taut.
+        sigmas.iter().zip(&walls).any(|(sigma, wall)| most < sigma * wall.w_1 - wall.w)
     }
 }
 

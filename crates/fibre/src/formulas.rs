@@ -49,8 +49,26 @@ const INPUTS: usize = 7;
 impl<D: Real> Formula<D> {
     /// The outputs for the values of all inputs that are not parameters.
     pub(crate) fn run<const OUTPUTS: usize>(&self, inputs: [D; INPUTS]) -> [D; OUTPUTS] {
+        self.run_at(|index| inputs.get(index).map(|input| [*input])).map(|[output]| output)
+    }
+
+    /// The same at `L` points.
+    fn run_at<const OUTPUTS: usize, const L: usize>(
+        &self,
+        input: impl Fn(usize) -> Option<[D; L]>,
+    ) -> [[D; L]; OUTPUTS] {
         let parameter = |i: usize| self.parameters.get(i).copied().unwrap_or(D::from(f64::NAN));
-        self.tape.run_on(|i| inputs.get(i).copied().unwrap_or_else(|| parameter(i - INPUTS)))
+        self.tape.run_at(|index| input(index).unwrap_or_else(|| [parameter(index - INPUTS); L]))
+    }
+
+    /// The same for another scalar. Each parameter has its name.
+    pub(crate) fn map_named<E>(
+        &self,
+        names: &[&'static str; MOST_PARAMETERS],
+        mut f: impl FnMut(&'static str, D) -> E,
+    ) -> Formula<E> {
+        let mut names = names.iter();
+        self.map(|number| f(names.next().unwrap_or(&""), number))
     }
 
     /// The same for another scalar.
@@ -92,18 +110,58 @@ impl<D: Real> Formulas<D> {
     #[cold]
     #[inline(never)]
     pub(crate) fn wall(&self, sigma: D, r: D, cos_rest: D) -> Option<Wall<D>> {
-        let energy = self.energy.as_ref()?;
+        self.walls([sigma], [r], cos_rest).map(|[wall]| wall)
+    }
+
+    /// The same at `L` radii.
+    pub(crate) fn walls<const L: usize>(
+        &self,
+        sigma: [D; L],
+        r: [D; L],
+        cos_rest: D,
+    ) -> Option<[Wall<D>; L]> {
         let per_cos = D::from(1.0) / cos_rest;
-        let [w, w_1, w_2, w_11, w_12, w_22]: [D; 6] = energy.run(self.inputs(sigma * per_cos, r));
         let along = self.scale * per_cos;
-        Some(Wall {
-            w: self.scale * w,
-            w_1: along * w_1,
-            w_2: self.scale * w_2,
-            w_11: along * per_cos * w_11,
-            w_12: along * w_12,
-            w_22: self.scale * w_22,
-        })
+        let scales = [self.scale, along, self.scale, along * per_cos, along, self.scale];
+        let outputs = self.energies(sigma, r, per_cos)?;
+        Some(std::array::from_fn(|i| {
+            let [w, w_1, w_2, w_11, w_12, w_22] = std::array::from_fn(|k| scales[k] * outputs[k][i]);
+            Wall { w, w_1, w_2, w_11, w_12, w_22 }
+        }))
+    }
+
+    /// W' and W'' by the radius along fibres that don't stretch, for sigma^2 = 1 - q^2 r^2.
+    pub(crate) fn slopes<const L: usize>(&self, turn: D, r: [D; L], cos_rest: D) -> Option<[[D; 2]; L]> {
+        let q2 = turn * turn;
+        let per_cos = D::from(1.0) / cos_rest;
+        let sigma = r.map(|r| (-(q2 * r * r) + 1.0).sqrt());
+        let [_, w_1, w_2, w_11, w_12, w_22] = self.energies(sigma, r, per_cos)?;
+        Some(std::array::from_fn(|i| {
+            let per_sigma = D::from(1.0) / sigma[i];
+            let unit = -(q2 * per_cos * per_sigma);
+            // l1 = sigma/cos(alpha0) by the radius.
+            let (first, second) = (unit * r[i], unit * per_sigma * per_sigma);
+            let bend = (w_11[i] * first + w_12[i] * 2.0) * first + w_22[i] + w_1[i] * second;
+            [(w_1[i] * first + w_2[i]) * self.scale, bend * self.scale]
+        }))
+    }
+
+    /// The energy of the formula with its derivatives \[N/m\].
+    #[inline]
+    fn energies<const L: usize>(&self, sigma: [D; L], r: [D; L], per_cos: D) -> Option<[[D; L]; 6]> {
+        let energy = self.energy.as_ref()?;
+        Some(energy.run_at(|index| {
+            Some(match index {
+                0 => sigma.map(|sigma| sigma * per_cos),
+                1 => r,
+                2 => r.map(|r| r * self.radius),
+                3 => [self.radius; L],
+                4 => [self.pressure; L],
+                5 => [self.angle; L],
+                6 => [self.length; L],
+                _ => return None,
+            })
+        }))
     }
 
     /// The cross-section over R^2, if a formula gives it.

@@ -5,10 +5,10 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::FibreError;
-use crate::outcome::{Approach, has_length};
+use crate::outcome::{Approach, Scheme, has_length};
 use crate::parts::Parts;
 use crate::problem::Problem;
-use crate::shape::{Method, Response};
+use crate::shape::Response;
 use crate::solve::{ADIABATIC, Found, RangeEnd, closed_stiffness};
 use crate::unknowns::Unknowns;
 
@@ -68,7 +68,7 @@ impl Problem {
     pub fn isobar(&self, contractions: &[f64], approach: Approach) -> Result<Isobar, FibreError> {
         contractions.iter().try_for_each(|contraction| has_length(*contraction))?;
         let (end, longest) = (self.range_end(approach).ok(), self.longest());
-        let method = self.method(approach)?;
+        let scheme = self.scheme(approach)?;
         let solve = |chunk: &[f64]| {
             let mut last = [None, None];
             let solved = chunk.iter().map(|&contraction| {
@@ -78,14 +78,14 @@ impl Problem {
                 if let Some(limit) = longest.filter(|longest| contraction <= *longest) {
                     return (contraction, Err(FibreError::TooLong { contraction, limit }));
                 }
-                let found = self.at(method, contraction, extrapolate(last, contraction));
+                let found = self.at(scheme, contraction, extrapolate(last, contraction));
                 if let Ok(found) = &found {
                     last = [last[1], found.unknowns().map(|unknowns| (contraction, unknowns))];
                 }
                 (contraction, found)
             });
             let mut solved: Vec<_> = solved.collect();
-            self.backwards(method, &mut solved);
+            self.backwards(scheme, &mut solved);
             solved
         };
         let solved: Vec<Vec<_>> = contractions.par_chunks(CHUNK).map(solve).collect();
@@ -110,12 +110,12 @@ impl Problem {
 
     /// Solves on the way back what was not found on the way forth. A drawn-out muscle is hard to find without
     /// a neighbour.
-    fn backwards(&self, method: Method, solved: &mut [(f64, Result<Found, FibreError>)]) {
+    fn backwards(&self, scheme: Scheme, solved: &mut [(f64, Result<Found, FibreError>)]) {
         let mut last = [None, None];
         for (contraction, found) in solved.iter_mut().rev() {
             if let (Err(FibreError::NotConverged { .. }), Some(near)) =
                 (&*found, extrapolate(last, *contraction))
-                && let Ok(better) = self.at(method, *contraction, Some(near))
+                && let Ok(better) = self.at(scheme, *contraction, Some(near))
             {
                 *found = Ok(better);
             }

@@ -167,7 +167,7 @@ impl Problem {
         });
         let ending = if from.is_some() { BESIDE } else { FITTED };
         let outcome =
-            self.outcome_of_many(self.method(ask.approach)?, ask.contraction, &net, from, ending)?;
+            self.outcome_of_many(self.scheme(ask.approach)?, ask.contraction, &net, from, ending)?;
         let with_contraction = |total: &Total<N>| {
             let mut gradient = total.by_parameter;
             gradient[0] = total.by_contraction;

@@ -166,8 +166,10 @@ pub(crate) struct Middle<D> {
     pub(crate) bulge: D,
     /// Curvature of the meridian, of the same sign and not zero.
     pub(crate) curvature: D,
-    /// Tension of all fibres; it belongs to the curvature by [`Net::tension_at_equator`].
+    /// Tension of all fibres; it belongs to the curvature by [`Net::at_equator`].
     pub(crate) tension: D,
+    /// Meridional force N.
+    pub(crate) force: D,
     /// Fibre length from mid-length to this state, on which the meridian can't be told from a cylinder;
     /// usually 0.
     pub(crate) straight: D,
@@ -217,7 +219,7 @@ pub(crate) fn trajectory<D: Real>(
     middle: Middle<D>,
     tolerance: f64,
 ) -> Result<Trajectory<D>, NoTrajectory> {
-    let Middle { bulge, curvature, tension: mid_tension, straight } = middle;
+    let Middle { bulge, curvature, tension: mid_tension, straight, .. } = middle;
     let mid_radius = net.end_radius + bulge;
     let mut y = middle.state();
     let at_middle = net.acting_at(mid_radius.value());

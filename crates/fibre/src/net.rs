@@ -100,6 +100,17 @@ pub(crate) struct Wall<D> {
     pub(crate) w_22: D,
 }
 
+impl<D: Real> Wall<D> {
+    fn add(&mut self, other: &Self) {
+        self.w += other.w;
+        self.w_1 += other.w_1;
+        self.w_2 += other.w_2;
+        self.w_11 += other.w_11;
+        self.w_12 += other.w_12;
+        self.w_22 += other.w_22;
+    }
+}
+
 /// The net at one radius with one tension.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Local<D> {
@@ -224,14 +235,21 @@ impl<D: Real> Net<D> {
         }
         let formulas = self.formulas.as_ref();
         if let Some(own) = formulas.and_then(|formulas| formulas.wall(sigma, r, self.cos_rest)) {
-            wall.w += own.w;
-            wall.w_1 += own.w_1;
-            wall.w_2 += own.w_2;
-            wall.w_11 += own.w_11;
-            wall.w_12 += own.w_12;
-            wall.w_22 += own.w_22;
+            wall.add(&own);
         }
         wall
+    }
+
+    /// The energies of the wall as they act at `L` radii.
+    pub(crate) fn acting_walls<const L: usize>(&self, sigma: [D; L], r: [D; L]) -> [Wall<D>; L] {
+        let formulas = self.formulas.as_ref();
+        let own = formulas.and_then(|formulas| formulas.walls(sigma, r, self.cos_rest));
+        let others = Self { formulas: None, ..self.clone() };
+        let mut walls = std::array::from_fn(|i| others.acting_at(r[i].value()).wall(sigma[i], r[i]));
+        if let Some(own) = own {
+            walls.iter_mut().zip(&own).for_each(|(wall, own)| wall.add(own));
+        }
+        walls
     }
 
     /// Meridional length per fibre length; NaN beyond the radius where the fibres would lie along the
@@ -300,6 +318,13 @@ impl<D: Real> Net<D> {
         (tension, self.local_in(&wall, sigma, r, tension))
     }
 
+    /// Tension and local quantities of fibres that don't stretch, from the meridional force N = T sigma + w_1.
+    pub(crate) fn local_with_force(&self, r: D, sigma: D, force: D) -> (D, Local<D>) {
+        let wall = self.wall(sigma, r);
+        let tension = (force - wall.w_1) / sigma;
+        (tension, self.local_in(&wall, sigma, r, tension))
+    }
+
     /// The same with a known energy of the wall.
     #[inline]
     fn local_in(&self, w: &Wall<D>, sigma: D, r: D, tension: D) -> Local<D> {
@@ -331,11 +356,6 @@ impl<D: Real> Net<D> {
         let wall = self.wall(sigma, r);
         let of_fibres = tension * (sigma * sigma / (strain + 1.0) - strain * 0.5);
         of_fibres + sigma * wall.w_1 - wall.w
-    }
-
-    /// The tension of inextensible fibres from the meridional force N = T sigma + w_1.
-    pub(crate) fn tension_of(&self, r: D, sigma: D, force: D) -> D {
-        (force - self.wall(sigma, r).w_1) / sigma
     }
 }
 
@@ -540,7 +560,7 @@ pub(crate) mod tests {
     fn tension_at_equator_meets_the_curvature() {
         let net: Net<f64> = rich();
         for curvature in [-0.05, 1e-12, 0.3, 1.0] {
-            let tension = net.tension_at_equator(1.4, net.push(1.4), curvature).unwrap();
+            let tension = net.at_equator(1.4, net.push(1.4), curvature).unwrap().tension;
             let local = net.local(1.4, tension);
             assert!((net.area_r(1.4) - local.hoop - curvature * local.force).abs() < 1e-12 * local.force);
         }

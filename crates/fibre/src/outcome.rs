@@ -29,13 +29,23 @@ const AT_REST: f64 = 1e-9;
 /// Which method computes an equilibrium.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Approach {
-    /// The closed form where there is one, else shooting.
+    /// The closed form where there is one, else shooting; the meridian is a quadrature where it can be.
     #[default]
     Auto,
     /// The closed form, or an error.
     ClosedForm,
-    /// Shooting on the equilibrium ODE.
+    /// Shooting that ends with an integration of the equilibrium ODE: an answer that is independent of closed
+    /// forms and quadratures.
     Shooting,
+}
+
+/// The way to an equilibrium that an [`Approach`] selects for a muscle.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Scheme {
+    /// Elliptic integrals, or the algebraic cylinder.
+    ClosedForm,
+    /// Shooting with this last trajectory.
+    Shooting(Way),
 }
 
 /// The data that drawing the meridian needs in addition.
@@ -76,22 +86,23 @@ impl Problem {
     /// Whether an equilibrium takes an integration of the ODE, because there is no closed form.
     #[must_use]
     pub fn shoots(&self) -> bool {
-        self.method(Approach::Auto) == Ok(Method::Shooting)
+        matches!(self.scheme(Approach::Auto), Ok(Scheme::Shooting(_)))
     }
 
-    /// The method that `approach` selects for this muscle.
-    pub(crate) fn method(&self, approach: Approach) -> Result<Method, FibreError> {
+    /// The scheme that `approach` selects for this muscle.
+    pub(crate) fn scheme(&self, approach: Approach) -> Result<Scheme, FibreError> {
         if self.is_cylinder() {
             return match approach {
                 Approach::Shooting => Err(FibreError::NothingToShoot),
-                _ => Ok(Method::ClosedForm),
+                _ => Ok(Scheme::ClosedForm),
             };
         }
         let obstacle = self.obstacle_to_closed_form();
         match (approach, obstacle) {
-            (Approach::Shooting, _) | (Approach::Auto, Some(_)) => Ok(Method::Shooting),
+            (Approach::Shooting, _) => Ok(Scheme::Shooting(Way::Ode)),
+            (Approach::Auto, Some(_)) => Ok(Scheme::Shooting(Way::Quadrature)),
             (Approach::ClosedForm, Some(why)) => Err(FibreError::NoClosedForm { why }),
-            (_, None) => Ok(Method::ClosedForm),
+            (_, None) => Ok(Scheme::ClosedForm),
         }
     }
 
@@ -116,17 +127,16 @@ impl Problem {
     /// places 2 .. of the dual numbers. `from` is a start for the shooting, such as a neighbour's solution.
     pub(crate) fn outcome<const N: usize>(
         &self,
-        method: Method,
+        scheme: Scheme,
         contraction: f64,
         net: &Net<Dual<N>>,
         (from, ending): (Option<Unknowns>, Ending),
     ) -> Result<Outcome<N>, FibreError> {
-        self.judged(contraction, || match method {
+        self.judged(contraction, || match scheme {
             _ if self.is_cylinder() => by_cylinder(net, contraction),
-            Method::ClosedForm => by_closed_form(net, contraction),
-            // This crate never chooses elements.
-            Method::Shooting | Method::Membrane => {
-                by_shooting(&self.net, net, contraction, from, (ending, Way::Ode)).map(|(outcome, _)| outcome)
+            Scheme::ClosedForm => by_closed_form(net, contraction),
+            Scheme::Shooting(way) => {
+                by_shooting(&self.net, net, contraction, from, (ending, way)).map(|(outcome, _)| outcome)
             }
         })
     }
@@ -134,16 +144,16 @@ impl Problem {
     /// The same for many variables.
     pub(crate) fn outcome_of_many<const N: usize>(
         &self,
-        method: Method,
+        scheme: Scheme,
         contraction: f64,
         net: &Net<Dual<N>>,
         from: Option<Unknowns>,
         ending: Ending,
     ) -> Result<Outcome<N>, FibreError> {
-        self.judged(contraction, || match method {
+        self.judged(contraction, || match scheme {
             _ if self.is_cylinder() => by_cylinder(net, contraction),
-            Method::ClosedForm => by_closed_form(net, contraction),
-            Method::Shooting | Method::Membrane => {
+            Scheme::ClosedForm => by_closed_form(net, contraction),
+            Scheme::Shooting(_) => {
                 let groups = Groups::of(net);
                 let plain = &self.net;
                 match groups.count() {
@@ -337,7 +347,7 @@ fn by_groups<const N: usize, const M: usize>(
     (from, ending): (Option<Unknowns>, Ending),
 ) -> Result<Outcome<N>, FibreError> {
     let (found, follow) =
-        by_shooting::<M>(plain, &groups.net(net), contraction, from, (ending, Way::Fastest))?;
+        by_shooting::<M>(plain, &groups.net(net), contraction, from, (ending, Way::Quadrature))?;
     Ok(Outcome {
         force: groups.expand(&found.force),
         volume: groups.expand(&found.volume),

@@ -15,6 +15,13 @@ use crate::problem::{
     BRAID_ANGLE, BRAIDED_SLENDERNESS, LOBED_FIBRES, LOBED_LENGTH, PLEATED_SLENDERNESS, WIDEST_FITTING,
 };
 
+/// Names of the numbers of formulas.
+const ENERGY: [&str; MOST_PARAMETERS] =
+    ["energy[0]", "energy[1]", "energy[2]", "energy[3]", "energy[4]", "energy[5]"];
+const AREA: [&str; MOST_PARAMETERS] = ["area[0]", "area[1]", "area[2]", "area[3]", "area[4]", "area[5]"];
+const TWIST: [&str; MOST_PARAMETERS] =
+    ["twist[0]", "twist[1]", "twist[2]", "twist[3]", "twist[4]", "twist[5]"];
+
 /// An arbitrary pressure, to see whether a formula has a value \[Pa\].
 const ANY_PRESSURE: f64 = 1e5;
 
@@ -288,7 +295,8 @@ impl Parts {
 }
 
 impl<D: Real> Parts<D> {
-    /// The same parts with every number changed, in a fixed order. The names are those of the fields.
+    /// The same parts with every number changed, in a fixed order. The names are those of the fields;
+    /// those of a formula's parameters are counted: `energy[0]`.
     pub fn map<E>(&self, mut f: impl FnMut(&'static str, D) -> E) -> Parts<E> {
         let fitting = |f: &mut dyn FnMut(&'static str, D) -> E| self.fitting.map(|d| f("fitting", d));
         Parts {
@@ -313,9 +321,9 @@ impl<D: Real> Parts<D> {
                 stiffness: f("cloth.stiffness", cloth.stiffness),
                 radius: f("cloth.radius", cloth.radius),
             }),
-            energy: self.energy.as_ref().map(|formula| formula.map(|number| f("energy", number))),
-            area: self.area.as_ref().map(|formula| formula.map(|number| f("area", number))),
-            twist: self.twist.as_ref().map(|formula| formula.map(|number| f("twist", number))),
+            energy: self.energy.as_ref().map(|formula| formula.map_named(&ENERGY, &mut f)),
+            area: self.area.as_ref().map(|formula| formula.map_named(&AREA, &mut f)),
+            twist: self.twist.as_ref().map(|formula| formula.map_named(&TWIST, &mut f)),
         }
     }
 
@@ -328,11 +336,6 @@ impl<D: Real> Parts<D> {
     }
 }
 
-/// Whether a number carries a derivative.
-fn moves(number: &Jet) -> bool {
-    number.gradient().iter().any(|slope| *slope != 0.0)
-}
-
 impl Parts<Jet> {
     /// Sets the radius of the fibres at the fittings. In a pleated muscle this is its radius; in a braid it
     /// may differ from the radius at rest.
@@ -343,7 +346,7 @@ impl Parts<Jet> {
             Kind::Braided
                 if self.fitting.is_none()
                     && radius.value().to_bits() == self.radius.value().to_bits()
-                    && !moves(&radius) => {}
+                    && !radius.moves() => {}
             Kind::Braided => self.fitting = Some(radius),
         }
     }
@@ -361,7 +364,7 @@ impl Parts<Jet> {
         which: impl Fn(&mut Rubber<Jet>) -> &mut Jet,
     ) -> Result<(), MuscleError> {
         check::not_negative(key, Pressure::pa(constant.value()))?;
-        if constant.value() == 0.0 && (self.rubber.is_some() || !moves(&constant)) {
+        if constant.value() == 0.0 && (self.rubber.is_some() || !constant.moves()) {
             return Ok(());
         }
         let Some(wall) = self.rubber.map(|rubber| rubber.wall).or(self.wall) else {

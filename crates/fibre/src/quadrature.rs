@@ -34,12 +34,14 @@ use std::sync::LazyLock;
 
 mod chebyshev;
 mod elastic;
+mod formula;
 
 use chebyshev::GRIDS;
 use elastic::{Elastic, Tensions};
+use formula::Bend;
 
 use crate::meridian::{Middle, NoTrajectory, State, Trajectory};
-use crate::net::{Cloth, Net};
+use crate::net::{self, Cloth, Net};
 
 /// Kronrod's nodes between 0 and 1 with their weights, and Gauss' weights of the same nodes.
 const PAIR: [(f64, f64, f64); 11] = [
@@ -77,16 +79,10 @@ pub(crate) fn suits<D: Real>(net: &Net<D>) -> bool {
     net.lobes.is_none() && !net.has_area() && !net.has_kinked_energy()
 }
 
-/// Whether the tension follows in closed form from the energy of the rubber. Otherwise it is interpolated as
-/// for fibres that stretch.
-fn is_explicit(net: &Net<f64>) -> bool {
-    net.compliance == 0.0 && !net.has_energy()
-}
-
 /// Makes the grids on which the meridians of a net are interpolated, once in a process. A solve then
 /// allocates nothing.
 pub(crate) fn prepare(net: &Net<f64>) {
-    if !is_explicit(net) {
+    if net.compliance != 0.0 || net.has_energy() {
         LazyLock::force(&GRIDS);
     }
 }
@@ -133,8 +129,8 @@ trait Meridian<D: Real> {
 
     fn at(&self, point: &Point) -> Local<D>;
 
-    /// Tension at the fitting, where `net` acts.
-    fn end_tension(&self, net: &Net<D>, end: &Local<D>) -> D;
+    /// The tension at the fitting, where `net` acts, and the net there.
+    fn at_fitting(&self, net: &Net<D>, end: &Local<D>) -> (D, net::Local<D>);
 
     /// dS, dd and dV over `d(rho)/(2 sqrt(rho size))`. `None` where the fibres can't be.
     #[inline]
@@ -157,7 +153,7 @@ trait Meridian<D: Real> {
 }
 
 /// Fibres that don't stretch.
-struct Inextensible<D> {
+struct Inextensible<'a, D> {
     ends: Ends<D>,
     end_radius: D,
     sigma_m: D,
@@ -167,6 +163,8 @@ struct Inextensible<D> {
     slope: D,
     /// Coefficient of y^2 in W, and those of 1/y and 1/sigma^2 in the second divided difference of W.
     wall: [D; 3],
+    /// That of a user's own formula for the energy.
+    formula: Option<&'a Bend<D>>,
     /// Coefficients of y and r in A - u.
     area: [D; 2],
     /// 1/(2 r_m), 1/(2 sigma_m).
@@ -198,8 +196,8 @@ struct Point {
     slack: bool,
 }
 
-impl<D: Real> Inextensible<D> {
-    fn of(net: &Net<D>, middle: &Middle<D>) -> Self {
+impl<'a, D: Real> Inextensible<'a, D> {
+    fn of(net: &Net<D>, middle: &Middle<D>, formula: Option<&'a Bend<D>>) -> Self {
         let one = D::from(1.0);
         let ends = Ends::of(net, middle);
         let Ends { r_m, q2, .. } = ends;
@@ -207,7 +205,7 @@ impl<D: Real> Inextensible<D> {
         let y_m = r_m * r_m;
         let v_m = -(q2 * y_m) + 1.0;
         let sigma_m = v_m.sqrt();
-        let force = net.local(r_m, middle.tension).force;
+        let force = middle.force;
         let halves = [one / (r_m * 2.0), one / (sigma_m * 2.0)];
         let mut area = [net.area_factor * PI, net.area_factor * net.depth * (2.0 * PI)];
         let mut pull = force;
@@ -234,6 +232,7 @@ impl<D: Real> Inextensible<D> {
             pull,
             slope: sigma_m * middle.curvature * force * halves[0] * ends.side,
             wall,
+            formula,
             area,
             halves,
             cloth: net.cloth,
@@ -260,7 +259,10 @@ impl<D: Real> Inextensible<D> {
         let sigma_2 = -(sigma_1 * sigma_1 * self.halves[1]);
         let mut pull = self.pull - area_1 * z * self.ends.side;
         let product = self.sigma_m * area_2 - q2 * self.halves[1] * area_1 + sigma_2 * pull;
-        let curve = self.wall[0] + self.wall[1] / y + self.wall[2] / v - product;
+        let mut curve = self.wall[0] + self.wall[1] / y + self.wall[2] / v - product;
+        if let Some(formula) = self.formula {
+            curve += formula.at(part) * r_1 * r_1;
+        }
         let mut g = self.slope + curve * z;
         if let Some(cloth) = &self.cloth {
             let u = cloth.scale() * (r - cloth.radius).squared();
@@ -275,7 +277,7 @@ impl<D: Real> Inextensible<D> {
     }
 }
 
-impl<D: Real> Meridian<D> for Inextensible<D> {
+impl<D: Real> Meridian<D> for Inextensible<'_, D> {
     fn ends(&self) -> &Ends<D> {
         &self.ends
     }
@@ -295,8 +297,8 @@ impl<D: Real> Meridian<D> for Inextensible<D> {
         self.with_curve(point.part, point.slack).0
     }
 
-    fn end_tension(&self, net: &Net<D>, end: &Local<D>) -> D {
-        net.tension_of(end.r, end.sigma, end.whole / end.sigma)
+    fn at_fitting(&self, net: &Net<D>, end: &Local<D>) -> (D, net::Local<D>) {
+        net.local_with_force(end.r, end.sigma, end.whole / end.sigma)
     }
 }
 
@@ -391,13 +393,22 @@ pub(crate) fn trajectory<D: Real>(net: &Net<D>, middle: Middle<D>) -> Result<Tra
         bulge: middle.bulge.value(),
         curvature: middle.curvature.value(),
         tension: middle.tension.value(),
+        force: middle.force.value(),
         straight: 0.0,
     };
     let plain = net.constant();
     let mut plan = Plan { points: ArrayVec::new(), evaluations: 0 };
-    if is_explicit(&plain) {
-        plan.fill(&Inextensible::of(&plain, &values))?;
-        return along(net, &middle, &Inextensible::of(net, &middle), &plan);
+    if plain.compliance == 0.0 {
+        if !plain.has_energy() {
+            plan.fill(&Inextensible::of(&plain, &values, None))?;
+            return along(net, &middle, &Inextensible::of(net, &middle, None), &plan);
+        }
+        // A formula that no grid resolves takes the pieces of the other way.
+        if let Some(bend) = Bend::resolved(&plain, &values, &mut plan.evaluations) {
+            plan.fill(&Inextensible::of(&plain, &values, Some(&bend)))?;
+            let bend = Bend::on(&bend, net, &middle);
+            return along(net, &middle, &Inextensible::of(net, &middle, bend.as_ref()), &plan);
+        }
     }
     let tensions = Tensions::of(&plain, &values, &mut plan.evaluations);
     let none = NoTrajectory { evaluations: plan.evaluations };
@@ -424,7 +435,7 @@ fn along<D: Real>(
     }
     let mid_radius = net.end_radius + middle.bulge;
     let at_middle = net.acting_at(mid_radius.value());
-    let mid_force = at_middle.local(mid_radius, middle.tension).force;
+    let mid_force = middle.force;
     let force = mid_force - at_middle.area(mid_radius);
     let end = end(net, meridian, sums);
     let departure = (end.force * end.state[crate::meridian::COS] - net.area(net.end_radius) - force).value();
@@ -456,8 +467,7 @@ fn end<D: Real>(net: &Net<D>, meridian: &impl Meridian<D>, sums: [D; 3]) -> End<
     let net = net.acting_at(radius.value());
     let cos = -at.turned + 1.0;
     let sin = (at.turned * (-at.turned + 2.0)).sqrt() * ends.side;
-    let tension = meridian.end_tension(&net, &at);
-    let local = net.local(radius, tension);
+    let (tension, local) = meridian.at_fitting(&net, &at);
     let force = local.force;
     let curvature = (net.area_r(radius) - local.hoop * cos) / force;
     End { state: [ends.bulge, sums[1], sin, cos, curvature, tension, sums[2]], force }

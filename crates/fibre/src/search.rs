@@ -6,9 +6,9 @@ use bulge_numerics::root::{RootError, newton_bracketed};
 use crate::FibreError;
 use crate::continuation::drawn_taut;
 use crate::net::Net;
+use crate::outcome::Scheme;
 use crate::path::{Paths, Place};
 use crate::problem::Problem;
-use crate::shape::Method;
 use crate::shooting::{self, ALONE, USUAL};
 use crate::solve::Found;
 use crate::start;
@@ -81,7 +81,7 @@ impl Seen {
 /// The equilibria of a muscle one after the other, each found from the last.
 struct Walk<'a, E> {
     problem: &'a Problem,
-    method: Method,
+    scheme: Scheme,
     near: Option<Unknowns>,
     seen: &'a mut Seen,
     excess: E,
@@ -91,7 +91,7 @@ impl<E: Fn(&Found) -> f64> Walk<'_, E> {
     /// The equilibrium at a contraction. With `alone`, the last one is the only start.
     fn at(&mut self, contraction: f64, alone: bool) -> Result<Found, FibreError> {
         let ending = if alone && self.near.is_some() { ALONE } else { USUAL };
-        let found = self.problem.at_with(self.method, contraction, (self.near, ending))?;
+        let found = self.problem.at_with(self.scheme, contraction, (self.near, ending))?;
         self.near = found.unknowns();
         self.seen.add(&found);
         Ok(found)
@@ -269,12 +269,12 @@ impl Problem {
     /// [`FAR`].
     pub(crate) fn root(
         &self,
-        method: Method,
+        scheme: Scheme,
         [start, end]: [f64; 2],
         seen: &mut Seen,
         excess: impl Fn(&Found) -> f64,
     ) -> Result<Found, FibreError> {
-        let mut walk = Walk { problem: self, method, near: None, seen, excess };
+        let mut walk = Walk { problem: self, scheme, near: None, seen, excess };
         let (low, x) = walk.below([start, end])?;
         if low > end {
             return Err(not_converged(low, 0));
@@ -315,23 +315,23 @@ impl Problem {
     /// the first one that pulls, or the first that exists if it need not pull.
     pub(crate) fn on_a_path(
         &self,
-        method: Method,
+        scheme: Scheme,
         goal: Goal,
         must_pull: bool,
         seen: &Seen,
     ) -> Option<Found> {
-        self.on_one_of(&mut Paths::of(&self.net, seen.last), method, goal, must_pull)
+        self.on_one_of(&mut Paths::of(&self.net, seen.last), scheme, goal, must_pull)
     }
 
     /// The end of the range on a path: the equilibrium at which the force vanishes, or the contraction at
     /// which the fibres of a pulling muscle become slack.
-    pub(crate) fn limit_on_a_path(&self, method: Method, seen: &Seen) -> Option<Result<Found, f64>> {
+    pub(crate) fn limit_on_a_path(&self, scheme: Scheme, seen: &Seen) -> Option<Result<Found, f64>> {
         let mut paths = Paths::of(&self.net, seen.last);
-        let found = self.on_one_of(&mut paths, method, Goal::Force(0.0), true).map(Ok);
+        let found = self.on_one_of(&mut paths, scheme, Goal::Force(0.0), true).map(Ok);
         found.or_else(|| paths.slackening().map(Err))
     }
 
-    fn on_one_of(&self, paths: &mut Paths, method: Method, goal: Goal, must_pull: bool) -> Option<Found> {
+    fn on_one_of(&self, paths: &mut Paths, scheme: Scheme, goal: Goal, must_pull: bool) -> Option<Found> {
         let radius = self.parts.radius;
         let [unit_force, unit_volume] = [self.pressure * radius * radius, radius.powi(3)];
         let excess = |place: &Place| match goal {
@@ -341,20 +341,20 @@ impl Problem {
         };
         let places = paths.crossings(excess);
         places.iter().find_map(|place| {
-            let found = self.near_place(method, goal, place).ok()?;
+            let found = self.near_place(scheme, goal, place).ok()?;
             (self.pulls(&found.response) || !must_pull).then_some(found)
         })
     }
 
     /// The equilibrium beside a place, solved in the usual way.
-    fn near_place(&self, method: Method, goal: Goal, place: &Place) -> Result<Found, FibreError> {
+    fn near_place(&self, scheme: Scheme, goal: Goal, place: &Place) -> Result<Found, FibreError> {
         let excess = |found: &Found| match goal {
             Goal::Contraction(asked) => asked - found.response.contraction,
             Goal::Force(asked) => found.response.force_n - asked,
             Goal::Volume(asked) => asked - found.response.volume_m3,
         };
         let near = Some(place.unknowns);
-        let mut walk = Walk { problem: self, method, near, seen: &mut { Seen::NOTHING }, excess };
+        let mut walk = Walk { problem: self, scheme, near, seen: &mut { Seen::NOTHING }, excess };
         if let Goal::Contraction(asked) = goal {
             return walk.at(asked, true);
         }

@@ -313,7 +313,7 @@ pub(crate) fn straight_contraction(net: &Net<f64>) -> Option<f64> {
         return None;
     }
     let end = net.acting_at(net.end_radius);
-    let tension = end.tension_at_equator(end.end_radius, end.push(end.end_radius), 0.0)?;
+    let tension = end.at_equator(end.end_radius, end.push(end.end_radius), 0.0)?.tension;
     Some(1.0 - net.sigma(net.end_radius, tension) / net.cos_rest)
 }
 
@@ -354,8 +354,8 @@ pub(crate) struct Total<const N: usize> {
 pub(crate) enum Way {
     /// By the equilibrium ODE. Its first integral and end conditions then check everything before.
     Ode,
-    /// By quadrature where the net allows it.
-    Fastest,
+    /// By quadrature where the net allows it, ten times faster.
+    Quadrature,
 }
 
 /// Integrates a last time at the unknowns. The small Newton step of this integration corrects the values to
@@ -375,7 +375,7 @@ pub(crate) fn finish<const N: usize>(
     let (run, g, jacobian, step, bulge) = loop {
         let middle = at.seeded(net).ok_or_else(|| failed.clone())?;
         let run = match way {
-            Way::Fastest if quadrature::suits(net) => quadrature::trajectory(net, middle),
+            Way::Quadrature if quadrature::suits(net) => quadrature::trajectory(net, middle),
             _ => trajectory(net, middle, TOLERANCE),
         };
         let run = match run {
@@ -383,7 +383,7 @@ pub(crate) fn finish<const N: usize>(
             // The integration can't follow cloth a thousand times stiffer than the pressure needs; a
             // quadrature can.
             Err(_) if way == Way::Ode && quadrature::suits(net) => {
-                return finish(net, asked, unknowns, Way::Fastest);
+                return finish(net, asked, unknowns, Way::Quadrature);
             }
             Err(_) => return Err(failed),
         };
@@ -404,7 +404,7 @@ pub(crate) fn finish<const N: usize>(
         // Next to fittings on which the fibres nearly lie along the circumference the integration loses
         // digits. A quadrature doesn't.
         if way == Way::Ode && quadrature::suits(net) {
-            return finish(net, asked, unknowns, Way::Fastest);
+            return finish(net, asked, unknowns, Way::Quadrature);
         }
         return Err(FibreError::NotConverged { contraction: asked, residual, iterations: MAX_ITERATIONS });
     }

@@ -5,11 +5,11 @@ use bulge_muscles::{Muscle, Parameter};
 use bulge_numerics::Dual;
 
 use crate::FibreError;
-use crate::outcome::{Approach, Outcome, Solution};
+use crate::outcome::{Approach, Outcome, Scheme, Solution};
 use crate::parts::{OWN_PARTS, PARTS, Parts};
 use crate::problem::Problem;
 use crate::search::{FAR, Goal, Seen};
-use crate::shape::{Method, Response};
+use crate::shape::Response;
 use crate::shooting::{EXACT, Ending, Total, USUAL};
 use crate::start::longest;
 use crate::unknowns::Unknowns;
@@ -118,13 +118,13 @@ impl Problem {
     /// # Errors
     /// See [`FibreError`].
     pub fn follow(&self, contraction: f64, approach: Approach) -> Result<Response, FibreError> {
-        let method = self.method(approach)?;
-        let found = self.at(method, contraction, None).or_else(|error| {
+        let scheme = self.scheme(approach)?;
+        let found = self.at(scheme, contraction, None).or_else(|error| {
             let error = self.explained(error, contraction, approach);
             if !matches!(error, FibreError::NotConverged { .. }) {
                 return Err(error);
             }
-            self.walked(method, contraction, false).ok_or(error)
+            self.walked(scheme, contraction, false).ok_or(error)
         });
         found.map(|found| found.response)
     }
@@ -144,13 +144,13 @@ impl Problem {
     }
 
     /// The equilibrium at a contraction, step by step from where one is found, or from a path.
-    pub(crate) fn walked(&self, method: Method, contraction: f64, must_pull: bool) -> Option<Found> {
+    pub(crate) fn walked(&self, scheme: Scheme, contraction: f64, must_pull: bool) -> Option<Found> {
         let start = self.contraction_start().min(contraction);
         let mut seen = Seen::NOTHING;
         let walked =
-            self.root(method, [start, FAR], &mut seen, |found| contraction - found.response.contraction);
+            self.root(scheme, [start, FAR], &mut seen, |found| contraction - found.response.contraction);
         let walked = walked.ok().filter(|found| self.pulls(&found.response) || !must_pull);
-        walked.or_else(|| self.on_a_path(method, Goal::Contraction(contraction), must_pull, &seen))
+        walked.or_else(|| self.on_a_path(scheme, Goal::Contraction(contraction), must_pull, &seen))
     }
 
     /// The contraction at which the force vanishes.
@@ -159,7 +159,7 @@ impl Problem {
     /// [`FibreError::NotConverged`], or [`FibreError::Slack`] with its limit where the fibres become slack
     /// before.
     pub fn contraction_limit(&self, approach: Approach) -> Result<f64, FibreError> {
-        self.at_limit(self.method(approach)?, &mut { Seen::NOTHING }).map(|found| found.response.contraction)
+        self.at_limit(self.scheme(approach)?, &mut { Seen::NOTHING }).map(|found| found.response.contraction)
     }
 
     /// Where the equilibria that pull end as the muscle contracts. This is the one limit that every message
@@ -176,12 +176,12 @@ impl Problem {
     }
 
     /// The equilibrium at which the force vanishes.
-    pub(crate) fn at_limit(&self, method: Method, seen: &mut Seen) -> Result<Found, FibreError> {
+    pub(crate) fn at_limit(&self, scheme: Scheme, seen: &mut Seen) -> Result<Found, FibreError> {
         let way = [self.contraction_start(), FAR];
-        match self.root(method, way, seen, |found| found.response.force_n) {
+        match self.root(scheme, way, seen, |found| found.response.force_n) {
             Err(error @ FibreError::NotConverged { contraction, .. }) => {
                 let slack = |limit| FibreError::Slack { contraction, limit: Some(limit) };
-                self.limit_on_a_path(method, seen).map_or(Err(error), |end| end.map_err(slack))
+                self.limit_on_a_path(scheme, seen).map_or(Err(error), |end| end.map_err(slack))
             }
             other => other,
         }
@@ -214,7 +214,7 @@ impl Problem {
         });
         let pressure = Dual::variable(self.pressure, 2);
         let net = parts.net(pressure);
-        let outcome = self.outcome_of_many(self.method(approach)?, contraction, &net, None, EXACT)?;
+        let outcome = self.outcome_of_many(self.scheme(approach)?, contraction, &net, None, EXACT)?;
         let radius = parts.radius;
         let out = |scale: Dual<N>, total: &Total<N>| {
             let mut gradient = total.by_parameter;
@@ -232,10 +232,10 @@ impl Problem {
     }
 
     pub(crate) fn find(&self, given: Given, approach: Approach) -> Result<Found, FibreError> {
-        let method = self.method(approach)?;
+        let scheme = self.scheme(approach)?;
         let l0 = self.parts.length;
         match given {
-            Given::Contraction(contraction) => self.pulling(method, approach, contraction),
+            Given::Contraction(contraction) => self.pulling(scheme, approach, contraction),
             Given::Length(length) => {
                 if length <= 0.0 {
                     return Err(FibreError::NotPositive { what: "length", value: length });
@@ -243,15 +243,15 @@ impl Problem {
                 if !length.is_finite() {
                     return Err(FibreError::NotFinite { what: "length", value: length });
                 }
-                self.pulling(method, approach, (l0 - length) / l0)
+                self.pulling(scheme, approach, (l0 - length) / l0)
             }
-            Given::Force(force) => self.with_force(method, approach, force),
-            Given::Volume(volume) => self.with_volume(method, volume),
+            Given::Force(force) => self.with_force(scheme, approach, force),
+            Given::Volume(volume) => self.with_volume(scheme, volume),
         }
     }
 
-    fn pulling(&self, method: Method, approach: Approach, contraction: f64) -> Result<Found, FibreError> {
-        let error = match self.at(method, contraction, None) {
+    fn pulling(&self, scheme: Scheme, approach: Approach, contraction: f64) -> Result<Found, FibreError> {
+        let error = match self.at(scheme, contraction, None) {
             Ok(found) if self.pulls(&found.response) => return Ok(found),
             Ok(found) => FibreError::WouldPush { contraction, force_n: found.response.force_n },
             Err(
@@ -270,7 +270,7 @@ impl Problem {
             Some(limit) if contraction <= limit => Err(FibreError::TooLong { contraction, limit }),
             // Go step by step from an equilibrium that exists.
             _ if matches!(error, FibreError::NotConverged { .. }) => {
-                self.walked(method, contraction, true).ok_or(error)
+                self.walked(scheme, contraction, true).ok_or(error)
             }
             _ => Err(error),
         }
@@ -280,7 +280,7 @@ impl Problem {
         response.pulls(self.pressure * self.parts.radius.powi(2))
     }
 
-    fn with_force(&self, method: Method, approach: Approach, force: f64) -> Result<Found, FibreError> {
+    fn with_force(&self, scheme: Scheme, approach: Approach, force: f64) -> Result<Found, FibreError> {
         if !force.is_finite() {
             return Err(FibreError::NotFinite { what: "force", value: force });
         }
@@ -289,14 +289,14 @@ impl Problem {
         }
         let mut seen = Seen::NOTHING;
         let way = [self.contraction_start(), FAR];
-        match self.root(method, way, &mut seen, |found| found.response.force_n - force) {
+        match self.root(scheme, way, &mut seen, |found| found.response.force_n - force) {
             Err(error @ (FibreError::NotConverged { .. } | FibreError::Overstretched { .. })) => {
                 let Seen { force: high_n, contraction, .. } = seen;
                 if high_n.is_finite() && high_n < force {
                     return Err(FibreError::ForceTooLarge { force_n: force, high_n, contraction });
                 }
-                self.on_a_path(method, Goal::Force(force), true, &seen).map_or_else(
-                    || match self.at_limit(method, &mut { Seen::NOTHING }) {
+                self.on_a_path(scheme, Goal::Force(force), true, &seen).map_or_else(
+                    || match self.at_limit(scheme, &mut { Seen::NOTHING }) {
                         // The force is less than where the fibres slacken.
                         Err(slack @ FibreError::Slack { limit: Some(_), .. }) => Err(slack),
                         _ => Err(error),
@@ -333,28 +333,28 @@ impl Problem {
     /// The equilibrium at a contraction with everything that is reported.
     pub(crate) fn at(
         &self,
-        method: Method,
+        scheme: Scheme,
         contraction: f64,
         from: Option<Unknowns>,
     ) -> Result<Found, FibreError> {
-        self.at_with(method, contraction, (from, USUAL))
+        self.at_with(scheme, contraction, (from, USUAL))
     }
 
     /// The same with a prescribed end of the search.
     pub(crate) fn at_with(
         &self,
-        method: Method,
+        scheme: Scheme,
         contraction: f64,
         from: (Option<Unknowns>, Ending),
     ) -> Result<Found, FibreError> {
         if self.is_scale_free() {
-            let outcome = self.outcome(method, contraction, &self.net.lift::<2>(), from)?;
+            let outcome = self.outcome(scheme, contraction, &self.net.lift::<2>(), from)?;
             return Ok(self.found(contraction, &outcome));
         }
         // The pressure is the variable number 2; the dimensionless groups depend on it.
         let parts: Parts<Dual<3>> = self.parts.map(|_, number| Dual::from(number));
         let net = parts.net(Dual::variable(self.pressure, 2));
-        let outcome = self.outcome(method, contraction, &net, from)?;
+        let outcome = self.outcome(scheme, contraction, &net, from)?;
         Ok(self.found(contraction, &outcome))
     }
 

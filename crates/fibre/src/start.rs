@@ -163,8 +163,8 @@ fn net_start(net: &Net<f64>, contraction: f64) -> Option<Unknowns> {
     };
     let end = net.acting_at(net.end_radius);
     let strain = end
-        .tension_at_equator(end.end_radius, end.push(end.end_radius), 0.0)
-        .map_or(0.0, |t| net.compliance * t);
+        .at_equator(end.end_radius, end.push(end.end_radius), 0.0)
+        .map_or(0.0, |found| net.compliance * found.tension);
     let end_distance = |bulge: f64| {
         let mid = net.end_radius + side * bulge;
         let kappa = rate(mid);
@@ -221,7 +221,7 @@ fn net_start(net: &Net<f64>, contraction: f64) -> Option<Unknowns> {
 pub(crate) fn linear_start(net: &Net<f64>, contraction: f64) -> Option<Unknowns> {
     let straight = straight_contraction(net)?;
     let (end, half) = (net.acting_at(net.end_radius), net.half_fibre);
-    let tension = end.tension_at_equator(end.end_radius, end.push(end.end_radius), 0.0)?;
+    let tension = end.at_equator(end.end_radius, end.push(end.end_radius), 0.0)?.tension;
     let local = end.local(end.end_radius, tension);
     let square = local.sigma.powi(2) * (local.hoop_r - end.section(end.end_radius).area_rr) / local.force;
     let kappa = square.abs().sqrt();

@@ -2,6 +2,7 @@
 
 use bulge_numerics::{Dual, Real};
 
+use crate::equator::Equator;
 use crate::meridian::Middle;
 use crate::net::Net;
 
@@ -72,8 +73,8 @@ impl Unknowns {
             };
             let bulge = net.bulge(slope)?;
             let r = net.end_radius + bulge;
-            let tension = net.acting_at(r.value()).tension_at_equator(r, bulge * slope, second)?;
-            return Some(Middle { bulge, curvature: second, tension, straight });
+            let Equator { tension, force } = net.acting_at(r.value()).at_equator(r, bulge * slope, second)?;
+            return Some(Middle { bulge, curvature: second, tension, force, straight });
         }
         let bulge = logs[0].exp() * self.side;
         let r = net.end_radius + bulge;
@@ -83,14 +84,14 @@ impl Unknowns {
         let net = net.acting_at(r.value());
         let push = net.push(r);
         if self.side > 0.0 {
-            let tension = net.tension_at_equator(r, push, second)?;
-            return Some(Middle { bulge, curvature: second, tension, straight });
+            let Equator { tension, force } = net.at_equator(r, push, second)?;
+            return Some(Middle { bulge, curvature: second, tension, force, straight });
         }
         // A waist is taut where a cylinder of its radius would not be.
         let cylinder = if net.has_wall() {
-            net.balancing_tension(r, push, D::from(0.0))?
+            net.balance(r, push, D::from(0.0))?.tension
         } else {
-            net.tension_at_equator(r, push, D::from(0.0))?
+            net.at_equator(r, push, D::from(0.0))?.tension
         };
         let at_cylinder = net.local(r, cylinder);
         // The tension of a cylinder without rubber. (The rubber may carry more than all of the pressure.)
@@ -107,6 +108,7 @@ impl Unknowns {
             bulge,
             curvature,
             tension,
+            force: local.force,
             straight,
         })
     }

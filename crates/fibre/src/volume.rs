@@ -6,9 +6,9 @@
 //! ends. A short muscle of elastic fibres that is drawn out far holds more again.
 
 use crate::FibreError;
+use crate::outcome::Scheme;
 use crate::problem::Problem;
 use crate::search::{Goal, Seen};
-use crate::shape::Method;
 use crate::solve::Found;
 
 /// Part of the largest volume. Within it the distance from the contraction of the largest volume can't be
@@ -37,7 +37,7 @@ impl Most {
 }
 
 impl Problem {
-    pub(crate) fn with_volume(&self, method: Method, volume: f64) -> Result<Found, FibreError> {
+    pub(crate) fn with_volume(&self, scheme: Scheme, volume: f64) -> Result<Found, FibreError> {
         if volume <= 0.0 {
             return Err(FibreError::NotPositive { what: "volume", value: volume });
         }
@@ -49,11 +49,11 @@ impl Problem {
         if self.is_singular() && volume <= least {
             return Err(FibreError::VolumeTooSmall { volume_m3: volume, low_m3: least });
         }
-        let end = self.range_end_with(method)?;
-        let most = if volume > end.volume() { self.fullest(method, &end) } else { end };
+        let end = self.range_end_with(scheme)?;
+        let most = if volume > end.volume() { self.fullest(scheme, &end) } else { end };
         let mut seen = Seen::NOTHING;
         if volume > most.volume() * (1.0 + FLAT) {
-            let found = self.drawn_out(method, volume, most.contraction(), &mut seen);
+            let found = self.drawn_out(scheme, volume, most.contraction(), &mut seen);
             return found.ok_or_else(|| {
                 let drawn = seen.most_volume > most.volume();
                 FibreError::VolumeTooLarge {
@@ -68,16 +68,16 @@ impl Problem {
         if volume > most.volume() * (1.0 - FLAT) {
             return Ok(most.found);
         }
-        let found = self.rising(method, volume, self.way_to(most.contraction()), &mut seen);
+        let found = self.rising(scheme, volume, self.way_to(most.contraction()), &mut seen);
         let found = found.or_else(|| {
             let beyond = [most.contraction(), end.contraction()];
             (volume > end.volume() * (1.0 - END))
-                .then(|| self.falling(method, volume, beyond, &mut seen))
+                .then(|| self.falling(scheme, volume, beyond, &mut seen))
                 .flatten()
         });
-        let found = found.or_else(|| self.beside_least(method, volume, most.contraction(), &mut seen));
+        let found = found.or_else(|| self.beside_least(scheme, volume, most.contraction(), &mut seen));
         let found = found.or_else(|| ((volume / end.volume() - 1.0).abs() <= FLAT).then_some(end.found));
-        found.or_else(|| self.on_a_path(method, Goal::Volume(volume), true, &seen)).ok_or({
+        found.or_else(|| self.on_a_path(scheme, Goal::Volume(volume), true, &seen)).ok_or({
             let least = seen.volume.min(end.volume());
             if seen.volume.is_finite() && least > volume {
                 FibreError::VolumeTooSmall { volume_m3: volume, low_m3: least }
@@ -93,50 +93,50 @@ impl Problem {
     }
 
     /// The equilibrium with a volume, on a way on which the volume rises.
-    fn rising(&self, method: Method, volume: f64, way: [f64; 2], seen: &mut Seen) -> Option<Found> {
-        let found = self.root(method, way, seen, |found| volume - found.response.volume_m3);
+    fn rising(&self, scheme: Scheme, volume: f64, way: [f64; 2], seen: &mut Seen) -> Option<Found> {
+        let found = self.root(scheme, way, seen, |found| volume - found.response.volume_m3);
         found.ok().filter(|found| self.pulls(&found.response))
     }
 
     /// The same where the volume falls.
-    fn falling(&self, method: Method, volume: f64, way: [f64; 2], seen: &mut Seen) -> Option<Found> {
-        let found = self.root(method, way, seen, |found| found.response.volume_m3 - volume);
+    fn falling(&self, scheme: Scheme, volume: f64, way: [f64; 2], seen: &mut Seen) -> Option<Found> {
+        let found = self.root(scheme, way, seen, |found| found.response.volume_m3 - volume);
         found.ok().filter(|found| self.pulls(&found.response))
     }
 
     /// The equilibrium of elastic fibres that are drawn out to more than the largest volume. The latter is at
     /// the contraction `peak`.
-    fn drawn_out(&self, method: Method, volume: f64, peak: f64, seen: &mut Seen) -> Option<Found> {
+    fn drawn_out(&self, scheme: Scheme, volume: f64, peak: f64, seen: &mut Seen) -> Option<Found> {
         if self.net.compliance == 0.0 {
             return None;
         }
-        let found = self.falling(method, volume, self.way_to(peak), seen);
-        found.or_else(|| self.on_a_path(method, Goal::Volume(volume), true, seen))
+        let found = self.falling(scheme, volume, self.way_to(peak), seen);
+        found.or_else(|| self.on_a_path(scheme, Goal::Volume(volume), true, seen))
     }
 
     /// The same for a volume just above the least one, beyond which the muscle holds more again. The steps of
     /// a search pass over it.
-    fn beside_least(&self, method: Method, volume: f64, peak: f64, seen: &mut Seen) -> Option<Found> {
+    fn beside_least(&self, scheme: Scheme, volume: f64, peak: f64, seen: &mut Seen) -> Option<Found> {
         if self.net.compliance == 0.0 {
             return None;
         }
         let [start, _] = self.way_to(peak);
-        let least = self.root(method, [start, start], seen, |found| found.response.volume_slope_m2).ok()?;
+        let least = self.root(scheme, [start, start], seen, |found| found.response.volume_slope_m2).ok()?;
         let way = [least.response.contraction, peak];
-        (least.response.volume_m3 < volume).then(|| self.rising(method, volume, way, seen)).flatten()
+        (least.response.volume_m3 < volume).then(|| self.rising(scheme, volume, way, seen)).flatten()
     }
 
     /// The last equilibrium that pulls with taut fibres.
-    fn range_end_with(&self, method: Method) -> Result<Most, FibreError> {
+    fn range_end_with(&self, scheme: Scheme) -> Result<Most, FibreError> {
         let mut seen = Seen::NOTHING;
-        match self.at_limit(method, &mut seen) {
+        match self.at_limit(scheme, &mut seen) {
             Ok(found) => Ok(Most { found, why: "where its force vanishes" }),
             Err(FibreError::Slack { contraction, limit: Some(limit) }) => {
                 // Just short of the limit, because rounding may make the fibres slack at it.
                 let places = SHORT_OF.map(|step| limit - step);
-                let near = places.iter().find_map(|place| self.at(method, *place, seen.last).ok());
+                let near = places.iter().find_map(|place| self.at(scheme, *place, seen.last).ok());
                 let found =
-                    near.or_else(|| places.iter().find_map(|place| self.walked(method, *place, false)));
+                    near.or_else(|| places.iter().find_map(|place| self.walked(scheme, *place, false)));
                 let slack = FibreError::Slack { contraction, limit: Some(limit) };
                 found.map(|found| Most { found, why: "where its fibres slacken" }).ok_or(slack)
             }
@@ -145,15 +145,15 @@ impl Problem {
     }
 
     /// The equilibrium with the largest volume up to the end of the range.
-    fn fullest(&self, method: Method, end: &Most) -> Most {
+    fn fullest(&self, scheme: Scheme, end: &Most) -> Most {
         let rising = |found: &Found| -found.response.volume_slope_m2;
         if self.is_scale_free() || rising(&end.found) >= 0.0 {
             return *end;
         }
         let mut seen = Seen::NOTHING;
-        let peak = self.root(method, self.way_to(end.contraction()), &mut seen, rising);
+        let peak = self.root(scheme, self.way_to(end.contraction()), &mut seen, rising);
         // The volume falls from the point where the fibres can't be drawn out farther.
-        match peak.or_else(|_| self.at(method, seen.fullest, None)) {
+        match peak.or_else(|_| self.at(scheme, seen.fullest, None)) {
             Ok(found) if found.response.volume_m3 > end.volume() => {
                 Most { found, why: "and less if it contracts more" }
             }

@@ -2,6 +2,7 @@
 
 use bulge_effects::Jet;
 use bulge_fibre::Start;
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 use crate::evaluate::{Pass, Run};
@@ -28,10 +29,10 @@ pub(crate) fn segment(
     mut part: Part<'_>,
     slots: &mut [Option<Start>],
 ) -> Vec<(usize, RowError)> {
-    let mut failed = Vec::new();
+    let mut failed = BTreeMap::new();
     // Rows that don't count matter only through the memory that they pass to rows that do.
     let remembers = runs[0].remembers();
-    let Some(last) = rows.clone().rev().find(|row| (task.counts)(*row)) else { return failed };
+    let Some(last) = rows.clone().rev().find(|row| (task.counts)(*row)) else { return Vec::new() };
     let rows = rows.start..last + 1;
     for (number, pass) in task.passes.iter().enumerate() {
         let mut memory = runs[0].memory();
@@ -57,15 +58,15 @@ pub(crate) fn segment(
             before = Some((slot, run.body));
             match run.row(moment, pass, &mut memory, &mut slots[slot]) {
                 Ok(row) if counts => part.fill(i, number, pass, task.columns, row.reading),
-                Err(error) if counts && number == 0 => {
-                    failed.push((row, error));
+                Err(error) if counts => {
+                    failed.entry(row).or_insert(error);
                     if run.all_or_none {
-                        return failed;
+                        return failed.into_iter().collect();
                     }
                 }
                 Ok(_) | Err(_) => {}
             }
         }
     }
-    failed
+    failed.into_iter().collect()
 }

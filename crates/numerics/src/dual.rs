@@ -42,6 +42,12 @@ impl<const N: usize> Dual<N> {
         &self.gradient
     }
 
+    /// Whether any derivative differs from 0.
+    #[must_use]
+    pub fn moves(&self) -> bool {
+        self.gradient.iter().any(|slope| *slope != 0.0)
+    }
+
     /// The chain rule: a function value at `self` with its derivative there.
     #[inline]
     #[must_use]
@@ -183,7 +189,8 @@ impl<const N: usize> Real for Dual<N> {
         if exponent == 0 {
             return Self::from(1.0);
         }
-        self.chain(self.value.powi(exponent), f64::from(exponent) * self.value.powi(exponent - 1))
+        let [value, lower] = [exponent, exponent - 1].map(|exponent| Real::powi(self.value, exponent));
+        self.chain(value, f64::from(exponent) * lower)
     }
     #[inline]
     fn scale_add(self, a: f64, b: Self) -> Self {

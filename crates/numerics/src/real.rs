@@ -93,7 +93,19 @@ impl Real for f64 {
     }
     #[inline]
     fn powi(self, exponent: i32) -> Self {
-        Self::powi(self, exponent)
+        // The powers of most formulas, in the order of operations of the general one.
+        let square = self * self;
+        match exponent {
+            -4 => 1.0 / (square * square),
+            -3 => 1.0 / (self * square),
+            -2 => 1.0 / square,
+            -1 => 1.0 / self,
+            1 => self,
+            2 => square,
+            3 => self * square,
+            4 => square * square,
+            _ => Self::powi(self, exponent),
+        }
     }
     #[inline]
     fn scale_add(self, a: f64, b: Self) -> Self {

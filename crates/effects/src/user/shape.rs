@@ -3,7 +3,7 @@
 use bulge_fibre::{Formula, FormulaInput, Jet, MOST_PARAMETERS, Parts};
 use bulge_muscles::{Dimension, MuscleError};
 use bulge_numerics::Real;
-use bulge_numerics::tape::{Builder, Operator, Place, Tape};
+use bulge_numerics::tape::{Builder, Function, Operator, Place, Tape};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
@@ -119,8 +119,7 @@ impl ShapeFormula {
     /// Puts the formula with its parameters into the parts of a muscle. If it changes nothing (at zero
     /// stiffness) and `theta` carries no derivatives, the parts stay unchanged.
     pub(crate) fn reshape(&self, theta: &[Jet], parts: &mut Parts<Jet>) -> Result<(), MuscleError> {
-        let moves = theta.iter().any(|number| number.gradient().iter().any(|slope| *slope != 0.0));
-        if !moves && self.changes_nothing(theta, parts) {
+        if !theta.iter().any(Jet::moves) && self.changes_nothing(theta, parts) {
             return Ok(());
         }
         let formula = Formula { tape: Arc::clone(&self.tape), parameters: theta.to_vec() };
@@ -136,23 +135,28 @@ impl ShapeFormula {
         Ok(())
     }
 
-    /// Whether the formula equals the built-in expression at a few stretches, radii and pressures.
+    /// Whether the formula is that of the net without it: an energy of 0, pi r^2 or sin(alpha0)/r0. It is
+    /// simplified for these parameters; one that is written in another way is solved with like any other.
     fn changes_nothing(&self, theta: &[Jet], parts: &Parts<Jet>) -> bool {
-        let of = |[l1, l2, p]: [f64; 3]| {
-            let (r0, angle) = (parts.radius.value(), parts.angle.value());
-            let inputs = [l1, l2, l2 * r0, r0, p, angle, parts.length.value()];
-            let parameter = |i: usize| theta.get(i - inputs.len()).map_or(f64::NAN, |number| number.value());
-            self.tape.run_on::<f64, 1>(|i| inputs.get(i).copied().unwrap_or_else(|| parameter(i)))[0]
-        };
-        let near = |a: f64, b: f64| (a - b).abs() <= 1e-14 * b.abs();
-        [[0.9, 1.2, 1e5], [1.1, 0.8, 3e5], [0.75, 1.7, 6e5]].into_iter().all(|at| match self.quantity {
-            ShapeQuantity::Energy => of(at) == 0.0,
+        let (steps, place) = self.expression.steps();
+        let parameter = |index: usize| theta.get(index.checked_sub(SHAPE_VARIABLES.len())?);
+        let (mut steps, places) = steps.with_known(|index| parameter(index).map(|number| number.value()));
+        let found = places[place];
+        match self.quantity {
+            ShapeQuantity::Energy => steps.constant_at(found) == Some(0.0),
             ShapeQuantity::Area => {
-                let r = at[1] * parts.radius.value() + parts.depth.value();
-                !parts.is_polygon && near(of(at), PI * r * r)
+                let (pi, r) = (steps.constant(PI), steps.input(FormulaInput::Radius as usize));
+                let square = steps.whole_power(r, 2);
+                let circle = steps.operate(Operator::Multiply, pi, square);
+                !parts.is_polygon && parts.depth.value() == 0.0 && found == circle
             }
-            ShapeQuantity::Twist => near(of(at), parts.angle.value().sin() / parts.radius.value()),
-        })
+            ShapeQuantity::Twist => {
+                let angle = steps.input(FormulaInput::Angle as usize);
+                let sine = steps.call(Function::Sin, &[angle]);
+                let reference = steps.input(FormulaInput::ReferenceRadius as usize);
+                found == steps.operate(Operator::Divide, sine, reference)
+            }
+        }
     }
 }
 
@@ -343,6 +347,25 @@ mod tests {
         let gradient = at(2e3, 0.18).1;
         let volume = gradient.by_contraction[1] / clamped().length().to_m();
         assert!((gradient.by_pressure[0] / volume - 1.0).abs() < 2e-4);
+    }
+
+    /// A parameter at which the formula vanishes leaves the muscle as it is; one that acts only far away
+    /// doesn't.
+    #[test]
+    fn what_changes_nothing_is_left_out() {
+        let untouched = Parts::of(&clamped());
+        let sling = "[effects.sling]\ntitle = \"Sling\"\nenergy = \"k*max(0, l2 - 1.9)^2\"\n\
+            parameters.k = { unit = \"N/mm\", typical = 1, low = 0, high = 100 }\n";
+        let turn = "[effects.turn]\ntitle = \"Turn\"\ntwist = \"sin(alpha0)/r0*(1 + k*p)\"\n\
+            parameters.k = { unit = \"1/MPa\", typical = 0.05, low = -1, high = 1 }\n";
+        for (text, theta) in [(SHAPE_EXAMPLE, vec![0.0, 0.002]), (sling, vec![0.0]), (turn, vec![0.0])] {
+            assert_eq!(own(text).reshaped(&theta, &clamped()).unwrap(), untouched, "{text}");
+        }
+        assert!(own(sling).reshaped(&[1e3], &clamped()).unwrap().energy.is_some());
+        assert!(own(turn).reshaped(&[1e-9], &clamped()).unwrap().twist.is_some());
+        let depth = "[effects.crest]\ntitle = \"Crest\"\narea = \"pi*(r + h)^2\"\n\
+            parameters.h = { unit = \"mm\", typical = \"1 mm\", low = \"0 mm\", high = \"5 mm\" }\n";
+        assert_eq!(own(depth).reshaped(&[0.0], &clamped()).unwrap(), untouched);
     }
 
     #[test]

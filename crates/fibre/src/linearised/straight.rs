@@ -12,10 +12,10 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use super::{Found, Linear, Linearised, Start};
 use crate::closed_form::{Graded, Near, solve_near};
-use crate::outcome::Approach;
+use crate::outcome::{Approach, Scheme};
 use crate::parts::{Jet, LANES, Parts};
 use crate::problem::Problem;
-use crate::shape::{Convergence, Method};
+use crate::shape::Convergence;
 
 /// The numbers that don't depend on pressure and contraction.
 #[derive(Debug, Clone)]
@@ -34,7 +34,7 @@ pub(super) struct Straight {
 impl Straight {
     /// Made from the parts of a problem with derivatives. `None` if there is no closed form.
     pub(super) fn of(problem: &Problem, moving: &Parts<Jet>) -> Option<Self> {
-        if problem.is_cylinder() || problem.method(Approach::Auto) != Ok(Method::ClosedForm) {
+        if problem.is_cylinder() || problem.scheme(Approach::Auto) != Ok(Scheme::ClosedForm) {
             return None;
         }
         let net = moving.net(Jet::from(problem.pressure));

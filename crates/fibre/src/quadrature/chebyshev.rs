@@ -2,7 +2,7 @@
 //! Approximation Practice*, SIAM 2013, chapters 2 to 8).
 
 use arrayvec::ArrayVec;
-use bulge_numerics::gauss;
+use bulge_numerics::{Real, gauss};
 use std::f64::consts::PI;
 use std::sync::LazyLock;
 
@@ -26,6 +26,8 @@ pub(super) struct Grid {
     pub(super) singly: Vec<f64>,
     /// Weights of the values in the last two Chebyshev coefficients.
     last: [Vec<f64>; 2],
+    /// Row k: weights of the values in coefficient k of the Chebyshev series of the integrals of `doubly`.
+    pub(super) series: Vec<Vec<f64>>,
 }
 
 impl Grid {
@@ -43,9 +45,21 @@ impl Grid {
                 of_all(&|i| weight(i) / intervals as f64),
                 of_all(&|i| 2.0 * weight(i) * angle(i).cos() / intervals as f64),
             ],
+            series: Vec::new(),
         };
         grid.doubly = (0..=intervals).map(|i| grid.integrated(i, |t| 1.0 - t)).collect();
         grid.singly = grid.integrated(intervals, |_| 1.0);
+        // Coefficient k of values at the points: the sum of (2/n) cos(k (pi - angle)) f, halved at both ends.
+        let coefficient = |k: usize| {
+            let of_value =
+                of_all(&|i| 2.0 * half(k) * half(i) / intervals as f64 * (k as f64 * (PI - angle(i))).cos());
+            let mut row = vec![0.0; intervals + 1];
+            for (weight, doubly) in of_value.iter().zip(&grid.doubly) {
+                row.iter_mut().zip(doubly).for_each(|(sum, value)| *sum += weight * value);
+            }
+            row
+        };
+        grid.series = (0..=intervals).map(coefficient).collect();
         grid
     }
 
@@ -100,6 +114,18 @@ impl Grid {
     }
 }
 
+/// The value at `x` of a Chebyshev series between 0 and 1 (Clenshaw's recurrence).
+#[inline]
+pub(super) fn value<D: Real>(series: &[D], x: f64) -> D {
+    let Some((first, rest)) = series.split_first() else { return D::from(0.0) };
+    let (t, zero) = (2.0 * x - 1.0, D::from(0.0));
+    let (one, two) = rest
+        .iter()
+        .rev()
+        .fold((zero, zero), |(one, two), coefficient| (one.scale_add(2.0 * t, *coefficient - two), one));
+    one.scale_add(t, *first - two)
+}
+
 /// The grids of [`INTERVALS`].
 pub(super) static GRIDS: LazyLock<[Grid; INTERVALS.len()]> = LazyLock::new(|| INTERVALS.map(Grid::new));
 
@@ -134,6 +160,13 @@ mod tests {
                     let off = (sum(weights, k) - exact).abs();
                     assert!(off < most, "T_{k} of {intervals} intervals, up to {x}: {off:e}");
                 }
+            }
+            // The series of the doubly integrated values passes through them.
+            let values: Vec<f64> = grid.places.iter().map(|x| (2.0 * x).exp()).collect();
+            let of_values = |row: &Vec<f64>| row.iter().zip(&values).map(|(w, v)| w * v).sum::<f64>();
+            let series: Vec<f64> = grid.series.iter().map(of_values).collect();
+            for (row, x) in grid.doubly.iter().zip(&grid.places) {
+                assert!((value(&series, *x) - of_values(row)).abs() < 1e-14 * of_values(row));
             }
             // Near the first place the values are one.
             assert!((sum(&grid.doubly[0], 0) - 0.5).abs() < 1e-15);

@@ -20,7 +20,7 @@ use std::borrow::Cow;
 use super::chebyshev::{GRIDS, Grid, INTERVALS, MOST};
 use super::{Ends, Local, Meridian, Point};
 use crate::meridian::Middle;
-use crate::net::Net;
+use crate::net::{self, Net};
 
 /// Pieces of a meridian, and points on all of them, at most.
 const MOST_PIECES: usize = 6;
@@ -186,16 +186,15 @@ impl<D: Real> Elastic<D> {
     fn begun(net: &Net<D>, middle: &Middle<D>) -> Self {
         let ends = Ends::of(net, middle);
         let net = net.acting_at(ends.r_m.value()).into_owned();
-        let force = net.local(ends.r_m, middle.tension).force;
         let zero = D::from(0.0);
         Self {
-            force: force - net.area(ends.r_m),
+            force: middle.force - net.area(ends.r_m),
             energy: net.hamiltonian(ends.r_m, middle.tension),
             pieces: ArrayVec::new(),
             nodes: ArrayVec::new(),
             tension: middle.tension,
             rise: zero,
-            slope: middle.curvature * force * ends.side,
+            slope: middle.curvature * middle.force * ends.side,
             bend: zero,
             net,
             ends,
@@ -346,7 +345,7 @@ impl<D: Real> Meridian<D> for Elastic<D> {
         Local { y, r, sigma, strain, g: sigma * g / (r + r_m), whole: sigma * force, turned: rise / force }
     }
 
-    fn end_tension(&self, _: &Net<D>, _: &Local<D>) -> D {
-        self.tension
+    fn at_fitting(&self, net: &Net<D>, end: &Local<D>) -> (D, net::Local<D>) {
+        (self.tension, net.local(end.r, self.tension))
     }
 }
