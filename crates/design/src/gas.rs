@@ -119,18 +119,31 @@ pub enum GasError {
     },
 }
 
+impl GasError {
+    /// An impossible number.
+    const fn number(what: &'static str, value: f64, instead: &'static str) -> Self {
+        Self::Number { what, value, instead }
+    }
+}
+
 /// Checks that a number is finite and at least `low`.
 fn at_least(what: &'static str, value: f64, low: f64, instead: &'static str) -> Result<f64, GasError> {
-    if value.is_finite() && value >= low { Ok(value) } else { Err(GasError::Number { what, value, instead }) }
+    if value.is_finite() && value >= low { Ok(value) } else { Err(GasError::number(what, value, instead)) }
 }
 
 /// Checks that a number is finite and above 0.
 fn positive(what: &'static str, value: f64) -> Result<f64, GasError> {
-    if value.is_finite() && value > 0.0 {
-        Ok(value)
+    let instead = "give a finite number above 0";
+    if value > 0.0 {
+        at_least(what, value, 0.0, instead)
     } else {
-        Err(GasError::Number { what, value, instead: "give a finite number above 0" })
+        Err(GasError::number(what, value, instead))
     }
+}
+
+/// Checks that a number is finite.
+fn finite(what: &'static str, value: f64) -> Result<f64, GasError> {
+    at_least(what, value, f64::MIN, "give a finite number")
 }
 
 /// Muscles for the tests of the submodules.

@@ -254,7 +254,9 @@ impl Columns {
 }
 
 fn differ(name: &'static str, with: &str, without: &str) -> MeasurementError {
-    MeasurementError::ColumnsDiffer { name, with: with.to_owned(), without: without.to_owned() }
+    MeasurementError::Request(format!(
+        "{without} has no column `{name}`, {with} has: files of one analysis need the same columns; add it there, leave it out here, or analyse them separately"
+    ))
 }
 
 /// The values of some rows.

@@ -102,7 +102,10 @@ impl Data {
         if !complaints.is_empty() {
             return Err(MeasurementError::of(complaints));
         }
-        all.map(Self::structured).ok_or(MeasurementError::NoFile)
+        all.map(Self::structured).ok_or_else(|| {
+            let what = "no data file is given: name at least one file of CSV, Excel, MATLAB or Parquet, or `-` for standard input";
+            MeasurementError::Request(what.to_owned())
+        })
     }
 
     /// Reads CSV; `origin` is its name in messages.
@@ -155,7 +158,8 @@ impl Data {
     fn add(&mut self, source: Source) -> Result<(), MeasurementError> {
         let name = &source.file.name;
         if let Some(same) = self.files.iter().find(|file| file.sha256 == source.file.sha256) {
-            return Err(MeasurementError::SameContent { first: same.name.clone(), second: name.clone() });
+            let what = format!("{} and {name} have the same content: name each file once", same.name);
+            return Err(MeasurementError::Request(what));
         }
         let first = self.files[0].name.clone();
         Arc::make_mut(&mut self.columns).append(&source.table.columns, [&first, name])?;

@@ -54,10 +54,8 @@ mod tests {
 mod turning;
 mod unit;
 mod window;
-mod wording;
 mod written;
 
-pub use cell_error::CellError;
 pub use column_map::{ColumnEntry, ColumnMap};
 pub use columns::{Columns, Labels, Trace};
 pub use data::{Data, Motion};

@@ -42,16 +42,24 @@ pub(crate) fn create(dir: &Path) -> Result<(), VtkError> {
 /// Checks that the stem can be part of file names.
 pub(crate) fn check_stem(stem: &str) -> Result<(), VtkError> {
     let is_name = !stem.is_empty() && !stem.contains(['/', '\\']) && !stem.contains(char::is_control);
-    if is_name { Ok(()) } else { Err(VtkError::Stem { stem: stem.to_owned() }) }
+    if is_name {
+        Ok(())
+    } else {
+        Err(VtkError::Drawing(format!(
+            "{stem:?} can't begin the file names of a series: use a name without folders"
+        )))
+    }
 }
 
 fn check(stem: &str, members: &[(f64, Bulge)]) -> Result<(), VtkError> {
     check_stem(stem)?;
     if members.is_empty() {
-        return Err(VtkError::EmptySeries);
+        return Err(VtkError::Drawing("a series needs at least one shape".to_owned()));
     }
     match members.iter().enumerate().find(|(_, (value, _))| !value.is_finite()) {
-        Some((index, (value, _))) => Err(VtkError::SeriesValue { index, value: *value }),
+        Some((index, (value, _))) => Err(VtkError::Drawing(format!(
+            "the value of member {index} of the series is {value}: it must be finite"
+        ))),
         None => members.iter().try_for_each(|(_, bulge)| bulge.check()),
     }
 }

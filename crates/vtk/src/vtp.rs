@@ -2,6 +2,7 @@
 
 use crate::VtkError;
 use crate::bulge::{Bulge, whole};
+use crate::error::check_extension;
 use crate::mesh::Mesh;
 use crate::{whole_file, xml};
 use bulge_fibre::Response;
@@ -15,9 +16,7 @@ use vtkio::model::{Attribute, Attributes, DataSet, PolyDataPiece, VertexNumbers}
 /// its folder doesn't exist, or the disk refuses. The message names the path and the reason.
 pub fn write_vtp(path: impl AsRef<Path>, bulge: &Bulge) -> Result<(), VtkError> {
     let path = path.as_ref();
-    if path.extension().is_none_or(|e| !e.eq_ignore_ascii_case("vtp")) {
-        return Err(VtkError::Extension { path: path.to_path_buf() });
-    }
+    check_extension(path, "vtp")?;
     whole_file::write(path, &encoded(path, bulge)?)
 }
 
@@ -31,8 +30,7 @@ pub fn vtp_bytes(bulge: &Bulge) -> Result<Vec<u8>, VtkError> {
 
 fn encoded(path: &Path, bulge: &Bulge) -> Result<Vec<u8>, VtkError> {
     bulge.check()?;
-    encode(Mesh::new(bulge), &bulge.shape.response)
-        .map_err(|reason| VtkError::Encode { path: path.to_path_buf(), reason })
+    encode(Mesh::new(bulge), &bulge.shape.response).map_err(|reason| VtkError::encode(path, &reason))
 }
 
 /// The bytes of a file.

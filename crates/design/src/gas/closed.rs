@@ -16,7 +16,7 @@ use serde::Serialize;
 use super::chamber::{Chamber, Inside, Load, with_gas};
 use super::muscle::{failed, pulling};
 use super::surroundings::Surroundings;
-use super::{AMBIENT_TEMPERATURE_K, GAMMA, GasError, R_AIR, at_least, positive};
+use super::{AMBIENT_TEMPERATURE_K, GAMMA, GasError, R_AIR, at_least, finite, positive};
 
 /// Enclosed gas with its polytropic exponent.
 #[derive(Debug, Clone, Copy)]
@@ -93,11 +93,11 @@ impl<'a> ClosedMuscle<'a> {
     ) -> Result<Self, GasError> {
         positive("the gauge pressure of the filling [Pa]", pressure_pa)?;
         if !(1.0..=GAMMA).contains(&exponent) {
-            return Err(GasError::Number {
-                what: "the polytropic exponent",
-                value: exponent,
-                instead: "give a number from 1 (isothermal) to 1.4 (adiabatic)",
-            });
+            return Err(GasError::number(
+                "the polytropic exponent",
+                exponent,
+                "give a number from 1 (isothermal) to 1.4 (adiabatic)",
+            ));
         }
         let found = pulling(muscle, pressure_pa, contraction, Approach::Auto);
         let volume_m3 = found.map_err(|error| failed(pressure_pa, error))?.volume_m3;
@@ -143,13 +143,7 @@ impl<'a> ClosedMuscle<'a> {
     /// # Errors
     /// [`GasError::Muscle`] if the muscle doesn't pull at that contraction, or [`GasError::NoPressure`].
     pub fn at_contraction(&self, contraction: f64) -> Result<ClosedState, GasError> {
-        if !contraction.is_finite() {
-            return Err(GasError::Number {
-                what: "the contraction",
-                value: contraction,
-                instead: "give a finite number",
-            });
-        }
+        finite("the contraction", contraction)?;
         let inside = self.shut(Load::Held(contraction))?;
         self.state(inside.pressure_pa, contraction)
     }

@@ -346,8 +346,5 @@ fn lines_are_those_of_the_files() {
     assert_eq!(json["findings"][1]["kind"], "impossible-value");
     assert_eq!(json["findings"][1]["severity"], "error");
     assert_eq!(json["findings"][1]["rows"][0]["first"], 5);
-    assert_eq!(
-        Data::from_csv("", "a.csv").unwrap_err(),
-        MeasurementError::Empty { file: "a.csv".to_owned() }
-    );
+    assert_eq!(Data::from_csv("", "a.csv").unwrap_err(), MeasurementError::empty("a.csv"));
 }
