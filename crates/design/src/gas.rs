@@ -84,29 +84,9 @@ pub enum GasError {
         /// The cause.
         error: Box<MuscleWithEffectsError>,
     },
-    /// Pull and load are equal at no contraction.
-    #[error(
-        "at the gauge pressure {pressure_pa} Pa the pull equals the load at no contraction (last tried: {:.4} %, load {load_n} N): give the load a support, or one that the muscle can carry",
-        100.0 * contraction
-    )]
-    NoBalance {
-        /// Gauge pressure \[Pa\].
-        pressure_pa: f64,
-        /// The last contraction.
-        contraction: f64,
-        /// The load there \[N\].
-        load_n: f64,
-    },
-    /// No pressure satisfies the law of the enclosed gas.
-    #[error(
-        "no gauge pressure above 0 satisfies the law of the enclosed gas (last tried: {pressure_pa} Pa): start with a higher pressure, or ask for a contraction nearer to that of the filling ({reason})"
-    )]
-    NoPressure {
-        /// The last gauge pressure \[Pa\].
-        pressure_pa: f64,
-        /// Why the search stopped.
-        reason: String,
-    },
+    /// Pull and load are equal at no contraction, or no pressure satisfies the law of the enclosed gas.
+    #[error("{0}")]
+    NoBalance(String),
     /// The integration over time stopped.
     #[error("the filling stopped after {time_s} s at the gauge pressure {pressure_pa} Pa: {reason}")]
     Stopped {

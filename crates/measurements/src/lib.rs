@@ -58,7 +58,7 @@ mod written;
 
 pub use column_map::{ColumnEntry, ColumnMap};
 pub use columns::{Columns, Labels, Trace};
-pub use data::{Data, Motion};
+pub use data::Data;
 pub use error::MeasurementError;
 pub use history::History;
 pub use quality::{Disturbance, Finding, FindingKind, LineRange, Quality, QualityOptions, Severity};

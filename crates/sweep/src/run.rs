@@ -63,6 +63,20 @@ pub struct Summary {
     pub is_complete: bool,
 }
 
+impl Summary {
+    /// Of chunks of which none was computed now.
+    fn of(promises: &[ChunkManifest]) -> Self {
+        Self {
+            points: promises.iter().map(|promise| promise.points).sum(),
+            infeasible: promises.iter().map(|promise| promise.infeasible).sum(),
+            chunks: promises.len() as u64,
+            computed: 0,
+            damaged: Vec::new(),
+            is_complete: false,
+        }
+    }
+}
+
 /// Why a sweep stops. Finished chunks stay, and `resume` continues from them.
 #[derive(Debug, thiserror::Error)]
 pub enum SweepError {
@@ -172,17 +186,12 @@ pub fn run(
         .with_max_len(1)
         .map(|i| run.chunk(chunks.start + i as u64))
         .collect::<Result<_, _>>()?;
-    let mut summary = Summary {
-        points: promises.iter().map(|(promise, _)| promise.points).sum(),
-        infeasible: promises.iter().map(|(promise, _)| promise.infeasible).sum(),
-        chunks: chunks.end - chunks.start,
-        computed: promises.iter().filter(|(_, is_new)| *is_new).count() as u64,
-        damaged: run.damaged.into_inner().unwrap_or_default(),
-        is_complete: false,
-    };
+    let computed = promises.iter().filter(|(_, is_new)| *is_new).count() as u64;
+    let promises: Vec<ChunkManifest> = promises.into_iter().map(|(promise, _)| promise).collect();
+    let mut summary = Summary { computed, ..Summary::of(&promises) };
+    summary.damaged = run.damaged.into_inner().unwrap_or_default();
     summary.damaged.sort();
     if chunks == (0..all) {
-        let promises: Vec<ChunkManifest> = promises.into_iter().map(|(promise, _)| promise).collect();
         let text = manifest(plan, &promises)?;
         write(&run.folder.manifest(), text.as_bytes())?;
         summary.is_complete = true;
@@ -309,11 +318,12 @@ fn make(
 /// # Errors
 /// If a promise has no JSON.
 pub fn manifest(plan: &Plan, promises: &[ChunkManifest]) -> Result<String, SweepError> {
+    let Summary { points, infeasible, .. } = Summary::of(promises);
     let document = json!({
         "schema": SCHEMA,
         "plan": hash(plan.canonical()?.as_bytes()),
-        "points": promises.iter().map(|promise| promise.points).sum::<u64>(),
-        "infeasible": promises.iter().map(|promise| promise.infeasible).sum::<u64>(),
+        "points": points,
+        "infeasible": infeasible,
         "chunks": promises,
     });
     Ok(serde_json::to_string_pretty(&document)? + "\n")
@@ -341,14 +351,7 @@ pub fn complete(plan: &Plan, path: &Path) -> Result<Option<Summary>, SweepError>
         }
     }
     write(&folder.manifest(), manifest(plan, &promises)?.as_bytes())?;
-    Ok(Some(Summary {
-        points: promises.iter().map(|promise| promise.points).sum(),
-        infeasible: promises.iter().map(|promise| promise.infeasible).sum(),
-        chunks: plan.chunks(),
-        computed: 0,
-        damaged: Vec::new(),
-        is_complete: true,
-    }))
+    Ok(Some(Summary { is_complete: true, ..Summary::of(&promises) }))
 }
 
 /// Numbers of the points of a chunk.

@@ -96,7 +96,8 @@ mod tests {
 
     #[test]
     fn writes_members_and_collection() {
-        let folder = std::env::temp_dir().join(format!("bulge-vtk-series-{}/new", std::process::id()));
+        let parent = tempfile::tempdir().unwrap();
+        let folder = parent.path().join("new");
         let shapes = [barrel(8, 0.0), barrel(9, 0.0)];
         let style = Style::Pleats { cloth_circumference: None };
         let members: Vec<_> = shapes
@@ -109,12 +110,12 @@ mod tests {
         let xml = fs::read_to_string(&path).unwrap();
         assert!(xml.contains(r#"<DataSet timestep="0.05" part="0" file="a &amp; b_0001.vtp"/>"#), "{xml}");
         assert_eq!(fs::read_dir(&folder).unwrap().count(), 3);
-        fs::remove_dir_all(folder.parent().unwrap()).unwrap();
     }
 
     #[test]
     fn refuses_before_writing_anything() {
-        let folder = std::env::temp_dir().join(format!("bulge-vtk-refused-{}", std::process::id()));
+        let parent = tempfile::tempdir().unwrap();
+        let folder = parent.path().join("new");
         let shape = barrel(8, 0.0);
         let bulge = Bulge { shape: &shape, fibres: 4, style: Style::Revolution, facets: 4 };
         let message = |stem: &str, members: &[(f64, Bulge)]| {

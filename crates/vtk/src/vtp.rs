@@ -114,9 +114,10 @@ mod tests {
 
     #[test]
     fn leaves_nothing_behind_when_writing_fails() {
-        let folder = std::env::temp_dir().join(format!("bulge-vtk-fails-{}", std::process::id()));
+        let folder = tempfile::tempdir().unwrap();
+        let folder = folder.path();
         let occupied = folder.join("occupied.vtp");
-        std::fs::create_dir_all(&occupied).unwrap();
+        std::fs::create_dir(&occupied).unwrap();
         let shape = barrel(8, 0.0);
         let bulge = Bulge { shape: &shape, fibres: 4, style: Style::Revolution, facets: 8 };
         let message = |path: &Path| write_vtp(path, &bulge).unwrap_err().to_string();
@@ -125,12 +126,11 @@ mod tests {
         assert!(missing.contains("nowhere") && missing.contains("no folder"), "{missing}");
         assert!(message(&occupied).contains("occupied.vtp"));
         assert!(message(&folder.join("shape.vtk")).contains("must end in .vtp"));
-        assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 1, "only the folder that was there");
+        assert_eq!(std::fs::read_dir(folder).unwrap().count(), 1, "only the folder that was there");
         assert_eq!(std::fs::read_dir(&occupied).unwrap().count(), 0);
 
         write_vtp(folder.join("shape.vtp"), &bulge).unwrap();
         write_vtp(folder.join("shape.vtp"), &bulge).unwrap();
-        assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 2, "the file and no temporary one");
-        std::fs::remove_dir_all(&folder).unwrap();
+        assert_eq!(std::fs::read_dir(folder).unwrap().count(), 2, "the file and no temporary one");
     }
 }

@@ -329,8 +329,13 @@ impl<'a> Chamber<'a> {
         if let Load::Force(force) = load {
             return solve(Given::Force(*force));
         }
-        let no_balance =
-            |e: f64| GasError::NoBalance { pressure_pa, contraction: e, load_n: load_at(load, muscle, e) };
+        let no_balance = |e: f64| {
+            GasError::NoBalance(format!(
+                "at the gauge pressure {pressure_pa} Pa the pull equals the load at no contraction (last tried: {:.4} %, load {} N): give the load a support, or one that the muscle can carry",
+                100.0 * e,
+                load_at(load, muscle, e)
+            ))
+        };
         // No muscle pulls beyond its limit, so the load exceeds the pull there, and the balance lies at a
         // smaller contraction.
         let limit = solve(Given::Force(0.0))?.contraction;
@@ -412,7 +417,10 @@ pub(super) fn with_gas(
     if g.abs() < 1e-11 {
         return Ok(inside);
     }
-    Err(GasError::NoPressure { pressure_pa: (u + step).exp() - ambient_pa, reason })
+    let pressure_pa = (u + step).exp() - ambient_pa;
+    Err(GasError::NoBalance(format!(
+        "no gauge pressure above 0 satisfies the law of the enclosed gas (last tried: {pressure_pa} Pa): start with a higher pressure, or ask for a contraction nearer to that of the filling ({reason})"
+    )))
 }
 
 fn unreal(value: f64) -> GasError {

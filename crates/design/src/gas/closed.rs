@@ -141,7 +141,7 @@ impl<'a> ClosedMuscle<'a> {
     /// The state at a contraction.
     ///
     /// # Errors
-    /// [`GasError::Muscle`] if the muscle doesn't pull at that contraction, or [`GasError::NoPressure`].
+    /// [`GasError::Muscle`] if the muscle doesn't pull at that contraction, or [`GasError::NoBalance`].
     pub fn at_contraction(&self, contraction: f64) -> Result<ClosedState, GasError> {
         finite("the contraction", contraction)?;
         let inside = self.shut(Load::Held(contraction))?;
@@ -152,7 +152,7 @@ impl<'a> ClosedMuscle<'a> {
     ///
     /// # Errors
     /// [`GasError::Number`], [`GasError::Muscle`] if the muscle can't carry the force, or
-    /// [`GasError::NoPressure`].
+    /// [`GasError::NoBalance`].
     pub fn under_force(&self, force_n: f64) -> Result<ClosedState, GasError> {
         at_least("the force [N]", force_n, 0.0, "give a finite force from 0 on: a muscle doesn't push")?;
         let inside = self.shut(Load::Force(force_n))?;
@@ -348,7 +348,7 @@ mod tests {
         assert!(closed.under_force(-1.0).is_err() && closed.under_force(f64::NAN).is_err());
         // At this contraction the small amount of gas would be below the ambient pressure.
         let error = closed.at_contraction(0.3).unwrap_err();
-        assert!(matches!(error, GasError::NoPressure { .. }), "{error}");
+        assert!(matches!(error, GasError::NoBalance(_)), "{error}");
         assert!(error.to_string().contains("start with a higher pressure"));
     }
 }
