@@ -84,7 +84,7 @@ impl Data {
         let mut all: Option<Self> = None;
         let mut complaints = Vec::new();
         for (name, path) in files {
-            match (Source::read(name.clone(), path, options), &mut all) {
+            match (Source::read(name, path, options), &mut all) {
                 (Ok(source), None) => all = Some(Self::start(source)),
                 (Ok(source), Some(all)) => complaints.extend(all.add(source).err()),
                 (Err(complaint), _) => complaints.push(complaint),

@@ -107,7 +107,8 @@ impl Slot {
             }
             Values::Counts(values) => values.push(cell::whole_of(number, &number.to_string())?),
             Values::Directions(values) => {
-                values.push(cell::sign(number).ok_or_else(|| CellError::not_a_direction(number.to_string()))?)
+                values
+                    .push(cell::sign(number).ok_or_else(|| CellError::not_a_direction(number.to_string()))?);
             }
             Values::Labels(labels) => labels.push(&number.to_string()),
         }

@@ -68,21 +68,21 @@ pub(crate) struct Source {
 impl Source {
     /// Reads a file of the kind that its first bytes show, otherwise as text. `book.xlsx#name` is one sheet
     /// of a workbook.
-    pub(crate) fn read(name: String, path: &Path, options: &ReadOptions) -> Result<Self, MeasurementError> {
+    pub(crate) fn read(name: &str, path: &Path, options: &ReadOptions) -> Result<Self, MeasurementError> {
         let is_stdin = path == Path::new(STDIN);
         let (path, sheet) = sheet_of(path);
-        let bytes = if is_stdin { read_all(&name, std::io::stdin().lock()) } else { read_file(&name, path) }?;
+        let bytes = if is_stdin { read_all(name, std::io::stdin().lock()) } else { read_file(name, path) }?;
         let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
         let is_parquet = bytes.starts_with(PARQUET_MAGIC);
         if !is_parquet && ["parquet", "pq"].contains(&extension.as_str()) {
             let cure = "if it is CSV, name it `.csv`; else write it again";
-            return Err(parquet_file::no_parquet(&name, "it does not begin as Parquet does", cure));
+            return Err(parquet_file::no_parquet(name, "it does not begin as Parquet does", cure));
         }
         if !is_parquet {
-            return Self::sheet(&name, &bytes, sheet, options);
+            return Self::sheet(name, &bytes, sheet, options);
         }
         let sha256 = fingerprint(&bytes);
-        Ok(Self::new(&name, sha256, parquet_file::read(&name, bytes::Bytes::from(bytes), options)?))
+        Ok(Self::new(name, sha256, parquet_file::read(name, bytes::Bytes::from(bytes), options)?))
     }
 
     /// The name of a path in messages.

@@ -117,9 +117,8 @@ fn check_sides(mesh: &Mesh, sides: &[Side], rims: &Rims<'_>) -> Result<(), Membr
             [one, two] if one.middle != two.middle => {
                 return Err(mixed_orders(mesh, one.cell, two.cell, one.nodes));
             }
-            [_] | [_, _] => (),
+            [] | [_] | [_, _] => (),
             [first, ..] => return Err(branch(mesh, first.cell, first.nodes, found.len())),
-            [] => (),
         }
     }
     Ok(())

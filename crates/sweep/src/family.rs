@@ -84,9 +84,7 @@ impl Family {
                 known.card().name == effect && !matches!(known.card().group, Group::Rig | Group::Specimen)
             };
             if !self.effects.iter().any(is_part) {
-                return Err(FamilyError::Input(format!(
-                    "the effect `{effect}` belongs to a rig or to one specimen: a sweep of the muscle leaves it out, so it can't be an axis"
-                )));
+                return Err(FamilyError::no_part(effect));
             }
         }
         Ok(())
@@ -158,8 +156,7 @@ impl Family {
             muscle = muscle.with(Parameter::Radius, muscle.length().si() / slenderness)?;
         }
         if let Some(group) = group {
-            let what = "the elastic group p sin(2 pi/n) R^2/EA needs a number of fibres n";
-            let n = f64::from(muscle.fibres().ok_or_else(|| FamilyError::Input(what.to_owned()))?);
+            let n = f64::from(muscle.fibres().ok_or_else(FamilyError::no_fibre_number)?);
             let radius = muscle.end_radius().si();
             let stiffness = pressure * (TAU / n).sin() * radius * radius / group;
             muscle = muscle.with(Parameter::FibreStiffness, stiffness)?;

@@ -44,4 +44,16 @@ impl FamilyError {
         let cure = "give it one first, with `Muscle::with`";
         Self::Input(format!("this muscle has no `{name}` to differentiate by: {cure}"))
     }
+
+    /// An axis that varies an effect which is not part of the muscle.
+    pub(crate) fn no_part(effect: &str) -> Self {
+        Self::Input(format!(
+            "the effect `{effect}` belongs to a rig or to one specimen: a sweep of the muscle leaves it out, so it can't be an axis"
+        ))
+    }
+
+    /// An elastic group for a muscle without a number of fibres.
+    pub(crate) fn no_fibre_number() -> Self {
+        Self::Input("the elastic group p sin(2 pi/n) R^2/EA needs a number of fibres n".to_owned())
+    }
 }

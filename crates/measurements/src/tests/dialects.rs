@@ -329,7 +329,7 @@ fn displacements() {
     ] {
         let found = reads(name, table(name, values).as_bytes(), columns);
         let length = |data: &Data| match data.motion() {
-            Trace::Length(length) => length.to_vec(),
+            Trace::Length(length) => length.clone(),
             Trace::Contraction(_) => panic!("{name}: a contraction"),
         };
         for (a, b) in length(&found).iter().zip(length(&plain())) {

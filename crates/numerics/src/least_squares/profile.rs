@@ -193,7 +193,7 @@ impl<P: Residuals> Walk<'_, P> {
             match self.visit(distance) {
                 Ok(visit) => return Ok(Some(visit)),
                 Err(LeastSquaresError::Start(_) | LeastSquaresError::NotFinite(_)) => {
-                    distance = 0.5 * (distance + inside.distance)
+                    distance = 0.5 * (distance + inside.distance);
                 }
                 Err(error) => return Err(error),
             }

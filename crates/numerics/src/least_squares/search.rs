@@ -19,6 +19,8 @@ const ENOUGH: f64 = 1e-4;
 const POLISH: f64 = 1e-4;
 /// Most trials of one iteration, each at most half as long as the one before.
 const TRIALS: usize = 100;
+/// A damping that keeps the triangle regular if norms are zero, but is too small to have an effect.
+pub(super) const LEAST_DAMPING: f64 = (1e-2 * RANK_TOLERANCE) * (1e-2 * RANK_TOLERANCE);
 /// Most times that the search leaves a saddle.
 const ESCAPES: usize = 10;
 
@@ -247,12 +249,7 @@ impl<'a, P: Residuals> Search<'a, P> {
     pub(super) fn newton(&self) -> Step {
         let norms = &self.linear.norms;
         let (a, b) = self.scaled_by(norms, &self.linear.q);
-        damped(&a, &b, self.least_damping(), &self.limits(norms, &self.theta))
-    }
-
-    /// A damping that keeps the triangle regular if norms are zero, but is too small to have an effect.
-    pub(super) fn least_damping(&self) -> f64 {
-        (1e-2 * RANK_TOLERANCE).powi(2)
+        damped(&a, &b, LEAST_DAMPING, &self.limits(norms, &self.theta))
     }
 
     fn stationary(&self, newton: &Step) -> Option<Reason> {
