@@ -124,7 +124,7 @@ impl Failure {
             Self::Heat(error) => match error.as_ref() {
                 HeatError::Invalid { .. } => 1,
                 HeatError::Choked { .. } => 3,
-                HeatError::Step { .. } | HeatError::NotPeriodic { .. } => 4,
+                HeatError::NotConverged(_) => 4,
             },
             Self::Size(error) if matches!(**error, SizeError::Muscle { .. }) => 3,
             Self::Tabulate(error) => match error.as_ref() {

@@ -84,29 +84,9 @@ pub enum GasError {
         /// The cause.
         error: Box<MuscleWithEffectsError>,
     },
-    /// Pull and load are equal at no contraction.
-    #[error(
-        "at the gauge pressure {pressure_pa} Pa the pull equals the load at no contraction (last tried: {:.4} %, load {load_n} N): give the load a support, or one that the muscle can carry",
-        100.0 * contraction
-    )]
-    NoBalance {
-        /// Gauge pressure \[Pa\].
-        pressure_pa: f64,
-        /// The last contraction.
-        contraction: f64,
-        /// The load there \[N\].
-        load_n: f64,
-    },
-    /// No pressure satisfies the law of the enclosed gas.
-    #[error(
-        "no gauge pressure above 0 satisfies the law of the enclosed gas (last tried: {pressure_pa} Pa): start with a higher pressure, or ask for a contraction nearer to that of the filling ({reason})"
-    )]
-    NoPressure {
-        /// The last gauge pressure \[Pa\].
-        pressure_pa: f64,
-        /// Why the search stopped.
-        reason: String,
-    },
+    /// Pull and load are equal at no contraction, or no pressure satisfies the law of the enclosed gas.
+    #[error("{0}")]
+    NoBalance(String),
     /// The integration over time stopped.
     #[error("the filling stopped after {time_s} s at the gauge pressure {pressure_pa} Pa: {reason}")]
     Stopped {
@@ -119,18 +99,31 @@ pub enum GasError {
     },
 }
 
+impl GasError {
+    /// An impossible number.
+    const fn number(what: &'static str, value: f64, instead: &'static str) -> Self {
+        Self::Number { what, value, instead }
+    }
+}
+
 /// Checks that a number is finite and at least `low`.
 fn at_least(what: &'static str, value: f64, low: f64, instead: &'static str) -> Result<f64, GasError> {
-    if value.is_finite() && value >= low { Ok(value) } else { Err(GasError::Number { what, value, instead }) }
+    if value.is_finite() && value >= low { Ok(value) } else { Err(GasError::number(what, value, instead)) }
 }
 
 /// Checks that a number is finite and above 0.
 fn positive(what: &'static str, value: f64) -> Result<f64, GasError> {
-    if value.is_finite() && value > 0.0 {
-        Ok(value)
+    let instead = "give a finite number above 0";
+    if value > 0.0 {
+        at_least(what, value, 0.0, instead)
     } else {
-        Err(GasError::Number { what, value, instead: "give a finite number above 0" })
+        Err(GasError::number(what, value, instead))
     }
+}
+
+/// Checks that a number is finite.
+fn finite(what: &'static str, value: f64) -> Result<f64, GasError> {
+    at_least(what, value, f64::MIN, "give a finite number")
 }
 
 /// Muscles for the tests of the submodules.

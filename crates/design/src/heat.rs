@@ -103,7 +103,7 @@ impl HeatProblem {
     ///
     /// # Errors
     /// [`HeatError::Invalid`] for invalid numbers, [`HeatError::Choked`] if the inlet chokes,
-    /// [`HeatError::NotPeriodic`] or [`HeatError::Step`] if the numerics don't converge.
+    /// [`HeatError::NotConverged`] if the numerics don't converge.
     pub fn solve(&self) -> Result<HeatSolution, HeatError> {
         check::check(self)?;
         let mut runner = cycle::Runner::new(self);

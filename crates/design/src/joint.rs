@@ -51,17 +51,9 @@ pub enum JointError {
         /// The cause.
         error: Cause,
     },
-    /// An angle outside the range of the joint.
-    #[error(
-        "the angle {:.4} deg is outside the range of the joint, {:.4} deg to {:.4} deg",
-        angle.to_degrees(), range[0].to_degrees(), range[1].to_degrees()
-    )]
-    Outside {
-        /// Requested angle \[rad\].
-        angle: f64,
-        /// The range \[rad\].
-        range: [f64; 2],
-    },
+    /// An angle or a pressure outside the range of the joint, or a closed muscle without gauge pressure.
+    #[error("{0}")]
+    Outside(String),
     /// A stiffness that can't be reached at an angle within the range of pressures.
     #[error(
         "no pressures in the joint's range give {stiffness:.4} N m/rad at {:.4} deg: there it is {:.4} to {:.4} N m/rad",
@@ -87,26 +79,6 @@ pub enum JointError {
         outside: f64,
         /// Smallest and largest torque that can be held \[N m\].
         range: [f64; 2],
-    },
-    /// A pressure outside the range of the joint.
-    #[error("the pressure of the {}, {:.4} bar, is outside the range of the joint, {:.4} to {:.4} bar", side.name(), 1e-5 * pressure_pa, 1e-5 * range[0], 1e-5 * range[1])]
-    Pressure {
-        /// The muscle.
-        side: Side,
-        /// Its pressure \[Pa\].
-        pressure_pa: f64,
-        /// The range \[Pa\].
-        range: [f64; 2],
-    },
-    /// A closed muscle without gauge pressure.
-    #[error("the closed {} has no pressure left at {:.4} deg: {pressure_pa:.0} Pa below the air around it; fill it more", side.name(), angle.to_degrees())]
-    Empty {
-        /// The muscle.
-        side: Side,
-        /// Angle \[rad\].
-        angle: f64,
-        /// Gauge pressure that its gas would have \[Pa\].
-        pressure_pa: f64,
     },
     /// The muscles turn the joint beyond an end of its range.
     #[error(
@@ -221,8 +193,16 @@ impl Joint {
     }
 
     fn inside(&self, angle: f64) -> Result<(), JointError> {
-        let range @ [low, high] = self.angle;
-        if angle >= low && angle <= high { Ok(()) } else { Err(JointError::Outside { angle, range }) }
+        let [low, high] = self.angle;
+        if angle >= low && angle <= high {
+            return Ok(());
+        }
+        Err(JointError::Outside(format!(
+            "the angle {:.4} deg is outside the range of the joint, {:.4} deg to {:.4} deg",
+            angle.to_degrees(),
+            low.to_degrees(),
+            high.to_degrees()
+        )))
     }
 
     fn pulls(&self, angle: f64, pressures: [f64; 2]) -> Result<[Pull; 2], JointError> {

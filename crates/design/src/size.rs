@@ -33,42 +33,9 @@ pub use search::{Requirements, Sizing, Weights, size};
 /// Why nothing can be sized.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum SizeError {
-    /// A load without points or without travel.
-    #[error("the load has no stroke: say what force is needed after what travel, such as 500 N after 50 mm")]
-    NoStroke,
-    /// An invalid travel or force.
-    #[error("point {point} of the load has the {what} {value}: it must be a finite number, 0 or more")]
-    Load {
-        /// Number of the point, from 1.
-        point: usize,
-        /// Travel or force.
-        what: &'static str,
-        /// Its value in SI.
-        value: f64,
-    },
-    /// Points that are not in order of their travel.
-    #[error(
-        "point {point} of the load lies at the travel {travel_m} m, not beyond the one before: give the points in order, each travel once"
-    )]
-    Order {
-        /// Number of the point, from 1.
-        point: usize,
-        /// Its travel \[m\].
-        travel_m: f64,
-    },
-    /// No force at any point.
-    #[error("the load is 0 N everywhere: any muscle carries it")]
-    NoForce,
-    /// A requirement outside its range.
-    #[error("the {what} is {value}: it must be {range}")]
-    Requirements {
-        /// Name of the requirement.
-        what: &'static str,
-        /// Its value in SI.
-        value: f64,
-        /// Valid range.
-        range: &'static str,
-    },
+    /// An impossible load or requirement: what is wrong, and what to say instead.
+    #[error("{0}")]
+    Input(String),
     /// A muscle whose force can't be computed.
     #[error("{family} of {:.1} mm: {why}", 1e3 * length_m)]
     Muscle {
@@ -79,4 +46,17 @@ pub enum SizeError {
         /// The cause.
         why: String,
     },
+}
+
+impl SizeError {
+    /// A load without points or without travel.
+    fn no_stroke() -> Self {
+        let cure = "say what force is needed after what travel, such as 500 N after 50 mm";
+        Self::Input(format!("the load has no stroke: {cure}"))
+    }
+
+    /// A requirement outside its range.
+    fn out_of_range(what: &str, value: f64, range: &str) -> Self {
+        Self::Input(format!("the {what} is {value}: it must be {range}"))
+    }
 }

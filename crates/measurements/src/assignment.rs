@@ -26,6 +26,13 @@ pub(crate) struct Header<'a> {
     pub(crate) first: &'a [Vec<String>],
 }
 
+impl Header<'_> {
+    /// A complaint about the column of a quantity.
+    fn complaint(&self, field: Field, what: String) -> MeasurementError {
+        MeasurementError::of_column(self.file, self.line, field.name(), what)
+    }
+}
+
 /// Columns that are read, by index, and what each column of the file was taken for.
 pub(crate) struct Assignment {
     pub(crate) headings: Vec<Option<Heading>>,
@@ -130,7 +137,7 @@ fn stated(
                 other.guess.field.name(),
                 field.name()
             );
-            complaints.push(MeasurementError::ColumnMap { what });
+            complaints.push(MeasurementError::ColumnMap(what));
             continue;
         }
         let beneath = header.units.and_then(|units| units.get(place)).map(String::as_str);
@@ -144,7 +151,7 @@ fn stated(
         if let (Some(text), None, false) = (&entry.unit, &found, field.is_label())
             && let Some(error) = problem(field, text)
         {
-            complaints.push(unit_error(header, field, &entry.column, error));
+            complaints.push(unit_error(header, field, &entry.column, &error));
             continue;
         }
         let guess = Guess { field, strength: Strength::Exact, unit: found, is_lengthening: false };
@@ -181,7 +188,7 @@ fn find(header: &Header, column: &str) -> Result<usize, MeasurementError> {
                 quoted(column),
                 places[0] + 1
             );
-            return Err(MeasurementError::ColumnMap { what });
+            return Err(MeasurementError::ColumnMap(what));
         }
         None => {}
     }
@@ -197,7 +204,7 @@ fn find(header: &Header, column: &str) -> Result<usize, MeasurementError> {
             header.line,
             listed(header)
         );
-        return Err(MeasurementError::ColumnMap { what });
+        return Err(MeasurementError::ColumnMap(what));
     }
     let slips = |name: &&String| strsim::damerau_levenshtein(&bare(name), without_unit);
     // A single letter is one typo away from any other, so names need more letters to be suggested.
@@ -212,7 +219,7 @@ fn find(header: &Header, column: &str) -> Result<usize, MeasurementError> {
         near.map_or_else(String::new, |name| format!("did you mean `{}`? ", quoted(name))),
         listed(header)
     );
-    Err(MeasurementError::ColumnMap { what })
+    Err(MeasurementError::ColumnMap(what))
 }
 
 /// Whether a file has a column that a user names by its heading.
@@ -260,13 +267,11 @@ fn guessed(
             Some(Choice { place: *place, guess: (*guess).clone(), entry: None })
         }
         _ if best == Strength::Exact => {
-            complaints.push(MeasurementError::TwiceTheColumn {
-                file: header.file.to_owned(),
-                line: header.line,
-                name: field.name(),
-                first: all[0].0 + 1,
-                second: all[1].0 + 1,
-            });
+            let (name, first, second) = (field.name(), all[0].0 + 1, all[1].0 + 1);
+            let what = format!(
+                "the columns {first} and {second} are both `{name}`: leave one out, or say which it is, such as `--columns \"{name}={first}\"`"
+            );
+            complaints.push(header.complaint(field, what));
             None
         }
         // Neither is read, so the ambiguity doesn't matter.
@@ -278,13 +283,13 @@ fn guessed(
             let is_unique = find(header, &header.names[all[0].0]).is_ok();
             let number = (all[0].0 + 1).to_string();
             let name = if is_unique { &header.names[all[0].0] } else { &number };
-            complaints.push(MeasurementError::Ambiguous {
-                file: header.file.to_owned(),
-                line: header.line,
-                name: field.name(),
-                candidates: candidates.collect::<Vec<_>>().join(", "),
-                instead: entry_text(field, name, unit),
-            });
+            let what = format!(
+                "which column is `{}`: {}? write which, such as `{}`",
+                field.name(),
+                candidates.collect::<Vec<_>>().join(", "),
+                entry_text(field, name, unit)
+            );
+            complaints.push(header.complaint(field, what));
             None
         }
     }
@@ -333,17 +338,16 @@ fn missing(header: &Header, name: &'static str) -> MeasurementError {
         if unit(field, inside).is_none()
             && let Some(problem) = problem(field, inside)
         {
-            return unit_error(header, field, name, problem);
+            return unit_error(header, field, name, &problem);
         }
     }
-    MeasurementError::MissingColumn {
-        file: header.file.to_owned(),
-        line: header.line,
-        name,
-        example: field.example(),
-        field: field.name(),
-        found: listed(header),
-    }
+    let what = format!(
+        "there is no column `{name}`: add one, such as `{}`, or say which it is, such as `--columns \"{}=NAME [UNIT]\"` (found: {})",
+        field.example(),
+        field.name(),
+        listed(header)
+    );
+    MeasurementError::at(header.file, header.line, what)
 }
 
 /// The heading of a column that is read, with its scale.
@@ -380,16 +384,32 @@ fn unknown_unit(header: &Header, field: Field, name: &str) -> Option<Measurement
     let inside = inside.trim_end_matches([']', ' ']);
     let is_none = matches!(inside, "" | "-" | "1");
     let problem = problem(field, inside).filter(|_| !is_none)?;
-    Some(unit_error(header, field, name, problem))
+    Some(unit_error(header, field, name, &problem))
 }
 
-fn unit_error(header: &Header, field: Field, column: &str, problem: UnitError) -> MeasurementError {
-    MeasurementError::Unit {
-        file: header.file.to_owned(),
-        line: header.line,
-        column: quoted(column),
-        problem: Box::new(problem),
-        example: field.example(),
+fn unit_error(header: &Header, field: Field, column: &str, problem: &UnitError) -> MeasurementError {
+    let what = format!(
+        "column `{}` {}; write the unit in brackets behind the name, such as `{}`",
+        quoted(column),
+        of_unit(problem),
+        field.example()
+    );
+    header.complaint(field, what)
+}
+
+/// The problem with the unit of a heading, as a continuation of "column `..`".
+fn of_unit(problem: &UnitError) -> String {
+    match problem {
+        UnitError::NoUnit { wanted, .. } => format!("has no unit (known: {})", wanted.symbols()),
+        UnitError::UnknownUnit { unit, suggestion, wanted, .. } => {
+            let question =
+                suggestion.map_or_else(String::new, |symbol| format!(": did you mean `{symbol}`?"));
+            format!("has the unknown unit `{unit}`{question} (known: {})", wanted.symbols())
+        }
+        UnitError::OtherDimension { found, wanted, .. } => {
+            format!("has a unit of {found} where one of {} is needed", wanted.quantity)
+        }
+        other => format!("has a unit that can't be read ({other})"),
     }
 }
 

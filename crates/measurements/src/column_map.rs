@@ -41,7 +41,7 @@ impl ColumnMap {
     /// If the quantity doesn't exist or already has a column, or if the column already belongs to another
     /// quantity.
     pub fn add(&mut self, quantity: &str, column: &str) -> Result<(), MeasurementError> {
-        let wrong = |what: String| Err(MeasurementError::ColumnMap { what });
+        let wrong = |what: String| Err(MeasurementError::ColumnMap(what));
         let quantity = quantity.trim().to_lowercase().replace([' ', '-'], "_");
         let is_known = quantity == IGNORE || Field::ALL.iter().any(|field| field.name() == quantity);
         if !is_known {
@@ -108,13 +108,13 @@ impl std::str::FromStr for ColumnMap {
             }
             let Some((quantity, column)) = part.split_once('=') else {
                 let what = format!("`{}` has no `=`: write such as `force=Force_N [N]`", quoted(part));
-                return Err(MeasurementError::ColumnMap { what });
+                return Err(MeasurementError::ColumnMap(what));
             };
             found.add(quantity, column)?;
         }
         if found.0.is_empty() {
             let what = "nothing is named: write such as `force=Force_N [N], pressure=P1 [psi]`".to_owned();
-            return Err(MeasurementError::ColumnMap { what });
+            return Err(MeasurementError::ColumnMap(what));
         }
         Ok(found)
     }

@@ -116,7 +116,7 @@ pub struct Columns {
     pub force_sd_n: Option<Vec<f64>>,
     /// Number of the load cycle.
     pub cycle: Option<Vec<i64>>,
-    /// Stated direction: +1 shortening, -1 lengthening, 0 at rest.
+    /// Stated direction: +1 shortening, -1 lengthening, 0 at rest. The observed one is in [`crate::Data::history`].
     pub direction: Option<Vec<i8>>,
     /// Label of the uninterrupted run that the row belongs to.
     pub sweep: Option<Labels>,
@@ -254,7 +254,9 @@ impl Columns {
 }
 
 fn differ(name: &'static str, with: &str, without: &str) -> MeasurementError {
-    MeasurementError::ColumnsDiffer { name, with: with.to_owned(), without: without.to_owned() }
+    MeasurementError::Request(format!(
+        "{without} has no column `{name}`, {with} has: files of one analysis need the same columns; add it there, leave it out here, or analyse them separately"
+    ))
 }
 
 /// The values of some rows.

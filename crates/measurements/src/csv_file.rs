@@ -6,7 +6,6 @@
 use crate::assignment::{Header, assign};
 use crate::encoding;
 use crate::error::MeasurementError;
-use crate::heading::known;
 use crate::layout::{self, Layout};
 use crate::line::{Separator, checked_length, unpad, without_line_end};
 use crate::quote::quoted;
@@ -67,11 +66,7 @@ pub(crate) fn read_text(
         }
         let row = draft.lines.len();
         if row >= MOST_ROWS {
-            return Err(MeasurementError::TooManyRows {
-                file: file.to_owned(),
-                line: i + 1,
-                limit: MOST_ROWS,
-            });
+            return Err(MeasurementError::too_many_rows(file, i + 1));
         }
         checked_length(file, i + 1, content)?;
         draft.lines.push(u32::try_from(i + 1).unwrap_or(u32::MAX));
@@ -107,11 +102,11 @@ pub(crate) fn read_text(
         }
         if spoilt == places.len() && layout::names_columns(&fields) {
             let columns: Vec<String> = fields.iter().map(|name| format!("`{}`", quoted(name))).collect();
-            return Err(MeasurementError::SecondTable {
-                file: file.to_owned(),
-                line: i + 1,
-                columns: columns.join(", "),
-            });
+            let what = format!(
+                "another table begins here, with the columns {}: write it into a file of its own, and name both files",
+                columns.join(", ")
+            );
+            return Err(MeasurementError::at(file, i + 1, what));
         }
     }
     draft.finish(file, options)
@@ -126,15 +121,14 @@ fn complain_of_header(file: &str, layout: &Layout) -> Result<(), MeasurementErro
     let first = layout.names.first().map_or("", String::as_str);
     let is_number = first.trim().replacen(',', ".", 1).parse::<f64>().is_ok();
     if is_number && layout.names.iter().all(|name| name.trim().replacen(',', ".", 1).parse::<f64>().is_ok()) {
-        return Err(MeasurementError::NoHeader { file: file.to_owned(), line, text: quoted(first) });
+        let what = format!(
+            "`{}` is a number where a column's name is needed: write a header first, such as `pressure [bar],length [mm],force [N]`, or say the columns by their numbers, such as `--columns \"time=1 [s],pressure=2 [bar],length=3 [mm],force=4 [N]\"`",
+            quoted(first)
+        );
+        return Err(MeasurementError::at(file, line, what));
     }
     if layout.names.len() == 1 {
-        return Err(MeasurementError::OneField {
-            file: file.to_owned(),
-            line,
-            text: quoted(first),
-            known: known(),
-        });
+        return Err(MeasurementError::one_field(file, line, first));
     }
     Ok(())
 }

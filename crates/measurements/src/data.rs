@@ -12,15 +12,6 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// The motion, as it was measured.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Motion<'a> {
-    /// Contraction 1 - l/l0.
-    Contraction(&'a [f64]),
-    /// Length l between the fittings \[m\].
-    Length(&'a [f64]),
-}
-
 /// A set of measurements: at least pressure, motion and force of each row, all finite, in SI.
 ///
 /// Rows with a time or a sweep label form a path: they follow each other, and [`Data::history`] describes the
@@ -93,7 +84,7 @@ impl Data {
         let mut all: Option<Self> = None;
         let mut complaints = Vec::new();
         for (name, path) in files {
-            match (Source::read(name.clone(), path, options), &mut all) {
+            match (Source::read(name, path, options), &mut all) {
                 (Ok(source), None) => all = Some(Self::start(source)),
                 (Ok(source), Some(all)) => complaints.extend(all.add(source).err()),
                 (Err(complaint), _) => complaints.push(complaint),
@@ -102,7 +93,10 @@ impl Data {
         if !complaints.is_empty() {
             return Err(MeasurementError::of(complaints));
         }
-        all.map(Self::structured).ok_or(MeasurementError::NoFile)
+        all.map(Self::structured).ok_or_else(|| {
+            let what = "no data file is given: name at least one file of CSV, Excel, MATLAB or Parquet, or `-` for standard input";
+            MeasurementError::Request(what.to_owned())
+        })
     }
 
     /// Reads CSV; `origin` is its name in messages.
@@ -141,21 +135,15 @@ impl Data {
             sweeps: Vec::new(),
             between: Vec::new(),
             contradictions: Vec::new(),
-            structure: Structure {
-                stretches: Vec::new(),
-                pressure_stretches: Vec::new(),
-                pressure_band: DeadBand::new(&Resolution::default(), 0, 1.0),
-                resolution: Resolution::default(),
-                band: DeadBand::new(&Resolution::default(), 0, 1.0),
-                scale: 1.0,
-            },
+            structure: Structure::default(),
         }
     }
 
     fn add(&mut self, source: Source) -> Result<(), MeasurementError> {
         let name = &source.file.name;
         if let Some(same) = self.files.iter().find(|file| file.sha256 == source.file.sha256) {
-            return Err(MeasurementError::SameContent { first: same.name.clone(), second: name.clone() });
+            let what = format!("{} and {name} have the same content: name each file once", same.name);
+            return Err(MeasurementError::Request(what));
         }
         let first = self.files[0].name.clone();
         Arc::make_mut(&mut self.columns).append(&source.table.columns, [&first, name])?;
@@ -295,11 +283,8 @@ impl Data {
 
     /// Contraction or length of each row, whichever was measured.
     #[must_use]
-    pub fn motion(&self) -> Motion<'_> {
-        match &self.columns.motion {
-            Trace::Contraction(values) => Motion::Contraction(values),
-            Trace::Length(values) => Motion::Length(values),
-        }
+    pub fn motion(&self) -> &Trace {
+        &self.columns.motion
     }
 
     /// Contraction of each row, 1 - l/l0 if the length was measured. `l0` is the unpressurised length \[m\],
@@ -346,34 +331,10 @@ impl Data {
         self.columns.temperature_k.as_deref()
     }
 
-    /// Largest diameter of each row \[m\].
-    #[must_use]
-    pub fn diameter(&self) -> Option<&[f64]> {
-        self.columns.diameter_m.as_deref()
-    }
-
-    /// Enclosed volume of each row \[m^3\].
-    #[must_use]
-    pub fn volume(&self) -> Option<&[f64]> {
-        self.columns.volume_m3.as_deref()
-    }
-
     /// Standard deviation of the force of each row \[N\].
     #[must_use]
     pub fn force_sd(&self) -> Option<&[f64]> {
         self.columns.force_sd_n.as_deref()
-    }
-
-    /// Number of the load cycle of each row, as stated.
-    #[must_use]
-    pub fn cycle(&self) -> Option<&[i64]> {
-        self.columns.cycle.as_deref()
-    }
-
-    /// Stated direction: +1 shortening, -1 lengthening, 0 at rest. The observed one is in [`Data::history`].
-    #[must_use]
-    pub fn stated_direction(&self) -> Option<&[i8]> {
-        self.columns.direction.as_deref()
     }
 
     /// Index of a row's specimen in [`Data::specimens`].

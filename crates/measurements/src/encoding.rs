@@ -76,7 +76,8 @@ fn checked<'a>(
 ) -> Result<Text<'a>, MeasurementError> {
     if let Some(at) = text.bytes().position(|byte| byte == 0) {
         let line = text.as_bytes()[..at].split(|byte| *byte == b'\n').count();
-        return Err(MeasurementError::NulByte { file: file.to_owned(), line });
+        let what = "holds a NUL byte: it is damaged or no text; export it again as CSV in UTF-8";
+        return Err(MeasurementError::at(file, line, what));
     }
     Ok((text, encoding))
 }

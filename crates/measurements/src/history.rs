@@ -96,7 +96,7 @@ impl Data {
                 } else {
                     (stretches, &shortening[..], self.structure.band)
                 };
-                let driven = &*stretch::told(driven, &sweep.rows, self.stated_direction());
+                let driven = &*stretch::told(driven, &sweep.rows, self.columns().direction.as_deref());
                 let contraction = self.contraction_per_shortening(sweep.specimen, l0);
                 self.follow(sweep, driven, &shortening, contraction, &mut history);
                 if is_isometric {
@@ -110,7 +110,7 @@ impl Data {
                     loops.count(sweep, driven, values, band.width, &mut history.cycle);
                 }
             }
-        } else if let Some(stated) = self.stated_direction() {
+        } else if let Some(stated) = self.columns().direction.as_deref() {
             history.direction = stated.iter().map(|direction| f64::from(*direction)).collect();
             history.approach.clone_from(&history.direction);
             for sweep in self.sweeps() {
@@ -120,7 +120,7 @@ impl Data {
                 history.branch.splice(sweep.rows.clone(), branches);
             }
         }
-        if let Some(cycle) = self.cycle() {
+        if let Some(cycle) = self.columns().cycle.as_deref() {
             history.cycle = cycle.iter().map(|cycle| *cycle as f64).collect();
         }
         history

@@ -65,7 +65,7 @@ pub(crate) fn find(
     let lines: Vec<&str> = text.split(line_end).take(LOOKED_AT).map(without_line_end).collect();
     let Some(start) = lines.iter().position(|line| is_content(line.trim())) else {
         // A header may be in a comment, but rows may not.
-        return Err(MeasurementError::Empty { file: file.to_owned() });
+        return Err(MeasurementError::empty(file));
     };
     checked_length(file, start + 1, lines[start])?;
     let plain = plain(lines[start], separator).map(|(separator, names)| {
@@ -74,12 +74,9 @@ pub(crate) fn find(
     });
     let chosen = match plain {
         Some(plain) if map.entries().is_empty() && is_exact(&plain.names) => plain,
-        plain => best(&lines, start, separator, map).or(plain).ok_or_else(|| MeasurementError::OneField {
-            file: file.to_owned(),
-            line: start + 1,
-            text: crate::quote::quoted(lines[start]),
-            known: crate::heading::known(),
-        })?,
+        plain => best(&lines, start, separator, map)
+            .or(plain)
+            .ok_or_else(|| MeasurementError::one_field(file, start + 1, lines[start]))?,
     };
     let chosen = without_header(&lines, start, map, chosen);
     let mut notes = Vec::new();

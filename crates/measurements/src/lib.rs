@@ -54,13 +54,11 @@ mod tests {
 mod turning;
 mod unit;
 mod window;
-mod wording;
 mod written;
 
-pub use cell_error::CellError;
 pub use column_map::{ColumnEntry, ColumnMap};
 pub use columns::{Columns, Labels, Trace};
-pub use data::{Data, Motion};
+pub use data::Data;
 pub use error::MeasurementError;
 pub use history::History;
 pub use quality::{Disturbance, Finding, FindingKind, LineRange, Quality, QualityOptions, Severity};

@@ -63,7 +63,10 @@ pub(crate) fn without_line_end(line: &str) -> &str {
 pub(crate) fn checked_length(file: &str, line: usize, content: &str) -> Result<(), MeasurementError> {
     let (bytes, limit) = (content.len(), MOST_BYTES_PER_LINE);
     if bytes > limit {
-        return Err(MeasurementError::LineTooLong { file: file.to_owned(), line, bytes, limit });
+        let what = format!(
+            "the line has {bytes} bytes, but at most {limit} are read: put each row on a line of its own"
+        );
+        return Err(MeasurementError::at(file, line, what));
     }
     Ok(())
 }

@@ -34,7 +34,9 @@ impl Data {
     pub fn rows_of_lines(&self, list: &str) -> Result<Vec<usize>, MeasurementError> {
         let mut rows = Vec::new();
         for range in list.split(',').map(str::trim).filter(|range| !range.is_empty()) {
-            let refuse = |why: &str| MeasurementError::Lines { range: range.to_owned(), why: why.to_owned() };
+            let refuse = |why: &str| {
+                MeasurementError::Request(format!("lines `{range}`: {why}; write such as `12, 33-40`"))
+            };
             let (name, lines) =
                 range.rsplit_once(FILE).map_or((None, range), |(name, lines)| (Some(name), lines));
             let file = match name {

@@ -261,13 +261,13 @@ fn refused(file: &str, slots: &[Slot], rows: &[usize], open: &[(usize, Vec<Possi
         instead.extend(force.map(|(place, symbol)| entry(&slots[place], symbol)));
     }
     let first = &slots[open[0].0].heading;
-    MeasurementError::OpenUnit {
-        file: file.to_owned(),
-        line: first.open_unit.unwrap_or_default(),
-        what: whats.join("; "),
-        example: first.field.example(),
-        instead: instead.join(", "),
-    }
+    let what = format!(
+        "{}: write the unit in brackets behind the name, such as `{}`, or say it, such as `--columns \"{}\"`",
+        whats.join("; "),
+        first.field.example(),
+        instead.join(", ")
+    );
+    MeasurementError::at(file, first.open_unit.unwrap_or_default(), what)
 }
 
 /// The entry of a column for `--columns`.

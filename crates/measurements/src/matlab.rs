@@ -41,13 +41,12 @@ struct Variable {
 /// Reads a file of MATLAB. `file` is its name, for messages.
 pub(crate) fn read(file: &str, bytes: &[u8], options: &ReadOptions) -> Result<Table, MeasurementError> {
     if bytes.starts_with(b"MATLAB 7.3") {
-        return Err(MeasurementError::OtherFormat {
-            file: file.to_owned(),
-            what: "a file of MATLAB 7.3, which is HDF5",
-            instead: "load it in MATLAB and write `save('x.mat','-v7')`",
-        });
+        let what =
+            "is a file of MATLAB 7.3, which is HDF5: load it in MATLAB and write `save('x.mat','-v7')`";
+        return Err(MeasurementError::of_file(file, what));
     }
-    let damaged = || MeasurementError::Matlab { file: file.to_owned() };
+    let what = "is a damaged or cut-off file of MATLAB: write it again with `save('x.mat','-v7')`";
+    let damaged = || MeasurementError::of_file(file, what);
     let mut all = Vec::new();
     let is_big = match bytes.get(126..START) {
         Some(b"IM") => false,
@@ -59,14 +58,11 @@ pub(crate) fn read(file: &str, bytes: &[u8], options: &ReadOptions) -> Result<Ta
     let rows = all.iter().map(|variable| variable.values.len()).filter(|length| *length > 1);
     let count = |rows: usize| all.iter().filter(|variable| variable.values.len() == rows).count();
     let Some(rows) = rows.max_by_key(|rows| (count(*rows), *rows)) else {
-        return Err(MeasurementError::NoVectors { file: file.to_owned() });
+        let what = "holds no numeric vectors: store each column as a variable or as a field of a structure (a `table` is none: `writetable` writes it as CSV)";
+        return Err(MeasurementError::of_file(file, what));
     };
     if rows > MOST_ROWS {
-        return Err(MeasurementError::TooManyRows {
-            file: file.to_owned(),
-            line: MOST_ROWS + 1,
-            limit: MOST_ROWS,
-        });
+        return Err(MeasurementError::too_many_rows(file, MOST_ROWS + 1));
     }
     let (columns, others): (Vec<Variable>, Vec<Variable>) =
         all.into_iter().partition(|variable| variable.values.len() == rows);

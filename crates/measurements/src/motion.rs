@@ -32,7 +32,8 @@ pub(crate) fn settle(
     let pairs: Vec<[f64; 2]> =
         rows(is_good).map(|row| [slots[length].numbers()[row], slots[contraction].numbers()[row]]).collect();
     if !are_one(&pairs) {
-        return Err(MeasurementError::BothMotions { file: file.to_owned() });
+        let what = "`contraction` and `length` are both given, and do not follow from one another: leave out the one that was computed (most rigs measure `length`)";
+        return Err(MeasurementError::of_file(file, what));
     }
     let text = slots[contraction].heading.text.clone();
     note(reading, &text, None, "ignored: it follows from the length");
@@ -66,7 +67,11 @@ fn displacement(
 ) -> Result<(), MeasurementError> {
     let heading = slots[place].heading.clone();
     let Some(l0) = options.l0_m.filter(|l0| l0.is_finite() && *l0 > 0.0) else {
-        return Err(MeasurementError::NoRestLength { file: file.to_owned(), column: heading.text });
+        let what = format!(
+            "the column `{}` is a displacement, whose zero is the length of the unpressurised muscle: name the muscle, or write `length` or `contraction` instead",
+            heading.text
+        );
+        return Err(MeasurementError::of_file(file, what));
     };
     let values = slots[place].numbers();
     let is_length = !heading.is_settled

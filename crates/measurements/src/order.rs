@@ -121,13 +121,13 @@ fn sort(
     let backward: Vec<usize> = as_read.windows(2).filter(|p| time[p[1]] < time[p[0]]).map(|p| p[1]).collect();
     let why: Vec<String> =
         shares.iter().map(|(name, share)| format!("{name} {share:.1} times as far")).collect();
-    Err(MeasurementError::TimeShuffled {
-        file: file.to_owned(),
-        line: backward.first().map_or(0, |row| lines[*row] as usize),
-        backward: backward.len(),
-        rows: as_read.len(),
-        why: why.join(", "),
-    })
+    let what = format!(
+        "the time goes back at {} of {} rows, and sorted by time the readings jump ({}): sort the rows as they were measured, number the runs in a column `sweep`, or leave out the column `time` if the rows are a static map",
+        backward.len(),
+        as_read.len(),
+        why.join(", ")
+    );
+    Err(MeasurementError::at(file, backward.first().map_or(0, |row| lines[*row] as usize), what))
 }
 
 /// Change of the readings from row to row in one order relative to another. Rows that are neighbours in both

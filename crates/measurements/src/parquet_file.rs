@@ -55,7 +55,7 @@ pub(crate) fn read<R: ChunkReader + 'static>(
     let expected = rows.first().copied().unwrap_or(0);
     if let Some(found) = rows.iter().find(|rows| **rows != expected) {
         let why = format!("its columns have {expected} and {found} rows");
-        return Err(MeasurementError::Parquet { file: file.to_owned(), why, instead: AGAIN });
+        return Err(no_parquet(file, &why, AGAIN));
     }
     let last = u32::try_from(expected).unwrap_or(u32::MAX);
     draft.lines = (1..=last).collect();
@@ -82,7 +82,7 @@ impl Column<'_> {
     fn leave_gap(&mut self) {
         self.take(|slot| {
             slot.push_gap();
-            Err(CellError::Empty)
+            Err(CellError::empty())
         });
     }
 }
@@ -105,7 +105,12 @@ fn refused(file: &str, error: &ParquetError) -> MeasurementError {
     } else {
         (says.to_owned(), AGAIN)
     };
-    MeasurementError::Parquet { file: file.to_owned(), why: quoted(&why), instead }
+    no_parquet(file, &quoted(&why), instead)
+}
+
+/// The file claims to be Parquet, but can't be read as such.
+pub(crate) fn no_parquet(file: &str, why: &str, instead: &str) -> MeasurementError {
+    MeasurementError::of_file(file, format!("can't be read as Parquet ({why}): {instead}"))
 }
 
 /// Whether integers are unsigned.
@@ -181,11 +186,11 @@ fn checked_type(file: &str, column: &ColumnDescriptor, heading: &str) -> Result<
         None if column.converted_type() == ConvertedType::NONE => physical.to_string(),
         None => format!("{physical} as {}", column.converted_type()),
     };
-    Err(MeasurementError::ParquetType {
-        file: file.to_owned(),
-        column: heading.to_owned(),
-        found: quoted(&found),
-    })
+    let what = format!(
+        "column `{heading}` has the Parquet type {}: store it as double, float, int64, int32 or string",
+        quoted(&found)
+    );
+    Err(MeasurementError::of_file(file, what))
 }
 
 /// Why a column can't be read; the row is the one after the last readable one.
@@ -198,9 +203,7 @@ impl Problem {
     fn at(self, file: &str, rows: usize) -> MeasurementError {
         match self {
             Self::Reader(error) => refused(file, &error),
-            Self::TooMany => {
-                MeasurementError::TooManyRows { file: file.to_owned(), line: rows + 1, limit: MOST_ROWS }
-            }
+            Self::TooMany => MeasurementError::too_many_rows(file, rows + 1),
         }
     }
 }
@@ -219,7 +222,7 @@ fn texts(reader: ColumnReaderImpl<ByteArrayType>, column: &mut Column<'_>) -> Re
             return slot.push_text(text.trim(), Decimal::Point);
         }
         slot.push_gap();
-        Err(CellError::NotUtf8)
+        Err(CellError::new("no text", ""))
     })
 }
 

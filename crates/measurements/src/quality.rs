@@ -255,8 +255,8 @@ impl<'a> Gate<'a> {
         let (factor, unit) = match (column, self.data.motion()) {
             ("force", _) => (1.0, "N"),
             ("pressure", _) => (1e-5, "bar"),
-            (_, crate::Motion::Contraction(_)) => (100.0, "%"),
-            (_, crate::Motion::Length(_)) => (1e3, "mm"),
+            (_, crate::Trace::Contraction(_)) => (100.0, "%"),
+            (_, crate::Trace::Length(_)) => (1e3, "mm"),
         };
         format!("{} {unit}", quantisation::four(factor * value))
     }
@@ -273,8 +273,8 @@ impl<'a> Gate<'a> {
 
     fn motion_name(&self) -> &'static str {
         match self.data.motion() {
-            crate::Motion::Contraction(_) => "contraction",
-            crate::Motion::Length(_) => "length",
+            crate::Trace::Contraction(_) => "contraction",
+            crate::Trace::Length(_) => "length",
         }
     }
 

@@ -1,17 +1,13 @@
 //! Quotes user text in messages: short, on one line, printable.
 
+use bulge_muscles::units::shortened_to;
+
 /// Longest quotation in characters.
 const LONGEST: usize = 60;
 
 /// At most [`LONGEST`] characters of a text, without control characters.
 pub(crate) fn quoted(text: &str) -> String {
-    let printable = |c: char| if c.is_control() || c == '\u{feff}' { '\u{fffd}' } else { c };
-    let trimmed = text.trim();
-    let mut out: String = trimmed.chars().take(LONGEST).map(printable).collect();
-    if trimmed.chars().nth(LONGEST).is_some() {
-        out.push('\u{2026}');
-    }
-    out
+    shortened_to(LONGEST, text).replace('\u{feff}', "\u{fffd}")
 }
 
 #[cfg(test)]

@@ -296,7 +296,7 @@ impl Data {
         let motion = self.columns().motion.values();
         let mut states: HashMap<(u32, u64, u64, i8), Comparison> = HashMap::new();
         for (row, force) in self.force().iter().enumerate() {
-            let direction = self.stated_direction().map_or(0, |stated| stated[row]);
+            let direction = self.columns().direction.as_deref().map_or(0, |stated| stated[row]);
             let key =
                 (self.specimen_of(row), self.pressure()[row].to_bits(), motion[row].to_bits(), direction);
             states.entry(key).or_default().add(*force, 1.0);

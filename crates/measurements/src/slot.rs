@@ -2,7 +2,7 @@
 //! set.
 
 use crate::cell::{self, Decimal};
-use crate::cell_error::CellError;
+use crate::cell_error::{CellError, OTHER_UNIT};
 use crate::clock::{Clock, instant};
 use crate::columns::{Columns, Labels, Trace};
 use crate::heading::{Field, Heading};
@@ -75,7 +75,7 @@ impl Slot {
                     cell::written(text, decimal).map(|number| self.heading.scale.si(number))
                 };
                 let value = match found {
-                    Err(problem @ CellError::UnitInside { .. }) => {
+                    Err(problem) if problem.kind == OTHER_UNIT => {
                         self.units_inside += 1;
                         self.heading.with_unit_inside(text).ok_or(problem)?
                     }
@@ -85,7 +85,7 @@ impl Slot {
             }
             Values::Counts(values) => values.push(cell::whole(text, decimal)?),
             Values::Directions(values) => values.push(cell::direction(text)?),
-            Values::Labels(_) => return Err(CellError::Empty),
+            Values::Labels(_) => return Err(CellError::empty()),
         }
         Ok(())
     }
@@ -106,9 +106,10 @@ impl Slot {
                 values.push(cell::measurable(value, || number.to_string())?);
             }
             Values::Counts(values) => values.push(cell::whole_of(number, &number.to_string())?),
-            Values::Directions(values) => values.push(
-                cell::sign(number).ok_or_else(|| CellError::NotADirection { text: number.to_string() })?,
-            ),
+            Values::Directions(values) => {
+                values
+                    .push(cell::sign(number).ok_or_else(|| CellError::not_a_direction(number.to_string()))?);
+            }
             Values::Labels(labels) => labels.push(&number.to_string()),
         }
         Ok(())
@@ -150,11 +151,11 @@ fn in_time(
 ) -> Result<f64, CellError> {
     if let (Some(now), true) = (instant(text), clock.is_some() || is_first) {
         let since = clock.get_or_insert_default().since_start(now);
-        return since.ok_or_else(|| CellError::Clock { text: quoted(text) });
+        return since.ok_or_else(|| CellError::new("a time of day among numbers", quoted(text)));
     }
     let number = cell::written(text, decimal)?;
     if clock.is_some() {
-        return Err(CellError::NoClock { text: quoted(text) });
+        return Err(CellError::new("no time of day", quoted(text)));
     }
     Ok(heading.scale.si(number))
 }

@@ -68,22 +68,21 @@ pub(crate) struct Source {
 impl Source {
     /// Reads a file of the kind that its first bytes show, otherwise as text. `book.xlsx#name` is one sheet
     /// of a workbook.
-    pub(crate) fn read(name: String, path: &Path, options: &ReadOptions) -> Result<Self, MeasurementError> {
+    pub(crate) fn read(name: &str, path: &Path, options: &ReadOptions) -> Result<Self, MeasurementError> {
         let is_stdin = path == Path::new(STDIN);
         let (path, sheet) = sheet_of(path);
-        let bytes = if is_stdin { read_all(&name, std::io::stdin().lock()) } else { read_file(&name, path) }?;
+        let bytes = if is_stdin { read_all(name, std::io::stdin().lock()) } else { read_file(name, path) }?;
         let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
         let is_parquet = bytes.starts_with(PARQUET_MAGIC);
         if !is_parquet && ["parquet", "pq"].contains(&extension.as_str()) {
-            let why = "it does not begin as Parquet does".to_owned();
-            let instead = "if it is CSV, name it `.csv`; else write it again";
-            return Err(MeasurementError::Parquet { file: name, why, instead });
+            let cure = "if it is CSV, name it `.csv`; else write it again";
+            return Err(parquet_file::no_parquet(name, "it does not begin as Parquet does", cure));
         }
         if !is_parquet {
-            return Self::sheet(&name, &bytes, sheet, options);
+            return Self::sheet(name, &bytes, sheet, options);
         }
         let sha256 = fingerprint(&bytes);
-        Ok(Self::new(&name, sha256, parquet_file::read(&name, bytes::Bytes::from(bytes), options)?))
+        Ok(Self::new(name, sha256, parquet_file::read(name, bytes::Bytes::from(bytes), options)?))
     }
 
     /// The name of a path in messages.
@@ -103,16 +102,14 @@ impl Source {
         sheet: Option<&str>,
         options: &ReadOptions,
     ) -> Result<Self, MeasurementError> {
-        let foreign = |file: String| {
-            let text = bytes.trim_ascii_start();
-            let known =
-                FOREIGN.iter().find(|(start, _, _)| bytes.starts_with(start) || text.starts_with(start));
-            known.map(|(_, what, instead)| MeasurementError::OtherFormat { file, what, instead })
-        };
+        let text = bytes.trim_ascii_start();
+        let mut foreign = FOREIGN.iter();
         let table = if spreadsheet::is_one(bytes) {
             spreadsheet::read(name, bytes, sheet, options)?
-        } else if let Some(error) = foreign(name.to_owned()) {
-            return Err(error);
+        } else if let Some((_, what, instead)) =
+            foreign.find(|(start, _, _)| bytes.starts_with(start) || text.starts_with(start))
+        {
+            return Err(MeasurementError::of_file(name, format!("is {what}: {instead}")));
         } else if matlab::is_one(bytes) {
             matlab::read(name, bytes, options)?
         } else {
@@ -163,8 +160,8 @@ fn sheet_of(path: &Path) -> (&Path, Option<&str>) {
     }
 }
 
-fn unreadable(file: &str, why: &std::io::Error) -> MeasurementError {
-    MeasurementError::Unreadable { file: file.to_owned(), why: why.to_string() }
+fn unreadable(file: &str, why: impl std::fmt::Display) -> MeasurementError {
+    MeasurementError::of_file(file, format!("can't be read ({why}): check the name and the permissions"))
 }
 
 fn too_large(file: &str, bytes: u64) -> MeasurementError {
@@ -172,11 +169,10 @@ fn too_large(file: &str, bytes: u64) -> MeasurementError {
 }
 
 fn read_file(name: &str, path: &Path) -> Result<Vec<u8>, MeasurementError> {
-    let file = File::open(path).map_err(|error| unreadable(name, &error))?;
-    let metadata = file.metadata().map_err(|error| unreadable(name, &error))?;
+    let file = File::open(path).map_err(|error| unreadable(name, error))?;
+    let metadata = file.metadata().map_err(|error| unreadable(name, error))?;
     if metadata.is_dir() {
-        let why = "it is a folder".to_owned();
-        return Err(MeasurementError::Unreadable { file: name.to_owned(), why });
+        return Err(unreadable(name, "it is a folder"));
     }
     if metadata.len() > MOST_BYTES {
         return Err(too_large(name, metadata.len()));
@@ -186,7 +182,7 @@ fn read_file(name: &str, path: &Path) -> Result<Vec<u8>, MeasurementError> {
 
 fn read_all(name: &str, source: impl Read) -> Result<Vec<u8>, MeasurementError> {
     let mut bytes = Vec::new();
-    source.take(MOST_BYTES + 1).read_to_end(&mut bytes).map_err(|error| unreadable(name, &error))?;
+    source.take(MOST_BYTES + 1).read_to_end(&mut bytes).map_err(|error| unreadable(name, error))?;
     if bytes.len() as u64 > MOST_BYTES { Err(too_large(name, bytes.len() as u64)) } else { Ok(bytes) }
 }
 
@@ -196,30 +192,37 @@ fn checked(file: &str, columns: &Columns) -> Result<(), MeasurementError> {
     let lengths = columns.numbers().map(|(name, values)| (name, values.len())).chain(columns.marks());
     for (name, found) in lengths {
         if found != expected {
-            return Err(MeasurementError::LengthsDiffer { name, found, expected });
+            let what = format!(
+                "column `{name}` has {found} values, `pressure` has {expected}: give one value per row"
+            );
+            return Err(MeasurementError::Request(what));
         }
     }
     if expected == 0 {
-        return Err(MeasurementError::NoRows { file: file.to_owned() });
+        return Err(MeasurementError::no_rows(file));
     }
     if expected > csv_file::MOST_ROWS {
-        let limit = csv_file::MOST_ROWS;
-        return Err(MeasurementError::TooManyRows { file: file.to_owned(), line: limit + 1, limit });
+        return Err(MeasurementError::too_many_rows(file, csv_file::MOST_ROWS + 1));
     }
-    let at = |row: usize, column: &str, problem| MeasurementError::Cell {
-        file: file.to_owned(),
-        line: row + 1,
-        column: column.to_owned(),
-        problem,
+    let at = |row: usize, column: &str, problem: &CellError, cure: &str| {
+        let what = format!("column `{column}`: `{}` is {}{cure}", problem.text, problem.kind);
+        MeasurementError::at(file, row + 1, what)
     };
     for (name, values) in columns.numbers() {
         for (row, value) in values.iter().enumerate() {
-            cell::measurable(*value, || value.to_string()).map_err(|problem| at(row, name, problem))?;
+            let cure = if value.is_finite() {
+                " (1e30 in SI units): check the number and its unit"
+            } else {
+                ": leave out the row, or write what was read"
+            };
+            cell::measurable(*value, || value.to_string())
+                .map_err(|problem| at(row, name, &problem, cure))?;
         }
     }
     let directions = columns.direction.iter().flatten();
     if let Some((row, value)) = directions.enumerate().find(|(_, value)| value.unsigned_abs() > 1) {
-        return Err(at(row, "direction", CellError::NotADirection { text: value.to_string() }));
+        let cure = ": write `shortening`, `contracting`, `up` or `+1`; `lengthening`, `extending`, `down` or `-1`; `rest` or `0`";
+        return Err(at(row, "direction", &CellError::not_a_direction(value.to_string()), cure));
     }
     Ok(())
 }

@@ -34,10 +34,11 @@ pub(crate) fn read(
     if let Some(sheet) = sheet {
         if names.iter().any(|name| name == sheet) {
             return one(&mut book, file, sheet, options)
-                .unwrap_or_else(|| Err(MeasurementError::Empty { file: file.to_owned() }));
+                .unwrap_or_else(|| Err(MeasurementError::empty(file)));
         }
         let sheets = names.iter().map(|name| format!("`{}`", quoted(name))).collect::<Vec<_>>().join(", ");
-        return Err(MeasurementError::NoSheet { file: file.to_owned(), sheet: quoted(sheet), sheets });
+        let what = format!("there is no sheet `{}`: there are {sheets}", quoted(sheet));
+        return Err(MeasurementError::of_file(file, what));
     }
     let mut complaint = None;
     for (place, name) in names.iter().enumerate() {
@@ -54,7 +55,7 @@ pub(crate) fn read(
             None => {}
         }
     }
-    Err(complaint.unwrap_or_else(|| MeasurementError::Empty { file: file.to_owned() }))
+    Err(complaint.unwrap_or_else(|| MeasurementError::empty(file)))
 }
 
 /// Reports which sheet was read, and which other tables there are.
@@ -100,7 +101,9 @@ fn one(
 }
 
 fn refused(file: &str, why: &XlsxError) -> MeasurementError {
-    MeasurementError::Workbook { file: file.to_owned(), why: quoted(&why.to_string()) }
+    let why = quoted(&why.to_string());
+    let cure = "unpack it if it is another archive, save it as .xlsx again, or export the sheet as CSV";
+    MeasurementError::of_file(file, format!("can't be read as an Excel workbook ({why}): {cure}"))
 }
 
 /// A sheet as tab-separated lines with the same line numbers.

@@ -22,7 +22,7 @@ impl Stretch {
 }
 
 /// The smallest motion that isn't noise.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct DeadBand {
     /// A reversal counts if the motion goes back by more than this.
     pub(crate) width: f64,

@@ -4,7 +4,7 @@ use crate::resolution::Resolution;
 use crate::stretch::{DeadBand, Stretch};
 
 /// Properties derived from columns and sweeps.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(crate) struct Structure {
     /// The monotone stretches of the length in each sweep; a single rest if the length is held; none in a
     /// static map.

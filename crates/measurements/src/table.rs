@@ -77,11 +77,11 @@ impl Draft {
     #[cold]
     pub(crate) fn spoilt(&mut self, slot: usize, row: usize, problem: &CellError) {
         let column = self.slots[slot].heading.text.clone();
-        let reason = || match problem.text() {
-            Some(text) => format!("`{column}`: `{text}` is {}", problem.kind()),
-            None => format!("`{column}` is {}", problem.kind()),
-        };
-        self.problems[slot].push(index(row), &format!("`{column}` is {}", problem.kind()), reason);
+        let CellError { kind, text } = problem;
+        let says = format!("`{column}` is {kind}");
+        let reason =
+            || if text.is_empty() { says.clone() } else { format!("`{column}`: `{text}` is {kind}") };
+        self.problems[slot].push(index(row), &says, reason);
     }
 
     /// Marks a whole row as unusable; its fields are gaps.
@@ -96,7 +96,7 @@ impl Draft {
     pub(crate) fn finish(mut self, file: &str, options: &ReadOptions) -> Result<Table, MeasurementError> {
         let rows = self.lines.len();
         if rows == 0 {
-            return Err(MeasurementError::NoRows { file: file.to_owned() });
+            return Err(MeasurementError::no_rows(file));
         }
         self.drop_columns(rows);
         let mut reading = Reading { columns: self.uses, notes: self.notes, ..Reading::default() };
@@ -192,7 +192,11 @@ fn too_many(
     let is_ragged = kinds.first().is_some_and(|(kind, _, _)| kind.contains("more fields"));
     let hint =
         if is_ragged { "; if numbers have decimal commas, separate the columns with semicolons" } else { "" };
-    MeasurementError::TooManyUnusable { file: file.to_owned(), unusable, rows: lines.len(), reasons, hint }
+    let what = format!(
+        "{unusable} of {} rows can't be used, more than a fifth:{reasons}\ncorrect these rows, or leave them out{hint}",
+        lines.len()
+    );
+    MeasurementError::of_file(file, what)
 }
 
 fn index(row: usize) -> u32 {

@@ -123,11 +123,12 @@ impl Mesh {
                     .iter()
                     .take_while(|(z, _)| *z <= place[2] + close)
                     .find(|(_, other)| norm(sub(self.nodes[*other], place)) <= close);
-                found.map(|(_, other)| (*node, *other)).ok_or_else(|| MembraneError::NoPartner {
-                    node: self.number(*node),
-                    group: group.to_owned(),
-                    partner: partner.to_owned(),
-                    degrees: angle.to_degrees(),
+                found.map(|(_, other)| (*node, *other)).ok_or_else(|| {
+                    MembraneError::Structure(format!(
+                        "node {} of `{group}` has no partner in `{partner}`, {:.6} degrees about z: the two edges must have the same nodes",
+                        self.number(*node),
+                        angle.to_degrees()
+                    ))
                 })
             })
             .collect()

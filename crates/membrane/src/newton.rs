@@ -208,11 +208,13 @@ impl Solver {
                 break;
             }
         }
-        Err(MembraneError::NotConverged {
-            iterations: self.effort.iterations - begun,
-            residual: last,
-            asked: self.tolerance.residual,
-        })
+        Err(self.not_converged(begun, last))
+    }
+
+    /// No equilibrium since a number of iterations; `residual` is the last one.
+    fn not_converged(&self, begun: usize, residual: f64) -> MembraneError {
+        let iterations = self.effort.iterations - begun;
+        MembraneError::NotConverged { iterations, residual, asked: self.tolerance.residual }
     }
 
     /// Takes one accepted step; false if none is found.
@@ -372,11 +374,7 @@ impl Solver {
                 break;
             }
         }
-        Err(MembraneError::NotConverged {
-            iterations: self.effort.iterations - begun,
-            residual: last,
-            asked: self.tolerance.residual,
-        })
+        Err(self.not_converged(begun, last))
     }
 }
 

@@ -154,7 +154,7 @@ impl Structure {
         }
         let (dofs, start) = held::dofs(mesh, supports, fittings, &is_used, &is_flat)?;
         if dofs.free == 0 {
-            return Err(MembraneError::NothingMoves);
+            return Err(MembraneError::nothing_moves());
         }
         rigid::check(mesh, &groups, &dofs, &is_flat)?;
         let numbers: usize = groups
@@ -244,10 +244,12 @@ impl Source<'_> {
             if (self.is_turned)(i) {
                 (places, cell) = (backwards(self.block.kind, places), backwards(self.block.kind, cell));
             }
-            elements.push(element(&places).ok_or_else(|| MembraneError::Element {
-                element: self.block.numbers.get(i).copied().unwrap_or(i as u64 + 1),
-                group: self.block.group.clone(),
-                what,
+            elements.push(element(&places).ok_or_else(|| {
+                let (number, group) = (self.block.numbers.get(i), &self.block.group);
+                MembraneError::Structure(format!(
+                    "element {} of `{group}` has no {what}, or folds over itself: give it nodes that lie apart",
+                    number.copied().unwrap_or(i as u64 + 1)
+                ))
             })?);
             nodes.push(cell);
         }
@@ -275,7 +277,10 @@ impl Source<'_> {
             (Part::Cable { thread, share }, CellKind::Line3) => {
                 Ok(Group::Cable3(self.built("length", |x| Cable::new(x, *thread, *share))?))
             }
-            (_, kind) => Err(MembraneError::WrongCells { group: self.block.group.clone(), kind }),
+            (_, kind) => Err(MembraneError::Structure(format!(
+                "`{}` has cells of the kind {kind:?}: membranes are made of triangles, cables and membranes of revolution of lines",
+                self.block.group
+            ))),
         }
     }
 }

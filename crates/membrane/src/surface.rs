@@ -48,7 +48,9 @@ pub(crate) fn membranes(mesh: &Mesh, parts: &[(String, Part)]) -> Result<Vec<usi
         for (b, block) in mesh.blocks.iter().enumerate() {
             if block.group == *name && block.kind != CellKind::Point {
                 if blocks.contains(&b) {
-                    return Err(MembraneError::TwoParts { group: name.clone() });
+                    return Err(MembraneError::Structure(format!(
+                        "`{name}` has two parts: only the layers of a membrane of revolution can share a group"
+                    )));
                 }
                 blocks.push(b);
             }
@@ -110,17 +112,13 @@ fn sides(mesh: &Mesh, blocks: &[usize]) -> Vec<Side> {
 
 fn check_sides(mesh: &Mesh, sides: &[Side], rims: &Rims<'_>) -> Result<(), MembraneError> {
     for found in sides.chunk_by(|a, b| a.nodes == b.nodes) {
-        let (element, group) = name(mesh, found[0].cell);
-        let nodes = found[0].nodes.map(|node| mesh.number(node));
         match found {
-            [open] if !rims.closes(open.nodes)? => {
-                return Err(MembraneError::Hole { element, group, nodes });
-            }
+            [open] if !rims.closes(open.nodes)? => return Err(hole(mesh, open.cell, open.nodes)),
             [one, two] if one.middle != two.middle => {
                 return Err(mixed_orders(mesh, one.cell, two.cell, one.nodes));
             }
-            [_] | [_, _] => (),
-            all => return Err(MembraneError::Branch { element, group, nodes, count: all.len() }),
+            [] | [_] | [_, _] => (),
+            [first, ..] => return Err(branch(mesh, first.cell, first.nodes, found.len())),
         }
     }
     Ok(())
@@ -147,10 +145,28 @@ fn check_cables(mesh: &Mesh, sides: &[Side], cables: &[usize]) -> Result<(), Mem
     Ok(())
 }
 
+/// Only one of two neighbours has a middle node on their common edge.
 fn mixed_orders(mesh: &Mesh, one: Cell, two: Cell, nodes: [usize; 2]) -> MembraneError {
-    let ((element, group), (other, other_group)) = (name(mesh, one), name(mesh, two));
-    let nodes = nodes.map(|node| mesh.number(node));
-    MembraneError::MixedOrders { element, group, other, other_group, nodes }
+    let (one, two, [a, b]) = (name(mesh, one), name(mesh, two), nodes.map(|node| mesh.number(node)));
+    MembraneError::Structure(format!(
+        "{one} and {two} share the edge between the nodes {a} and {b}, but not the node in its middle: mesh all with the same order"
+    ))
+}
+
+/// An open edge isn't closed by anything.
+fn hole(mesh: &Mesh, cell: Cell, nodes: [usize; 2]) -> MembraneError {
+    let (element, [a, b]) = (name(mesh, cell), nodes.map(|node| mesh.number(node)));
+    MembraneError::Structure(format!(
+        "{element} has an open edge between the nodes {a} and {b} with nothing there: the gas would leave; close the mesh, or hold the edge"
+    ))
+}
+
+/// More than two elements share one edge.
+fn branch(mesh: &Mesh, cell: Cell, nodes: [usize; 2], count: usize) -> MembraneError {
+    let (element, [a, b]) = (name(mesh, cell), nodes.map(|node| mesh.number(node)));
+    MembraneError::Structure(format!(
+        "{count} elements meet at the edge between the nodes {a} and {b} (one is {element}): a membrane has two sides only"
+    ))
 }
 
 /// Orients each connected surface consistently: outwards, if its volume determines the direction.
@@ -189,8 +205,10 @@ fn spread(
                     match is_turned.get(other) {
                         Some(there) if *there == wanted => (),
                         Some(_) => {
-                            let (element, group) = name(mesh, *other);
-                            return Err(MembraneError::Twisted { element, group });
+                            let element = name(mesh, *other);
+                            return Err(MembraneError::Structure(format!(
+                                "the membrane is twisted at {element}: it has no inside"
+                            )));
                         }
                         None => {
                             is_turned.insert(*other, wanted);
@@ -237,13 +255,11 @@ fn chain(
     let mut nodes: Vec<_> = at.iter().collect();
     nodes.sort_by_key(|(node, _)| **node);
     for (node, ends) in &nodes {
-        let number = mesh.number(**node);
-        let (element, group) = name(mesh, ends[0].0);
         let is_closed = rims.holds(**node) || mesh.nodes[**node][0] <= 1e-9 * size;
         match ends.len() {
-            1 if !is_closed => return Err(MembraneError::Hole { element, group, nodes: [number; 2] }),
+            1 if !is_closed => return Err(hole(mesh, ends[0].0, [**node; 2])),
             1 | 2 => (),
-            count => return Err(MembraneError::Branch { element, group, nodes: [number; 2], count }),
+            count => return Err(branch(mesh, ends[0].0, [**node; 2], count)),
         }
     }
     // From one element to the next, all in one direction; upwards if that can be decided.
@@ -283,9 +299,9 @@ fn chain(
 }
 
 /// Number and group of a cell, for messages.
-fn name(mesh: &Mesh, (b, c): Cell) -> (u64, String) {
+fn name(mesh: &Mesh, (b, c): Cell) -> String {
     let Block { numbers, group, .. } = &mesh.blocks[b];
-    (numbers.get(c).copied().unwrap_or(c as u64 + 1), group.clone())
+    format!("element {} of `{group}`", numbers.get(c).copied().unwrap_or(c as u64 + 1))
 }
 
 /// The nodes of a cell in reverse order.
@@ -356,19 +372,19 @@ mod tests {
         let mut mesh = tetrahedron();
         let face = mesh.blocks[0].cells.split_off(9);
         let error = oriented(&mesh, &[]).err().unwrap();
-        assert!(matches!(error, MembraneError::Hole { nodes: [11, 13], .. }), "{error}");
+        assert!(error.to_string().contains("an open edge between the nodes 11 and 13 "), "{error}");
         // If its rim is held, the surface is closed.
         assert!(oriented(&mesh, &[0, 2, 3]).is_ok());
         mesh.blocks[0].cells.extend(face.iter().chain(&face));
         mesh.blocks[0].numbers.push(25);
         let error = oriented(&mesh, &[]).err().unwrap();
-        assert!(matches!(error, MembraneError::Branch { count: 3, .. }), "{error}");
+        assert!(error.to_string().starts_with("3 elements meet at the edge"), "{error}");
         // A strip of triangles with a half twist, held at its edge.
         let strip = [[0, 1, 2], [1, 2, 3], [2, 3, 4], [3, 4, 0], [4, 0, 1]];
         mesh.nodes = (0..5).map(|i| [f64::from(i).cos(), f64::from(i).sin(), f64::from(i * i)]).collect();
         mesh.blocks[0].cells = strip.concat();
         let error = oriented(&mesh, &[0, 1, 2, 3, 4]).err().unwrap();
-        assert!(matches!(error, MembraneError::Twisted { .. }), "{error}");
+        assert!(error.to_string().starts_with("the membrane is twisted at element"), "{error}");
     }
 
     #[test]
@@ -390,6 +406,6 @@ mod tests {
         let down = line([2.0, 1.0, 0.0], vec![0, 1, 1, 2]);
         assert!(oriented(&down, &[0, 2]).unwrap().is_turned(0, 1));
         let error = oriented(&mesh, &[0]).err().unwrap();
-        assert!(matches!(error, MembraneError::Hole { nodes: [3, 3], .. }), "{error}");
+        assert!(error.to_string().contains("an open edge between the nodes 3 and 3 "), "{error}");
     }
 }

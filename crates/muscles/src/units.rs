@@ -329,10 +329,16 @@ fn factor_in(wanted: &'static Wanted, text: &str, unit: &str) -> Result<f64, Uni
 /// A quotation for a message: at most 40 characters, on one line, without control characters.
 #[must_use]
 pub fn shortened(text: &str) -> String {
+    shortened_to(40, text)
+}
+
+/// As [`shortened`], of at most so many characters.
+#[must_use]
+pub fn shortened_to(most: usize, text: &str) -> String {
     let printable = |c: char| if c.is_control() { '\u{fffd}' } else { c };
     let trimmed = text.trim();
-    let mut out: String = trimmed.chars().take(40).map(printable).collect();
-    if trimmed.chars().nth(40).is_some() {
+    let mut out: String = trimmed.chars().take(most).map(printable).collect();
+    if trimmed.chars().nth(most).is_some() {
         out.push('\u{2026}');
     }
     out

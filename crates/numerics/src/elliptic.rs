@@ -43,19 +43,6 @@ pub fn incomplete(t: f64, m: f64) -> Pair {
     Pair { f: t * rf, d: t * t2 * rd / 3.0 }
 }
 
-/// `F(phi|m)` and `E(phi|m)` for 0 <= phi < 90 degrees.
-///
-/// ```
-/// let (f, e) = bulge_numerics::elliptic::first_and_second(1.0, 0.5);
-/// assert!((f - 1.083_216_772_845_168_7).abs() < 1e-14);
-/// assert!((e - 0.927_329_883_624_440_1).abs() < 1e-14);
-/// ```
-#[must_use]
-pub fn first_and_second(phi: f64, m: f64) -> (f64, f64) {
-    let pair = incomplete(phi.tan(), m);
-    (pair.f, pair.f - m * pair.d)
-}
-
 /// Carlson's RF(x, y, z) and RD(x, y, z) for positive arguments, sharing the duplications.
 #[must_use]
 pub fn carlson(x: f64, y: f64, z: f64) -> (f64, f64) {

@@ -1,6 +1,6 @@
 //! Measurements: read from files or from the text of a table, and as columns.
 
-use bulge_measurements::{self as measurements, ColumnMap, Motion, QualityOptions, ReadOptions};
+use bulge_measurements::{self as measurements, ColumnMap, QualityOptions, ReadOptions, Trace};
 use bulge_model::read_options;
 use numpy::PyArray1;
 use pyo3::prelude::*;
@@ -99,8 +99,8 @@ impl Data {
         let number = |values: &[f64]| PyArray1::from_slice(py, values);
         columns.set_item("pressure_pa", number(data.pressure()))?;
         match data.motion() {
-            Motion::Contraction(values) => columns.set_item("contraction", number(values))?,
-            Motion::Length(values) => columns.set_item("length_m", number(values))?,
+            Trace::Contraction(values) => columns.set_item("contraction", number(values))?,
+            Trace::Length(values) => columns.set_item("length_m", number(values))?,
         }
         if data.has_force() {
             columns.set_item("force_n", number(data.force()))?;
@@ -108,15 +108,15 @@ impl Data {
         for (name, values) in [
             ("time_s", data.time()),
             ("temperature_k", data.temperature()),
-            ("diameter_m", data.diameter()),
-            ("volume_m3", data.volume()),
+            ("diameter_m", data.columns().diameter_m.as_deref()),
+            ("volume_m3", data.columns().volume_m3.as_deref()),
             ("force_sd_n", data.force_sd()),
         ] {
             if let Some(values) = values {
                 columns.set_item(name, number(values))?;
             }
         }
-        if let Some(values) = data.cycle() {
+        if let Some(values) = data.columns().cycle.as_deref() {
             columns.set_item("cycle", PyArray1::from_slice(py, values))?;
         }
         let mut sweep = vec![0_i64; data.len()];

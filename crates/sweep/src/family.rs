@@ -84,7 +84,7 @@ impl Family {
                 known.card().name == effect && !matches!(known.card().group, Group::Rig | Group::Specimen)
             };
             if !self.effects.iter().any(is_part) {
-                return Err(FamilyError::NoPart { effect: effect.clone() });
+                return Err(FamilyError::no_part(effect));
             }
         }
         Ok(())
@@ -133,7 +133,8 @@ impl Family {
                 Quantity::ElasticGroup => group = Some(*value),
                 Quantity::Parameter(parameter) => {
                     if *parameter == Parameter::Fibres && value.fract() != 0.0 {
-                        return Err(FamilyError::NotWhole { found: *value });
+                        let what = format!("the number of fibres is {value}: it must be a whole number");
+                        return Err(FamilyError::Input(what));
                     }
                     muscle = muscle.with(*parameter, *value)?;
                 }
@@ -155,7 +156,7 @@ impl Family {
             muscle = muscle.with(Parameter::Radius, muscle.length().si() / slenderness)?;
         }
         if let Some(group) = group {
-            let n = f64::from(muscle.fibres().ok_or(FamilyError::NoFibreNumber)?);
+            let n = f64::from(muscle.fibres().ok_or_else(FamilyError::no_fibre_number)?);
             let radius = muscle.end_radius().si();
             let stiffness = pressure * (TAU / n).sin() * radius * radius / group;
             muscle = muscle.with(Parameter::FibreStiffness, stiffness)?;
@@ -426,7 +427,7 @@ impl Member {
                 return Ok(self.by_stated(effects, variable, contraction)?[which]);
             }
             let by = gradient.as_ref().and_then(|gradient| by_variable(gradient, &self.muscle, variable));
-            by.map(|by| by[which]).ok_or(FamilyError::NoVariable { name: variable.name() })
+            by.map(|by| by[which]).ok_or_else(|| FamilyError::no_variable(variable.name()))
         };
         let parts = self.problem.parts();
         let radius = parts.fitting.unwrap_or(parts.radius);
@@ -472,7 +473,7 @@ impl Member {
             Variable::Parameter(Parameter::Fibres) => None,
             Variable::Parameter(parameter) => muscle.get(parameter),
         };
-        let value = value.ok_or(FamilyError::NoVariable { name: variable.name() })?;
+        let value = value.ok_or_else(|| FamilyError::no_variable(variable.name()))?;
         let step = 1e-4 * value.abs().max(1e-3);
         let mut by = [0.0; 2];
         for (times, weight) in [(-2.0, 1.0), (-1.0, -8.0), (1.0, 8.0), (2.0, -1.0)] {

@@ -22,37 +22,9 @@ pub enum FamilyError {
     /// An effect that the muscle file states in a wrong way.
     #[error(transparent)]
     File(#[from] FileError),
-    /// A derivative with respect to a quantity that the muscle doesn't have.
-    #[error("this muscle has no `{name}` to differentiate by: give it one first, with `Muscle::with`")]
-    NoVariable {
-        /// Name of the variable.
-        name: &'static str,
-    },
-    /// An elastic group for a muscle without a number of fibres.
-    #[error("the elastic group p sin(2 pi/n) R^2/EA needs a number of fibres n")]
-    NoFibreNumber,
-    /// An output of inextensible fibres that can't be tabulated from a contraction of 0.
-    #[error(
-        "a table of `{output}` can't begin at a contraction of 0, where the force of inextensible fibres is infinite: begin at \"0.5 %..limit\", say, or leave `{output}` out"
-    )]
-    FromZero {
-        /// Its name.
-        output: String,
-    },
-    /// An axis that varies an effect which is not part of the muscle.
-    #[error(
-        "the effect `{effect}` belongs to a rig or to one specimen: a sweep of the muscle leaves it out, so it can't be an axis"
-    )]
-    NoPart {
-        /// Its name.
-        effect: String,
-    },
-    /// A number of fibres that isn't whole.
-    #[error("the number of fibres is {found}: it must be a whole number")]
-    NotWhole {
-        /// The number.
-        found: f64,
-    },
+    /// An axis or an output that the muscle doesn't have: what is wrong, and what to do instead.
+    #[error("{0}")]
+    Input(String),
 }
 
 impl FamilyError {
@@ -65,5 +37,23 @@ impl FamilyError {
             Self::Model(error) => error.fault(),
             _ => Fault::Input,
         }
+    }
+
+    /// A derivative with respect to a quantity that the muscle doesn't have.
+    pub(crate) fn no_variable(name: &str) -> Self {
+        let cure = "give it one first, with `Muscle::with`";
+        Self::Input(format!("this muscle has no `{name}` to differentiate by: {cure}"))
+    }
+
+    /// An axis that varies an effect which is not part of the muscle.
+    pub(crate) fn no_part(effect: &str) -> Self {
+        Self::Input(format!(
+            "the effect `{effect}` belongs to a rig or to one specimen: a sweep of the muscle leaves it out, so it can't be an axis"
+        ))
+    }
+
+    /// An elastic group for a muscle without a number of fibres.
+    pub(crate) fn no_fibre_number() -> Self {
+        Self::Input("the elastic group p sin(2 pi/n) R^2/EA needs a number of fibres n".to_owned())
     }
 }

@@ -26,6 +26,14 @@ impl Variable {
             Self::Parameter(parameter) => parameter.name(),
         }
     }
+
+    /// Its SI unit; "1" for a pure number.
+    const fn unit(self) -> &'static str {
+        match self {
+            Self::Pressure => "Pa",
+            Self::Parameter(parameter) => parameter.unit(),
+        }
+    }
 }
 
 /// One output of a sweep.
@@ -105,55 +113,53 @@ impl Output {
         Self::all().find(|output| output.name() == name)
     }
 
+    /// Its name, up to the variable of a derivative, and its unit, up to that of the variable.
+    const fn name_and_unit(self) -> (&'static str, &'static str) {
+        match self {
+            Self::ForceF => ("force_f", "1"),
+            Self::VolumeV => ("volume_v", "1"),
+            Self::Force => ("force", "N"),
+            Self::Volume => ("volume", "m^3"),
+            Self::VolumePolygon => ("volume_polygon", "m^3"),
+            Self::MaxRadius => ("max_radius", "m"),
+            Self::RadiusRatio => ("radius_ratio", "1"),
+            Self::FibreTension => ("fibre_tension", "N"),
+            Self::FibreStrain => ("fibre_strain", "1"),
+            Self::Stiffness => ("stiffness", "N/m"),
+            Self::StiffnessIsothermal => ("stiffness_isothermal", "N/m"),
+            Self::StiffnessAdiabatic => ("stiffness_adiabatic", "N/m"),
+            Self::EndSlope => ("end_slope", "rad"),
+            Self::ForceFByContraction => ("force_f_by_contraction", "1"),
+            Self::VolumeVByContraction => ("volume_v_by_contraction", "1"),
+            Self::ForceByContraction => ("force_by_contraction", "N"),
+            Self::VolumeByContraction => ("volume_by_contraction", "m^3"),
+            Self::ForceBy(_) => ("force_by_", "N"),
+            Self::VolumeBy(_) => ("volume_by_", "m^3"),
+        }
+    }
+
+    /// The variable of a derivative.
+    const fn variable(self) -> Option<Variable> {
+        match self {
+            Self::ForceBy(variable) | Self::VolumeBy(variable) => Some(variable),
+            _ => None,
+        }
+    }
+
     /// Its name in sweep files, columns and tables.
     #[must_use]
     pub fn name(self) -> String {
-        match self {
-            Self::ForceF => "force_f".to_owned(),
-            Self::VolumeV => "volume_v".to_owned(),
-            Self::Force => "force".to_owned(),
-            Self::Volume => "volume".to_owned(),
-            Self::VolumePolygon => "volume_polygon".to_owned(),
-            Self::MaxRadius => "max_radius".to_owned(),
-            Self::RadiusRatio => "radius_ratio".to_owned(),
-            Self::FibreTension => "fibre_tension".to_owned(),
-            Self::FibreStrain => "fibre_strain".to_owned(),
-            Self::Stiffness => "stiffness".to_owned(),
-            Self::StiffnessIsothermal => "stiffness_isothermal".to_owned(),
-            Self::StiffnessAdiabatic => "stiffness_adiabatic".to_owned(),
-            Self::EndSlope => "end_slope".to_owned(),
-            Self::ForceFByContraction => "force_f_by_contraction".to_owned(),
-            Self::VolumeVByContraction => "volume_v_by_contraction".to_owned(),
-            Self::ForceByContraction => "force_by_contraction".to_owned(),
-            Self::VolumeByContraction => "volume_by_contraction".to_owned(),
-            Self::ForceBy(variable) => format!("force_by_{}", variable.name()),
-            Self::VolumeBy(variable) => format!("volume_by_{}", variable.name()),
-        }
+        self.name_and_unit().0.to_owned() + self.variable().map_or("", Variable::name)
     }
 
     /// Its unit; "1" for a pure number.
     #[must_use]
     pub fn unit(self) -> String {
-        let by = |unit: &str, variable: Variable| {
-            let below = match variable {
-                Variable::Pressure => "Pa",
-                Variable::Parameter(parameter) => parameter.unit(),
-            };
-            match below {
-                "1" => unit.to_owned(),
-                _ if below.contains('/') => format!("{unit}/({below})"),
-                _ => format!("{unit}/{below}"),
-            }
-        };
-        match self {
-            Self::Force | Self::FibreTension | Self::ForceByContraction => "N".to_owned(),
-            Self::Volume | Self::VolumePolygon | Self::VolumeByContraction => "m^3".to_owned(),
-            Self::MaxRadius => "m".to_owned(),
-            Self::Stiffness | Self::StiffnessIsothermal | Self::StiffnessAdiabatic => "N/m".to_owned(),
-            Self::EndSlope => "rad".to_owned(),
-            Self::ForceBy(variable) => by("N", variable),
-            Self::VolumeBy(variable) => by("m^3", variable),
-            _ => "1".to_owned(),
+        let unit = self.name_and_unit().1;
+        match self.variable().map_or("1", Variable::unit) {
+            "1" => unit.to_owned(),
+            below if below.contains('/') => format!("{unit}/({below})"),
+            below => format!("{unit}/{below}"),
         }
     }
 }

@@ -63,6 +63,20 @@ pub struct Summary {
     pub is_complete: bool,
 }
 
+impl Summary {
+    /// Of chunks of which none was computed now.
+    fn of(promises: &[ChunkManifest]) -> Self {
+        Self {
+            points: promises.iter().map(|promise| promise.points).sum(),
+            infeasible: promises.iter().map(|promise| promise.infeasible).sum(),
+            chunks: promises.len() as u64,
+            computed: 0,
+            damaged: Vec::new(),
+            is_complete: false,
+        }
+    }
+}
+
 /// Why a sweep stops. Finished chunks stay, and `resume` continues from them.
 #[derive(Debug, thiserror::Error)]
 pub enum SweepError {
@@ -74,49 +88,17 @@ pub enum SweepError {
         /// The cause.
         source: io::Error,
     },
-    /// The folder holds another sweep.
-    #[error("{} holds another sweep; the plans differ in\n{difference}\ntake another folder, or undo the change", path.display())]
-    Changed {
-        /// The folder.
+    /// A folder that isn't one of this sweep.
+    #[error("{} {what}", path.display())]
+    Folder {
+        /// The folder, or the plan in it.
         path: PathBuf,
-        /// Lines that differ: `-` in the folder, `+` now.
-        difference: String,
+        /// What is wrong with it, and what to do instead.
+        what: String,
     },
-    /// The plan in the folder is not JSON.
-    #[error("{} is damaged: take another folder, or delete this one", path.display())]
-    DamagedPlan {
-        /// The plan.
-        path: PathBuf,
-    },
-    /// The folder holds chunks without a plan.
-    #[error("{} holds chunks of an unknown sweep, without a plan.json: take another folder, or empty this one", path.display())]
-    Foreign {
-        /// The folder.
-        path: PathBuf,
-    },
-    /// The folder holds this sweep already.
-    #[error("{} holds this sweep already: add `--resume` to go on with it, or take another folder", path.display())]
-    AlreadyThere {
-        /// The folder.
-        path: PathBuf,
-    },
-    /// A folder to be merged holds no sweep.
-    #[error("{} holds no sweep: it has no plan.json", path.display())]
-    NoSweep {
-        /// The folder.
-        path: PathBuf,
-    },
-    /// The requested chunks lie beyond the last one.
-    #[error("chunks {}..{} are asked for: this sweep has the chunks 0..{all}", asked.start, asked.end)]
-    NoSuchChunks {
-        /// Requested chunks.
-        asked: Range<u64>,
-        /// Number of chunks of the sweep.
-        all: u64,
-    },
-    /// The plan has no points.
-    #[error("this sweep has no points: give every axis such as `points = 101`")]
-    NoPoints,
+    /// Chunks that the sweep doesn't have, or a sweep without points.
+    #[error("{0}")]
+    Input(String),
     /// The family of the plan fails.
     #[error(transparent)]
     Family(#[from] FamilyError),
@@ -168,13 +150,13 @@ pub fn run(
     options: &RunOptions,
     told: &(dyn Fn(Progress) + Sync),
 ) -> Result<Summary, SweepError> {
-    let layout = Layout::new(plan).ok_or(SweepError::NoPoints)?;
+    let layout = Layout::new(plan).ok_or_else(SweepError::no_points)?;
     let all = plan.chunks();
     // If a sweep is split into equal parts, the last part may reach beyond the last chunk.
     let asked = options.chunks.clone().unwrap_or(0..all);
     let chunks = asked.start..asked.end.min(all);
     if chunks.is_empty() {
-        return Err(SweepError::NoSuchChunks { asked, all });
+        return Err(SweepError::no_such_chunks(&asked, all));
     }
     let canonical = plan.canonical()?;
     let key = hash(canonical.as_bytes());
@@ -204,17 +186,12 @@ pub fn run(
         .with_max_len(1)
         .map(|i| run.chunk(chunks.start + i as u64))
         .collect::<Result<_, _>>()?;
-    let mut summary = Summary {
-        points: promises.iter().map(|(promise, _)| promise.points).sum(),
-        infeasible: promises.iter().map(|(promise, _)| promise.infeasible).sum(),
-        chunks: chunks.end - chunks.start,
-        computed: promises.iter().filter(|(_, is_new)| *is_new).count() as u64,
-        damaged: run.damaged.into_inner().unwrap_or_default(),
-        is_complete: false,
-    };
+    let computed = promises.iter().filter(|(_, is_new)| *is_new).count() as u64;
+    let promises: Vec<ChunkManifest> = promises.into_iter().map(|(promise, _)| promise).collect();
+    let mut summary = Summary { computed, ..Summary::of(&promises) };
+    summary.damaged = run.damaged.into_inner().unwrap_or_default();
     summary.damaged.sort();
     if chunks == (0..all) {
-        let promises: Vec<ChunkManifest> = promises.into_iter().map(|(promise, _)| promise).collect();
         let text = manifest(plan, &promises)?;
         write(&run.folder.manifest(), text.as_bytes())?;
         summary.is_complete = true;
@@ -302,10 +279,10 @@ pub struct Piece {
 /// # Errors
 /// [`SweepError`], except errors of files.
 pub fn piece(plan: &Plan, number: u64, csv: bool) -> Result<Piece, SweepError> {
-    let layout = Layout::new(plan).ok_or(SweepError::NoPoints)?;
+    let layout = Layout::new(plan).ok_or_else(SweepError::no_points)?;
     let all = plan.chunks();
     if number >= all {
-        return Err(SweepError::NoSuchChunks { asked: number..number + 1, all });
+        return Err(SweepError::no_such_chunks(&(number..number + 1), all));
     }
     let key = hash(plan.canonical()?.as_bytes());
     let computer = Computer::new(plan, &layout)?;
@@ -341,11 +318,12 @@ fn make(
 /// # Errors
 /// If a promise has no JSON.
 pub fn manifest(plan: &Plan, promises: &[ChunkManifest]) -> Result<String, SweepError> {
+    let Summary { points, infeasible, .. } = Summary::of(promises);
     let document = json!({
         "schema": SCHEMA,
         "plan": hash(plan.canonical()?.as_bytes()),
-        "points": promises.iter().map(|promise| promise.points).sum::<u64>(),
-        "infeasible": promises.iter().map(|promise| promise.infeasible).sum::<u64>(),
+        "points": points,
+        "infeasible": infeasible,
         "chunks": promises,
     });
     Ok(serde_json::to_string_pretty(&document)? + "\n")
@@ -373,14 +351,7 @@ pub fn complete(plan: &Plan, path: &Path) -> Result<Option<Summary>, SweepError>
         }
     }
     write(&folder.manifest(), manifest(plan, &promises)?.as_bytes())?;
-    Ok(Some(Summary {
-        points: promises.iter().map(|promise| promise.points).sum(),
-        infeasible: promises.iter().map(|promise| promise.infeasible).sum(),
-        chunks: plan.chunks(),
-        computed: 0,
-        damaged: Vec::new(),
-        is_complete: true,
-    }))
+    Ok(Some(Summary { is_complete: true, ..Summary::of(&promises) }))
 }
 
 /// Numbers of the points of a chunk.
@@ -393,6 +364,30 @@ fn points_of_chunk(plan: &Plan, number: u64) -> Range<u64> {
 fn points_of(plan: &Plan, chunks: &Range<u64>) -> u64 {
     let last = points_of_chunk(plan, chunks.end.saturating_sub(1));
     last.end - points_of_chunk(plan, chunks.start).start
+}
+
+impl SweepError {
+    fn folder(path: &Path, what: impl Into<String>) -> Self {
+        Self::Folder { path: path.to_owned(), what: what.into() }
+    }
+
+    /// The folder holds another sweep: the plan before, and the one now.
+    fn changed(path: &Path, before: &str, now: &str) -> Self {
+        let difference = difference(before, now);
+        let what = format!(
+            "holds another sweep; the plans differ in\n{difference}\ntake another folder, or undo the change"
+        );
+        Self::folder(path, what)
+    }
+
+    fn no_such_chunks(asked: &Range<u64>, all: u64) -> Self {
+        let Range { start, end } = asked;
+        Self::Input(format!("chunks {start}..{end} are asked for: this sweep has the chunks 0..{all}"))
+    }
+
+    fn no_points() -> Self {
+        Self::Input("this sweep has no points: give every axis such as `points = 101`".to_owned())
+    }
 }
 
 fn at(path: &Path) -> impl Fn(io::Error) -> SweepError {
@@ -419,21 +414,19 @@ fn open(
     match fs::read_to_string(&plan) {
         Ok(before) if before == canonical => {
             if !options.resume && options.chunks.is_none() && options.merge.is_empty() {
-                return Err(SweepError::AlreadyThere { path: path.to_owned() });
+                let what =
+                    "holds this sweep already: add `--resume` to go on with it, or take another folder";
+                return Err(SweepError::folder(path, what));
             }
             sweep_up()?;
         }
         Ok(before) if serde_json::from_str::<serde_json::Value>(&before).is_err() => {
-            return Err(SweepError::DamagedPlan { path: plan });
+            return Err(SweepError::folder(&plan, "is damaged: take another folder, or delete this one"));
         }
-        Ok(before) => {
-            return Err(SweepError::Changed {
-                path: path.to_owned(),
-                difference: difference(&before, canonical),
-            });
-        }
+        Ok(before) => return Err(SweepError::changed(path, &before, canonical)),
         Err(error) if error.kind() == io::ErrorKind::NotFound && folder.has_chunks() => {
-            return Err(SweepError::Foreign { path: path.to_owned() });
+            let what = "holds chunks of an unknown sweep, without a plan.json: take another folder, or empty this one";
+            return Err(SweepError::folder(path, what));
         }
         // A process may have been killed before it wrote the plan.
         Err(error) if error.kind() == io::ErrorKind::NotFound => {
@@ -460,13 +453,12 @@ fn merge(
     let plan = match fs::read_to_string(other.plan()) {
         Ok(plan) => plan,
         Err(error) if error.kind() == io::ErrorKind::NotFound => {
-            return Err(SweepError::NoSweep { path: from.to_owned() });
+            return Err(SweepError::folder(from, "holds no sweep: it has no plan.json"));
         }
         Err(error) => return Err(at(&other.plan())(error)),
     };
     if plan != canonical {
-        let difference = difference(&plan, canonical);
-        return Err(SweepError::Changed { path: from.to_owned(), difference });
+        return Err(SweepError::changed(from, &plan, canonical));
     }
     for chunk in 0..all {
         let standing =

@@ -124,24 +124,35 @@ impl Bulge<'_> {
         // Each quadrangle has four vertices, and the format counts in 32 bits.
         let most = u32::MAX / 4;
         if stations.checked_mul(around).is_none_or(|points| points > most as usize) {
-            return Err(VtkError::TooLarge { stations, around, most });
+            return Err(VtkError::Drawing(format!(
+                "{stations} rings of {around} points are more than a file holds ({most}): draw fewer facets or fibres"
+            )));
         }
         Ok(())
     }
 
     fn check_drawing(&self) -> Result<(), VtkError> {
         if self.facets < LEAST_FACETS {
-            return Err(VtkError::Facets { found: self.facets, least: LEAST_FACETS });
+            return Err(VtkError::facets(self.facets, LEAST_FACETS));
         }
         let Style::Pleats { cloth_circumference } = self.style else { return Ok(()) };
+        let wrong = |what: String| Err(VtkError::Drawing(what));
         if self.fibres < LEAST_PLEATS {
-            return Err(VtkError::Fibres { found: self.fibres, least: LEAST_PLEATS });
+            let found = self.fibres;
+            return wrong(format!(
+                "pleats need at least {LEAST_PLEATS} fibres to stand between, found {found}"
+            ));
         }
         if self.is_braided() {
-            return Err(VtkError::TurningFibres { turn_rad: largest_turn(self.shape) });
+            let turn = largest_turn(self.shape);
+            return wrong(format!(
+                "pleats stand between straight fibres, but these turn by {turn} rad about the axis: draw a surface of revolution"
+            ));
         }
         match cloth_circumference {
-            Some(value_m) if !(value_m > 0.0 && value_m.is_finite()) => Err(VtkError::Cloth { value_m }),
+            Some(value) if !(value > 0.0 && value.is_finite()) => {
+                wrong(format!("the cloth circumference is {value} m: it must be positive and finite"))
+            }
             _ => Ok(()),
         }
     }
@@ -164,11 +175,13 @@ pub(crate) fn whole(response: &Response) -> [(&'static str, f64); 5] {
 
 fn check_shape(shape: &Shape) -> Result<(), VtkError> {
     if shape.meridian.len() < 2 {
-        return Err(VtkError::MeridianTooShort { found: shape.meridian.len() });
+        let found = shape.meridian.len();
+        let what = format!("a surface needs at least 2 meridian points, the shape has {found}");
+        return Err(VtkError::Drawing(what));
     }
     if let Some((quantity, value)) = whole(&shape.response).into_iter().find(|(_, value)| !value.is_finite())
     {
-        return Err(VtkError::ResponseNotFinite { quantity, value });
+        return Err(VtkError::not_finite(quantity, value, ""));
     }
     shape.meridian.iter().enumerate().try_for_each(|(station, point)| check_point(station, point))
 }
@@ -186,10 +199,15 @@ fn check_point(station: usize, point: &MeridianPoint) -> Result<(), VtkError> {
         ("turn_rad", point.turn_rad),
     ];
     if let Some((quantity, value)) = drawn.into_iter().find(|(_, value)| !value.is_finite()) {
-        return Err(VtkError::NotFinite { quantity, station, value });
+        return Err(VtkError::Drawing(format!(
+            "{quantity} is {value} at meridian point {station}: only finite values can be drawn"
+        )));
     }
     if point.r_m <= 0.0 {
-        return Err(VtkError::Radius { station, radius_m: point.r_m });
+        return Err(VtkError::Drawing(format!(
+            "the radius is {} m at meridian point {station}: it must be positive",
+            point.r_m
+        )));
     }
     Ok(())
 }

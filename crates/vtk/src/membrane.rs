@@ -10,6 +10,7 @@ mod xml;
 
 pub use series::MembraneSeries;
 
+use crate::error::check_extension;
 use crate::{VtkError, whole_file};
 use bulge_membrane::case::Case;
 use bulge_membrane::{Fields, Part, State, Support};
@@ -134,11 +135,9 @@ impl Whole {
 /// doesn't exist, or the disk refuses. The message names the problem.
 pub fn write_vtu(path: impl AsRef<Path>, picture: &MembranePicture) -> Result<(), VtkError> {
     let path = path.as_ref();
-    if path.extension().is_none_or(|e| !e.eq_ignore_ascii_case("vtu")) {
-        return Err(VtkError::GridExtension { path: path.to_path_buf() });
-    }
+    check_extension(path, "vtu")?;
     check::check(picture)?;
-    let bytes = xml::encode(Drawing::new(picture)?, picture)
-        .map_err(|reason| VtkError::Encode { path: path.to_path_buf(), reason })?;
+    let bytes =
+        xml::encode(Drawing::new(picture)?, picture).map_err(|reason| VtkError::encode(path, &reason))?;
     whole_file::write(path, &bytes)
 }

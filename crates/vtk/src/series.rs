@@ -42,16 +42,24 @@ pub(crate) fn create(dir: &Path) -> Result<(), VtkError> {
 /// Checks that the stem can be part of file names.
 pub(crate) fn check_stem(stem: &str) -> Result<(), VtkError> {
     let is_name = !stem.is_empty() && !stem.contains(['/', '\\']) && !stem.contains(char::is_control);
-    if is_name { Ok(()) } else { Err(VtkError::Stem { stem: stem.to_owned() }) }
+    if is_name {
+        Ok(())
+    } else {
+        Err(VtkError::Drawing(format!(
+            "{stem:?} can't begin the file names of a series: use a name without folders"
+        )))
+    }
 }
 
 fn check(stem: &str, members: &[(f64, Bulge)]) -> Result<(), VtkError> {
     check_stem(stem)?;
     if members.is_empty() {
-        return Err(VtkError::EmptySeries);
+        return Err(VtkError::Drawing("a series needs at least one shape".to_owned()));
     }
     match members.iter().enumerate().find(|(_, (value, _))| !value.is_finite()) {
-        Some((index, (value, _))) => Err(VtkError::SeriesValue { index, value: *value }),
+        Some((index, (value, _))) => Err(VtkError::Drawing(format!(
+            "the value of member {index} of the series is {value}: it must be finite"
+        ))),
         None => members.iter().try_for_each(|(_, bulge)| bulge.check()),
     }
 }
@@ -88,7 +96,8 @@ mod tests {
 
     #[test]
     fn writes_members_and_collection() {
-        let folder = std::env::temp_dir().join(format!("bulge-vtk-series-{}/new", std::process::id()));
+        let parent = tempfile::tempdir().unwrap();
+        let folder = parent.path().join("new");
         let shapes = [barrel(8, 0.0), barrel(9, 0.0)];
         let style = Style::Pleats { cloth_circumference: None };
         let members: Vec<_> = shapes
@@ -101,12 +110,12 @@ mod tests {
         let xml = fs::read_to_string(&path).unwrap();
         assert!(xml.contains(r#"<DataSet timestep="0.05" part="0" file="a &amp; b_0001.vtp"/>"#), "{xml}");
         assert_eq!(fs::read_dir(&folder).unwrap().count(), 3);
-        fs::remove_dir_all(folder.parent().unwrap()).unwrap();
     }
 
     #[test]
     fn refuses_before_writing_anything() {
-        let folder = std::env::temp_dir().join(format!("bulge-vtk-refused-{}", std::process::id()));
+        let parent = tempfile::tempdir().unwrap();
+        let folder = parent.path().join("new");
         let shape = barrel(8, 0.0);
         let bulge = Bulge { shape: &shape, fibres: 4, style: Style::Revolution, facets: 4 };
         let message = |stem: &str, members: &[(f64, Bulge)]| {

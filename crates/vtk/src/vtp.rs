@@ -2,6 +2,7 @@
 
 use crate::VtkError;
 use crate::bulge::{Bulge, whole};
+use crate::error::check_extension;
 use crate::mesh::Mesh;
 use crate::{whole_file, xml};
 use bulge_fibre::Response;
@@ -15,9 +16,7 @@ use vtkio::model::{Attribute, Attributes, DataSet, PolyDataPiece, VertexNumbers}
 /// its folder doesn't exist, or the disk refuses. The message names the path and the reason.
 pub fn write_vtp(path: impl AsRef<Path>, bulge: &Bulge) -> Result<(), VtkError> {
     let path = path.as_ref();
-    if path.extension().is_none_or(|e| !e.eq_ignore_ascii_case("vtp")) {
-        return Err(VtkError::Extension { path: path.to_path_buf() });
-    }
+    check_extension(path, "vtp")?;
     whole_file::write(path, &encoded(path, bulge)?)
 }
 
@@ -31,8 +30,7 @@ pub fn vtp_bytes(bulge: &Bulge) -> Result<Vec<u8>, VtkError> {
 
 fn encoded(path: &Path, bulge: &Bulge) -> Result<Vec<u8>, VtkError> {
     bulge.check()?;
-    encode(Mesh::new(bulge), &bulge.shape.response)
-        .map_err(|reason| VtkError::Encode { path: path.to_path_buf(), reason })
+    encode(Mesh::new(bulge), &bulge.shape.response).map_err(|reason| VtkError::encode(path, &reason))
 }
 
 /// The bytes of a file.
@@ -116,9 +114,10 @@ mod tests {
 
     #[test]
     fn leaves_nothing_behind_when_writing_fails() {
-        let folder = std::env::temp_dir().join(format!("bulge-vtk-fails-{}", std::process::id()));
+        let folder = tempfile::tempdir().unwrap();
+        let folder = folder.path();
         let occupied = folder.join("occupied.vtp");
-        std::fs::create_dir_all(&occupied).unwrap();
+        std::fs::create_dir(&occupied).unwrap();
         let shape = barrel(8, 0.0);
         let bulge = Bulge { shape: &shape, fibres: 4, style: Style::Revolution, facets: 8 };
         let message = |path: &Path| write_vtp(path, &bulge).unwrap_err().to_string();
@@ -127,12 +126,11 @@ mod tests {
         assert!(missing.contains("nowhere") && missing.contains("no folder"), "{missing}");
         assert!(message(&occupied).contains("occupied.vtp"));
         assert!(message(&folder.join("shape.vtk")).contains("must end in .vtp"));
-        assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 1, "only the folder that was there");
+        assert_eq!(std::fs::read_dir(folder).unwrap().count(), 1, "only the folder that was there");
         assert_eq!(std::fs::read_dir(&occupied).unwrap().count(), 0);
 
         write_vtp(folder.join("shape.vtp"), &bulge).unwrap();
         write_vtp(folder.join("shape.vtp"), &bulge).unwrap();
-        assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 2, "the file and no temporary one");
-        std::fs::remove_dir_all(&folder).unwrap();
+        assert_eq!(std::fs::read_dir(folder).unwrap().count(), 2, "the file and no temporary one");
     }
 }

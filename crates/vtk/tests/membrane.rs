@@ -19,7 +19,7 @@ use bulge_vtk::{MembranePicture, MembraneSeries, Whole, write_vtu};
 use std::f64::consts::{PI, TAU};
 use std::fs;
 use std::path::Path;
-use support::{AIRBAG, PLEATED, Point, Read, SPHERE, TUBE, folder, solved};
+use support::{AIRBAG, PLEATED, Point, Read, SPHERE, TUBE, solved};
 use vtkio::model::CellType;
 
 fn drawn(dir: &Path, state: &State, fields: &Fields, whole: Whole) -> Read {
@@ -30,9 +30,9 @@ fn drawn(dir: &Path, state: &State, fields: &Fields, whole: Whole) -> Read {
 
 #[test]
 fn a_tube_as_meshed_is_a_mesh_again() {
-    let dir = folder("tube");
+    let dir = tempfile::tempdir().unwrap();
     let (case, state, fields) = solved(TUBE);
-    let read = drawn(&dir, &state, &fields, Whole::AsMeshed);
+    let read = drawn(dir.path(), &state, &fields, Whole::AsMeshed);
     assert_eq!(read.points, fields.places);
     assert_eq!((read.count(CellType::Line), read.cells.len()), (24, 24));
     for (name, value) in [
@@ -65,16 +65,15 @@ fn a_tube_as_meshed_is_a_mesh_again() {
     assert_eq!(mesh.blocks.len(), 1);
     let wall = case.mesh.blocks.iter().find(|block| block.group == "wall").unwrap();
     assert_eq!((&mesh.blocks[0].group, &mesh.blocks[0].cells), (&wall.group, &wall.cells));
-    fs::remove_dir_all(&dir).unwrap();
 }
 
 #[test]
 fn a_tube_revolved() {
-    let dir = folder("revolved");
+    let dir = tempfile::tempdir().unwrap();
     let (case, state, fields) = solved(TUBE);
     assert_eq!(Whole::of(&case), Whole::Revolved { facets: 96, middle: None });
     for facets in [7_u32, 96] {
-        let read = drawn(&dir, &state, &fields, Whole::Revolved { facets, middle: None });
+        let read = drawn(dir.path(), &state, &fields, Whole::Revolved { facets, middle: None });
         let n = facets as usize;
         assert_eq!(
             (read.points.len(), read.count(CellType::Quad), read.cells.len()),
@@ -101,16 +100,15 @@ fn a_tube_revolved() {
             assert!((before[0].hypot(before[1]) - 0.01).abs() < 1e-15);
         }
     }
-    fs::remove_dir_all(&dir).unwrap();
 }
 
 #[test]
 fn half_a_ball_becomes_a_closed_one() {
-    let dir = folder("ball");
+    let dir = tempfile::tempdir().unwrap();
     let (case, state, fields) = solved(SPHERE);
     let whole = Whole::of(&case);
     assert_eq!(whole, Whole::Revolved { facets: 96, middle: Some(0.0) });
-    let read = drawn(&dir, &state, &fields, whole);
+    let read = drawn(dir.path(), &state, &fields, whole);
     // 32 circles in each half apart from the pole, of which the middle one is shared; two poles.
     assert_eq!(read.points.len(), (2 * 32 - 1) * 96 + 2);
     assert_eq!((read.count(CellType::Quad), read.count(CellType::Triangle)), (2 * 31 * 96, 2 * 96));
@@ -119,21 +117,20 @@ fn half_a_ball_becomes_a_closed_one() {
     let r = fields.places[0][0];
     assert!((read.area() / (4.0 * PI * r * r) - 1.0).abs() < 2e-3);
     // As meshed it has quadratic edges, which the mesh reader can read.
-    let read = drawn(&dir, &state, &fields, Whole::AsMeshed);
+    let read = drawn(dir.path(), &state, &fields, Whole::AsMeshed);
     assert_eq!(read.count(CellType::QuadraticEdge), 16);
     let mesh = Mesh::from_vtu(read.xml.as_bytes(), "state.vtu").unwrap();
     assert_eq!((mesh.blocks[0].kind, mesh.blocks[0].group.as_str()), (CellKind::Line3, "wall"));
-    fs::remove_dir_all(&dir).unwrap();
 }
 
 #[test]
 fn half_a_lobe_becomes_the_whole_muscle() {
-    let dir = folder("pleated");
+    let dir = tempfile::tempdir().unwrap();
     let (case, state, fields) = solved(PLEATED);
     let whole = Whole::of(&case);
     assert!(matches!(whole, Whole::Sector { lobes: 8, mirror: Some(_), middle: Some(0.0) }), "{whole:?}");
-    let part = drawn(&dir, &state, &fields, Whole::AsMeshed);
-    let read = drawn(&dir, &state, &fields, whole);
+    let part = drawn(dir.path(), &state, &fields, Whole::AsMeshed);
+    let read = drawn(dir.path(), &state, &fields, whole);
     let copies = 4 * 8;
     assert_eq!(read.count(CellType::Triangle), copies * part.count(CellType::Triangle));
     // Each fibre belongs to two half lobes and is drawn once.
@@ -145,10 +142,10 @@ fn half_a_lobe_becomes_the_whole_muscle() {
     assert!((read.area() / (copies as f64 * part.area()) - 1.0).abs() < 1e-12);
     // Without the mirror plane in the middle: half of it.
     let half = Whole::Sector { lobes: 8, mirror: Some([0.0, 1.0, 0.0]), middle: None };
-    assert!((2.0 * drawn(&dir, &state, &fields, half).volume() / state.volume - 1.0).abs() < 1e-12);
+    assert!((2.0 * drawn(dir.path(), &state, &fields, half).volume() / state.volume - 1.0).abs() < 1e-12);
     // The far edge is the other plane of the lobe.
     let mirror = Some([-(PI / 8.0).sin(), (PI / 8.0).cos(), 0.0]);
-    let other = drawn(&dir, &state, &fields, Whole::Sector { lobes: 8, mirror, middle: Some(0.0) });
+    let other = drawn(dir.path(), &state, &fields, Whole::Sector { lobes: 8, mirror, middle: Some(0.0) });
     assert!((other.volume() / state.volume - 1.0).abs() < 1e-12 && other.points.len() == read.points.len());
     // In each image of a triangle the cloth is pulled along the image of the same direction.
     let sheets = &fields.groups[0].sheets[0];
@@ -177,16 +174,15 @@ fn half_a_lobe_becomes_the_whole_muscle() {
     }
     let states = &read.cell_data["wrinkle_state"];
     assert!(read.types.iter().zip(states).all(|(kind, state)| (*kind == CellType::Line) == (*state == -1.0)));
-    fs::remove_dir_all(&dir).unwrap();
 }
 
 #[test]
 fn a_quarter_of_an_airbag() {
-    let dir = folder("airbag");
+    let dir = tempfile::tempdir().unwrap();
     let (case, state, fields) = solved(AIRBAG);
     let whole = Whole::of(&case);
     assert!(matches!(whole, Whole::Sector { lobes: 2, mirror: Some(_), middle: Some(0.0) }), "{whole:?}");
-    let read = drawn(&dir, &state, &fields, whole);
+    let read = drawn(dir.path(), &state, &fields, whole);
     assert_eq!(read.count(CellType::QuadraticTriangle), 8 * 128);
     assert_eq!(read.open_edges(), []);
     assert!((read.volume() / state.volume - 1.0).abs() < 2e-3, "{}", read.volume() / state.volume);
@@ -196,20 +192,20 @@ fn a_quarter_of_an_airbag() {
         *place = std::array::from_fn(|k| place[k] - displacement[k]);
         *displacement = [0.0; 3];
     }
-    let rest = drawn(&dir, &state, &flat, whole);
+    let rest = drawn(dir.path(), &state, &flat, whole);
     assert_eq!(rest.cells.len(), read.cells.len());
     assert!((rest.area() / (2.0 * 0.64) - 1.0).abs() < 1e-11, "{}", rest.area());
     assert!(rest.volume().abs() < 1e-12, "{}", rest.volume());
     let mesh =
-        Mesh::from_vtu(drawn(&dir, &state, &fields, Whole::AsMeshed).xml.as_bytes(), "state.vtu").unwrap();
+        Mesh::from_vtu(drawn(dir.path(), &state, &fields, Whole::AsMeshed).xml.as_bytes(), "state.vtu")
+            .unwrap();
     assert_eq!((mesh.blocks[0].kind, mesh.blocks[0].cells.len()), (CellKind::Triangle6, 6 * 128));
-    fs::remove_dir_all(&dir).unwrap();
 }
 
 /// A lobe between two fibres with a cyclic edge: the seam joins different nodes.
 #[test]
 fn a_cyclic_lobe() {
-    let dir = folder("cyclic");
+    let dir = tempfile::tempdir().unwrap();
     let muscle = Pleated {
         fibres: 6,
         radius: 0.016,
@@ -238,7 +234,8 @@ fn a_cyclic_lobe() {
         Solver::new(structure, Copies { around: 6.0, along: 2.0 }, Tolerance::default()).unwrap();
     let state = solver.at_rest();
     let fields = solver.fields(&state);
-    let read = drawn(&dir, &state, &fields, Whole::Sector { lobes: 6, mirror: None, middle: Some(0.0) });
+    let read =
+        drawn(dir.path(), &state, &fields, Whole::Sector { lobes: 6, mirror: None, middle: Some(0.0) });
     assert_eq!(read.points.len(), 12 * 21);
     assert_eq!((read.count(CellType::Line), read.count(CellType::Triangle)), (6 * 20, 6 * 2 * 40));
     assert_eq!(read.open_edges().len(), 2 * 12);
@@ -248,16 +245,15 @@ fn a_cyclic_lobe() {
         -1.0,
         "facets carry nothing"
     );
-    fs::remove_dir_all(&dir).unwrap();
 }
 
 #[test]
 fn a_series_grows_state_by_state() {
-    let dir = folder("series");
+    let dir = tempfile::tempdir().unwrap();
     let case =
         Case::from_toml(&TUBE.replace("\"-2 mm\" }", "\"-2 mm\" }\nstates = 3"), "case.toml", None).unwrap();
     let mut run = case.start().unwrap();
-    let mut series = MembraneSeries::new(dir.join("new"), "a & b").unwrap();
+    let mut series = MembraneSeries::new(dir.path().join("new"), "a & b").unwrap();
     assert!(!series.path().exists());
     while let Some(next) = run.advance(|_, _| ()) {
         let (row, state, fields) = next.unwrap();
@@ -277,17 +273,19 @@ fn a_series_grows_state_by_state() {
     assert_eq!(series.states(), 3);
     let pvd = fs::read_to_string(series.path()).unwrap();
     assert!(pvd.contains(r#"<DataSet timestep="3" part="0" file="a &amp; b_0002.vtu"/>"#), "{pvd}");
-    assert_eq!(fs::read_dir(dir.join("new")).unwrap().count(), 4);
-    assert!(MembraneSeries::new(dir.join("other"), "up/down").is_err() && !dir.join("other").exists());
-    fs::remove_dir_all(&dir).unwrap();
+    assert_eq!(fs::read_dir(dir.path().join("new")).unwrap().count(), 4);
+    assert!(
+        MembraneSeries::new(dir.path().join("other"), "up/down").is_err()
+            && !dir.path().join("other").exists()
+    );
 }
 
 #[test]
 fn refuses_and_leaves_nothing_behind() {
-    let dir = folder("refuses");
+    let dir = tempfile::tempdir().unwrap();
     let (_, state, fields) = solved(TUBE);
     let (_, flat_state, flat) = solved(PLEATED);
-    let path = dir.join("state.vtu");
+    let path = dir.path().join("state.vtu");
     let refused = |path: &Path, state: &State, fields: &Fields, whole: Whole, part: &str| {
         let error =
             write_vtu(path, &MembranePicture { state, fields, whole, time: 0.0 }).unwrap_err().to_string();
@@ -301,8 +299,8 @@ fn refuses_and_leaves_nothing_behind() {
         edit(&mut fields);
         fields
     };
-    refused(&dir.join("state.vtk"), &state, &fields, round(96), "must end in .vtu");
-    refused(&dir.join("nowhere/state.vtu"), &state, &fields, round(96), "no folder");
+    refused(&dir.path().join("state.vtk"), &state, &fields, round(96), "must end in .vtu");
+    refused(&dir.path().join("nowhere/state.vtu"), &state, &fields, round(96), "no folder");
     refused(&path, &state, &fields, round(2), "2 facets");
     refused(&path, &state, &fields, round(u32::MAX), "more than a file holds");
     refused(&path, &state, &fields, round(96).middle(0.01), "two sides of its middle");
@@ -341,8 +339,7 @@ fn refuses_and_leaves_nothing_behind() {
     let beyond = edited(&|f| f.groups[0].cells[0] = 25);
     refused(&path, &state, &beyond, round(96), "node 25");
     refused(&path, &state, &edited(&|f| f.groups.clear()), round(96), "no cells");
-    assert_eq!(fs::read_dir(&dir).unwrap().count(), 0);
-    fs::remove_dir_all(&dir).unwrap();
+    assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 0);
 }
 
 trait Mirrored {

@@ -14,7 +14,7 @@ use serde::Serialize;
 
 use super::muscle::{Lowest, failed, follow, is_scale_free, load_at};
 use super::surroundings::Surroundings;
-use super::{GasError, at_least, positive};
+use super::{GasError, at_least, finite, positive};
 
 /// Least gauge pressure \[Pa\] at which a muscle is solved, because there is no equilibrium at zero pressure.
 /// Below it, the shape is that at this pressure.
@@ -122,12 +122,8 @@ impl<'a> Chamber<'a> {
             Load::Spring { preload_n, rate_n_per_m, from } => [preload_n, rate_n_per_m, from],
             Load::Law(_) => [0.0; 3],
         };
-        if let Some(value) = numbers.into_iter().find(|value| !value.is_finite()) {
-            return Err(GasError::Number {
-                what: "a number of the load",
-                value,
-                instead: "give a finite number",
-            });
+        for value in numbers {
+            finite("a number of the load", value)?;
         }
         Ok(Self::of(Body::Muscle { muscle, load, support: None }).looked_at())
     }
@@ -178,11 +174,11 @@ impl<'a> Chamber<'a> {
     /// [`GasError::Number`] unless it is finite and below 1.
     pub fn on_support(mut self, contraction: f64) -> Result<Self, GasError> {
         if !(contraction.is_finite() && contraction < 1.0) {
-            return Err(GasError::Number {
-                what: "the contraction of the support",
-                value: contraction,
-                instead: "give a finite number below 1",
-            });
+            return Err(GasError::number(
+                "the contraction of the support",
+                contraction,
+                "give a finite number below 1",
+            ));
         }
         if let Body::Muscle { support, load, .. } = &mut self.body
             && !matches!(load, Load::Held(_))
@@ -333,8 +329,13 @@ impl<'a> Chamber<'a> {
         if let Load::Force(force) = load {
             return solve(Given::Force(*force));
         }
-        let no_balance =
-            |e: f64| GasError::NoBalance { pressure_pa, contraction: e, load_n: load_at(load, muscle, e) };
+        let no_balance = |e: f64| {
+            GasError::NoBalance(format!(
+                "at the gauge pressure {pressure_pa} Pa the pull equals the load at no contraction (last tried: {:.4} %, load {} N): give the load a support, or one that the muscle can carry",
+                100.0 * e,
+                load_at(load, muscle, e)
+            ))
+        };
         // No muscle pulls beyond its limit, so the load exceeds the pull there, and the balance lies at a
         // smaller contraction.
         let limit = solve(Given::Force(0.0))?.contraction;
@@ -416,13 +417,12 @@ pub(super) fn with_gas(
     if g.abs() < 1e-11 {
         return Ok(inside);
     }
-    Err(GasError::NoPressure { pressure_pa: (u + step).exp() - ambient_pa, reason })
+    let pressure_pa = (u + step).exp() - ambient_pa;
+    Err(GasError::NoBalance(format!(
+        "no gauge pressure above 0 satisfies the law of the enclosed gas (last tried: {pressure_pa} Pa): start with a higher pressure, or ask for a contraction nearer to that of the filling ({reason})"
+    )))
 }
 
 fn unreal(value: f64) -> GasError {
-    GasError::Number {
-        what: "the gauge pressure [Pa]",
-        value,
-        instead: "a muscle holds none below the ambient",
-    }
+    GasError::number("the gauge pressure [Pa]", value, "a muscle holds none below the ambient")
 }

@@ -16,7 +16,7 @@ use serde::Serialize;
 use super::chamber::{Chamber, Inside, Load, with_gas};
 use super::muscle::{failed, pulling};
 use super::surroundings::Surroundings;
-use super::{AMBIENT_TEMPERATURE_K, GAMMA, GasError, R_AIR, at_least, positive};
+use super::{AMBIENT_TEMPERATURE_K, GAMMA, GasError, R_AIR, at_least, finite, positive};
 
 /// Enclosed gas with its polytropic exponent.
 #[derive(Debug, Clone, Copy)]
@@ -93,11 +93,11 @@ impl<'a> ClosedMuscle<'a> {
     ) -> Result<Self, GasError> {
         positive("the gauge pressure of the filling [Pa]", pressure_pa)?;
         if !(1.0..=GAMMA).contains(&exponent) {
-            return Err(GasError::Number {
-                what: "the polytropic exponent",
-                value: exponent,
-                instead: "give a number from 1 (isothermal) to 1.4 (adiabatic)",
-            });
+            return Err(GasError::number(
+                "the polytropic exponent",
+                exponent,
+                "give a number from 1 (isothermal) to 1.4 (adiabatic)",
+            ));
         }
         let found = pulling(muscle, pressure_pa, contraction, Approach::Auto);
         let volume_m3 = found.map_err(|error| failed(pressure_pa, error))?.volume_m3;
@@ -141,15 +141,9 @@ impl<'a> ClosedMuscle<'a> {
     /// The state at a contraction.
     ///
     /// # Errors
-    /// [`GasError::Muscle`] if the muscle doesn't pull at that contraction, or [`GasError::NoPressure`].
+    /// [`GasError::Muscle`] if the muscle doesn't pull at that contraction, or [`GasError::NoBalance`].
     pub fn at_contraction(&self, contraction: f64) -> Result<ClosedState, GasError> {
-        if !contraction.is_finite() {
-            return Err(GasError::Number {
-                what: "the contraction",
-                value: contraction,
-                instead: "give a finite number",
-            });
-        }
+        finite("the contraction", contraction)?;
         let inside = self.shut(Load::Held(contraction))?;
         self.state(inside.pressure_pa, contraction)
     }
@@ -158,7 +152,7 @@ impl<'a> ClosedMuscle<'a> {
     ///
     /// # Errors
     /// [`GasError::Number`], [`GasError::Muscle`] if the muscle can't carry the force, or
-    /// [`GasError::NoPressure`].
+    /// [`GasError::NoBalance`].
     pub fn under_force(&self, force_n: f64) -> Result<ClosedState, GasError> {
         at_least("the force [N]", force_n, 0.0, "give a finite force from 0 on: a muscle doesn't push")?;
         let inside = self.shut(Load::Force(force_n))?;
@@ -354,7 +348,7 @@ mod tests {
         assert!(closed.under_force(-1.0).is_err() && closed.under_force(f64::NAN).is_err());
         // At this contraction the small amount of gas would be below the ambient pressure.
         let error = closed.at_contraction(0.3).unwrap_err();
-        assert!(matches!(error, GasError::NoPressure { .. }), "{error}");
+        assert!(matches!(error, GasError::NoBalance(_)), "{error}");
         assert!(error.to_string().contains("start with a higher pressure"));
     }
 }

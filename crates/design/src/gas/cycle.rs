@@ -26,7 +26,7 @@ use super::chamber::{Chamber, LEAST_PRESSURE_PA, Load};
 use super::muscle::{failed, follow, pulling};
 use super::orifice::REFERENCE_DENSITY;
 use super::surroundings::Surroundings;
-use super::{AMBIENT_TEMPERATURE_K, GasError, R_AIR, positive};
+use super::{AMBIENT_TEMPERATURE_K, GasError, R_AIR, finite, positive};
 
 /// Panels for the gas work, each with six Gauss points.
 const PANELS: u32 = 6;
@@ -131,19 +131,19 @@ impl<'a> Stroke<'a> {
             Lift::Isobaric { pressure_pa } => [pressure_pa; 2],
         };
         if end > self.supply_pressure_pa || start > self.supply_pressure_pa {
-            return Err(GasError::Number {
-                what: "the gauge pressure that the lift needs [Pa]",
-                value: end.max(start),
-                instead: "it is above that of the supply: take a higher supply pressure, a smaller load or a shorter way",
-            });
+            return Err(GasError::number(
+                "the gauge pressure that the lift needs [Pa]",
+                end.max(start),
+                "it is above that of the supply: take a higher supply pressure, a smaller load or a shorter way",
+            ));
         }
         let [below, above] = [self.pulling(start, self.from)?, self.pulling(end, self.to)?];
         if above.force_n < self.load_n * (1.0 - 1e-9) {
-            return Err(GasError::Number {
-                what: "the pull at the end of the way [N]",
-                value: above.force_n,
-                instead: "it is less than the load: take a higher pressure, a smaller load or a shorter way",
-            });
+            return Err(GasError::number(
+                "the pull at the end of the way [N]",
+                above.force_n,
+                "it is less than the load: take a higher pressure, a smaller load or a shorter way",
+            ));
         }
         // The ambient air that the muscle holds without pressure is not taken from the supply.
         let slack = follow(self.muscle, LEAST_PRESSURE_PA, self.from, Approach::Auto)?;
@@ -182,20 +182,14 @@ impl<'a> Stroke<'a> {
             positive("the gauge pressure of the lift [Pa]", pressure_pa)?;
         }
         for value in [self.from, self.to] {
-            if !value.is_finite() {
-                return Err(GasError::Number {
-                    what: "a contraction",
-                    value,
-                    instead: "give a finite number",
-                });
-            }
+            finite("a contraction", value)?;
         }
         if self.to <= self.from {
-            return Err(GasError::Number {
-                what: "the contraction at the end of the way",
-                value: self.to,
-                instead: "give a larger one than at its start: a muscle lifts by contracting",
-            });
+            return Err(GasError::number(
+                "the contraction at the end of the way",
+                self.to,
+                "give a larger one than at its start: a muscle lifts by contracting",
+            ));
         }
         Ok(())
     }
@@ -217,11 +211,11 @@ impl<'a> Stroke<'a> {
         let at_most = excess(most)?;
         if at_most < 0.0 {
             let pull = (1.0 + at_most) * self.load_n;
-            return Err(GasError::Number {
-                what: "the pull at the pressure of the supply [N]",
-                value: pull,
-                instead: "it is less than the load: take a higher supply pressure, a smaller load or a shorter way",
-            });
+            return Err(GasError::number(
+                "the pull at the pressure of the supply [N]",
+                pull,
+                "it is less than the load: take a higher supply pressure, a smaller load or a shorter way",
+            ));
         }
         // The excess is proportional to the pressure if nothing but the pressure shapes the muscle. The first
         // secant then gives the root.

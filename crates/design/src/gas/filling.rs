@@ -189,7 +189,7 @@ impl Filling<'_> {
             ("the gauge pressure at the start [Pa]", self.start_pressure_pa),
         ] {
             if !(p.is_finite() && p > -ambient) {
-                return Err(GasError::Number { what, value: p, instead: absolute });
+                return Err(GasError::number(what, p, absolute));
             }
             if !self.chamber.is_vessel() {
                 at_least(what, p, 0.0, "give one from 0 on: a muscle holds none below the ambient")?;
@@ -211,11 +211,7 @@ impl Filling<'_> {
             positive("the temperature of the wall [K]", wall_temperature_k)?;
         }
         if !(2..=1_000_000).contains(&self.samples) {
-            return Err(GasError::Number {
-                what: "the number of samples",
-                value: self.samples as f64,
-                instead: "give 2 to 1000000",
-            });
+            return Err(GasError::number("the number of samples", self.samples as f64, "give 2 to 1000000"));
         }
         Ok(())
     }

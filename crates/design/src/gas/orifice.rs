@@ -42,11 +42,11 @@ impl Orifice {
     pub fn new(conductance_m3_per_s_pa: f64, critical_ratio: f64) -> Result<Self, GasError> {
         positive("the sonic conductance [m^3/(s Pa)]", conductance_m3_per_s_pa)?;
         if !(0.0..1.0).contains(&critical_ratio) {
-            return Err(GasError::Number {
-                what: "the critical pressure ratio b",
-                value: critical_ratio,
-                instead: "give a number from 0 to below 1 (0.2 to 0.5 for valves)",
-            });
+            return Err(GasError::number(
+                "the critical pressure ratio b",
+                critical_ratio,
+                "give a number from 0 to below 1 (0.2 to 0.5 for valves)",
+            ));
         }
         Ok(Self { conductance_m3_per_s_pa, critical_ratio })
     }
@@ -64,11 +64,11 @@ impl Orifice {
     pub fn nozzle(area_m2: f64, discharge_coefficient: f64) -> Result<Self, GasError> {
         positive("the area of the nozzle [m^2]", area_m2)?;
         if !(discharge_coefficient > 0.0 && discharge_coefficient <= 1.0) {
-            return Err(GasError::Number {
-                what: "the discharge coefficient",
-                value: discharge_coefficient,
-                instead: "give a number above 0 and up to 1 (1 for a nozzle without losses)",
-            });
+            return Err(GasError::number(
+                "the discharge coefficient",
+                discharge_coefficient,
+                "give a number above 0 and up to 1 (1 for a nozzle without losses)",
+            ));
         }
         let base = 2.0 / (GAMMA + 1.0);
         let choked = (GAMMA / (R_AIR * REFERENCE_TEMPERATURE_K)).sqrt()

@@ -2,22 +2,18 @@
 
 use super::{HeatError, HeatProblem};
 
-/// Name of a number, its value, whether it is valid, and its required range.
-type Row = (&'static str, f64, bool, &'static str);
+/// Name of a number, its value, its smallest and largest valid value, and this range in words.
+type Row = (&'static str, f64, [f64; 2], &'static str);
 
 /// Rejects values without physical sense.
 pub(super) fn check(problem: &HeatProblem) -> Result<(), HeatError> {
     let rows = tube(problem).into_iter().chain(pipe(problem)).chain(drive(problem)).chain(rest(problem));
-    for (what, value, good, range) in rows {
-        if !good {
+    for (what, value, [low, high], range) in rows {
+        if !(low..=high).contains(&value) {
             return Err(HeatError::Invalid { what, value, range });
         }
     }
     Ok(())
-}
-
-fn within(value: f64, low: f64, high: f64) -> bool {
-    (low..=high).contains(&value)
 }
 
 fn tube(problem: &HeatProblem) -> Vec<Row> {
@@ -25,23 +21,23 @@ fn tube(problem: &HeatProblem) -> Vec<Row> {
     let (length, diameter) = (t.length_m, t.inner_diameter_m);
     let (k, c) = (t.wall_conductivity_w_per_m_k, t.wall_heat_capacity_j_per_m3_k);
     vec![
-        ("the length of the muscle [m]", length, within(length, 1e-3, 100.0), "1e-3 to 100"),
-        ("the inner diameter of the muscle [m]", diameter, within(diameter, 1e-4, 1.0), "1e-4 to 1"),
+        ("the length of the muscle [m]", length, [1e-3, 100.0], "1e-3 to 100"),
+        ("the inner diameter of the muscle [m]", diameter, [1e-4, 1.0], "1e-4 to 1"),
         (
             "the thickness of the muscle's wall [m]",
             t.wall_thickness_m,
-            within(t.wall_thickness_m, 1e-6, diameter),
+            [1e-6, diameter],
             "1e-6 to the inner diameter",
         ),
-        ("the conductivity of the muscle's wall [W/(m K)]", k, within(k, 1e-3, 500.0), "1e-3 to 500"),
-        ("the heat capacity of the muscle's wall [J/(m3 K)]", c, within(c, 1e4, 1e7), "1e4 to 1e7"),
+        ("the conductivity of the muscle's wall [W/(m K)]", k, [1e-3, 500.0], "1e-3 to 500"),
+        ("the heat capacity of the muscle's wall [J/(m3 K)]", c, [1e4, 1e7], "1e4 to 1e7"),
         (
             "the diameter of the port [m]",
             t.port_diameter_m,
-            within(t.port_diameter_m, 1e-5, diameter),
+            [1e-5, diameter],
             "1e-5 to the inner diameter of the muscle",
         ),
-        ("the swelling of the muscle", t.swelling, within(t.swelling, 0.0, 10.0), "0 to 10"),
+        ("the swelling of the muscle", t.swelling, [0.0, 10.0], "0 to 10"),
     ]
 }
 
@@ -54,29 +50,24 @@ fn pipe(problem: &HeatProblem) -> Vec<Row> {
         (
             "the length of the pipe [m]",
             p.length_m,
-            within(p.length_m, 0.01 * length, 0.99 * length),
+            [0.01 * length, 0.99 * length],
             "0.01 to 0.99 of the muscle's length; leave the pipe out for none",
         ),
-        (
-            "the inner diameter of the pipe [m]",
-            p.inner_diameter_m,
-            p.inner_diameter_m >= 1e-5,
-            "at least 1e-5",
-        ),
+        ("the inner diameter of the pipe [m]", p.inner_diameter_m, [1e-5, f64::INFINITY], "at least 1e-5"),
         (
             "the thickness of the pipe's wall [m]",
             p.wall_thickness_m,
-            within(p.wall_thickness_m, 1e-6, diameter),
+            [1e-6, diameter],
             "1e-6 to the inner diameter of the muscle",
         ),
         (
             "the outer diameter of the pipe [m]",
             outer,
-            outer <= 0.95 * diameter,
+            [f64::NEG_INFINITY, 0.95 * diameter],
             "at most 0.95 of the muscle's inner diameter",
         ),
-        ("the conductivity of the pipe [W/(m K)]", k, within(k, 1e-3, 500.0), "1e-3 to 500"),
-        ("the heat capacity of the pipe [J/(m3 K)]", c, within(c, 1e4, 1e7), "1e4 to 1e7"),
+        ("the conductivity of the pipe [W/(m K)]", k, [1e-3, 500.0], "1e-3 to 500"),
+        ("the heat capacity of the pipe [J/(m3 K)]", c, [1e4, 1e7], "1e4 to 1e7"),
     ]
 }
 
@@ -84,14 +75,14 @@ fn drive(problem: &HeatProblem) -> Vec<Row> {
     let d = &problem.drive;
     let plateau = d.period_s * d.duty.min(1.0 - d.duty);
     vec![
-        ("the low gauge pressure [Pa]", d.low_pa, within(d.low_pa, 0.0, 1e7), "0 to 1e7"),
-        ("the high gauge pressure [Pa]", d.high_pa, within(d.high_pa, d.low_pa, 1e7), "the low one to 1e7"),
-        ("the period [s]", d.period_s, within(d.period_s, 1e-3, 1e5), "1e-3 to 1e5"),
-        ("the duty", d.duty, within(d.duty, 0.01, 0.99), "0.01 to 0.99"),
+        ("the low gauge pressure [Pa]", d.low_pa, [0.0, 1e7], "0 to 1e7"),
+        ("the high gauge pressure [Pa]", d.high_pa, [d.low_pa, 1e7], "the low one to 1e7"),
+        ("the period [s]", d.period_s, [1e-3, 1e5], "1e-3 to 1e5"),
+        ("the duty", d.duty, [0.01, 0.99], "0.01 to 0.99"),
         (
             "the ramp [s]",
             d.ramp_s,
-            within(d.ramp_s, 1e-2 * plateau, plateau * (1.0 + 1e-12)),
+            [1e-2 * plateau, plateau * (1.0 + 1e-12)],
             "0.01 to 1 times the shorter of the charged and the discharged part of the period",
         ),
     ]
@@ -101,41 +92,26 @@ fn rest(problem: &HeatProblem) -> Vec<Row> {
     let (s, c, n) = (&problem.surroundings, &problem.closures, &problem.numerics);
     let energy = problem.activation_energy_j_per_mol;
     vec![
-        ("the ambient temperature [K]", s.ambient_k, within(s.ambient_k, 150.0, 600.0), "150 to 600"),
-        ("the supply temperature [K]", s.supply_k, within(s.supply_k, 150.0, 600.0), "150 to 600"),
-        ("the ambient pressure [Pa]", s.pressure_pa, within(s.pressure_pa, 1e3, 1e7), "1e3 to 1e7"),
+        ("the ambient temperature [K]", s.ambient_k, [150.0, 600.0], "150 to 600"),
+        ("the supply temperature [K]", s.supply_k, [150.0, 600.0], "150 to 600"),
+        ("the ambient pressure [Pa]", s.pressure_pa, [1e3, 1e7], "1e3 to 1e7"),
         (
             "the outer heat transfer coefficient [W/(m2 K)]",
             s.outer_transfer_w_per_m2_k,
-            within(s.outer_transfer_w_per_m2_k, 0.1, 1e5),
+            [0.1, 1e5],
             "0.1 to 1e5",
         ),
-        ("the Nusselt floor", c.nusselt_floor, within(c.nusselt_floor, 0.0, 1e3), "0 to 1e3"),
-        (
-            "the constant of natural convection",
-            c.natural_convection,
-            within(c.natural_convection, 0.0, 10.0),
-            "0 to 10",
-        ),
-        ("the Nusselt factor", c.nusselt_factor, within(c.nusselt_factor, 0.0, 100.0), "0 to 100"),
-        ("the mixing constant", c.mixing, within(c.mixing, 0.0, 100.0), "0 to 100"),
-        ("the jet's strength", c.jet_strength, within(c.jet_strength, 0.0, 100.0), "0 to 100"),
-        ("the jet's reach", c.jet_reach, within(c.jet_reach, 0.01, 1e3), "0.01 to 1e3"),
-        ("the jet's reach behind", c.jet_back, within(c.jet_back, 0.01, 1e3), "0.01 to 1e3"),
-        ("the activation energy [J/mol]", energy, within(energy, 0.0, 3e5), "0 to 3e5"),
-        ("the number of cells", n.cells as f64, (4..=2000).contains(&n.cells), "4 to 2000"),
-        (
-            "the number of steps in a cycle",
-            n.steps_per_cycle as f64,
-            (20..=100_000).contains(&n.steps_per_cycle),
-            "20 to 100 000",
-        ),
-        ("the tolerance [K]", n.tolerance_k, within(n.tolerance_k, 1e-9, 1.0), "1e-9 to 1"),
-        (
-            "the number of cycles allowed",
-            n.max_cycles as f64,
-            (1..=100_000_000).contains(&n.max_cycles),
-            "1 to 100 000 000",
-        ),
+        ("the Nusselt floor", c.nusselt_floor, [0.0, 1e3], "0 to 1e3"),
+        ("the constant of natural convection", c.natural_convection, [0.0, 10.0], "0 to 10"),
+        ("the Nusselt factor", c.nusselt_factor, [0.0, 100.0], "0 to 100"),
+        ("the mixing constant", c.mixing, [0.0, 100.0], "0 to 100"),
+        ("the jet's strength", c.jet_strength, [0.0, 100.0], "0 to 100"),
+        ("the jet's reach", c.jet_reach, [0.01, 1e3], "0.01 to 1e3"),
+        ("the jet's reach behind", c.jet_back, [0.01, 1e3], "0.01 to 1e3"),
+        ("the activation energy [J/mol]", energy, [0.0, 3e5], "0 to 3e5"),
+        ("the number of cells", n.cells as f64, [4.0, 2000.0], "4 to 2000"),
+        ("the number of steps in a cycle", n.steps_per_cycle as f64, [20.0, 1e5], "20 to 100 000"),
+        ("the tolerance [K]", n.tolerance_k, [1e-9, 1.0], "1e-9 to 1"),
+        ("the number of cycles allowed", n.max_cycles as f64, [1.0, 1e8], "1 to 100 000 000"),
     ]
 }

@@ -121,7 +121,12 @@ impl<'a> Runner<'a> {
                     Step { mesh, conductances: c, outside: Outside { ambient, supply }, from, to, dt },
                     &mut self.state,
                 )
-                .map_err(|_| HeatError::Step { time_s: step as f64 * dt, steps })?;
+                .map_err(|_| {
+                    let time_s = step as f64 * dt;
+                    HeatError::NotConverged(format!(
+                        "the step of the gas at {time_s} s in the cycle doesn't converge with {steps} steps in a cycle; take more"
+                    ))
+                })?;
             tally.muscle.add(&self.state.muscle, weight, ageing);
             tally.pipe.add(&self.state.pipe, weight, ageing);
             tally.mass += exchange.mass;

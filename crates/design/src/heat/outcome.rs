@@ -76,24 +76,16 @@ pub enum HeatError {
         /// Largest Mach number.
         mach: f64,
     },
-    /// A time step doesn't converge.
-    #[error(
-        "the step of the gas at {time_s} s in the cycle doesn't converge with {steps} steps in a cycle; take more"
-    )]
-    Step {
-        /// Time in the cycle \[s\].
-        time_s: f64,
-        /// Steps in a cycle.
-        steps: usize,
-    },
-    /// No periodic state within the cycles allowed.
-    #[error(
-        "not periodic after {cycles} cycles: about {residual_k:.2e} K are missing; allow more cycles, or a larger tolerance"
-    )]
-    NotPeriodic {
-        /// Cycles computed.
-        cycles: usize,
-        /// Estimated distance \[K\].
-        residual_k: f64,
-    },
+    /// A time step doesn't converge, or there is no periodic state within the cycles allowed.
+    #[error("{0}")]
+    NotConverged(String),
+}
+
+impl HeatError {
+    /// No periodic state within the cycles allowed: about so many kelvin are missing.
+    pub(super) fn not_periodic(cycles: usize, residual_k: f64) -> Self {
+        Self::NotConverged(format!(
+            "not periodic after {cycles} cycles: about {residual_k:.2e} K are missing; allow more cycles, or a larger tolerance"
+        ))
+    }
 }

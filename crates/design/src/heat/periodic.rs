@@ -58,12 +58,12 @@ pub(super) fn steady(runner: &mut Runner) -> Result<(Tally, f64), HeatError> {
                 }
             }
             // An extrapolated state may be physically impossible.
-            (Err(HeatError::Step { .. } | HeatError::Choked { .. }), Some(_)) if extrapolates => {}
+            (Err(HeatError::NotConverged(_) | HeatError::Choked { .. }), Some(_)) if extrapolates => {}
             (Err(error), _) => return Err(error),
         }
         let residual_k = best.as_ref().map_or(f64::NAN, |best| best.residual);
         if runner.cycles >= numerics.max_cycles {
-            return Err(HeatError::NotPeriodic { cycles: runner.cycles, residual_k });
+            return Err(HeatError::not_periodic(runner.cycles, residual_k));
         }
         if !extrapolates {
             history.clear();
@@ -125,7 +125,7 @@ pub(super) fn time_to_90(
         }
         last = now;
         if runner.cycles >= limit {
-            return Err(HeatError::NotPeriodic { cycles: runner.cycles, residual_k: (1.0 - now.1) * way });
+            return Err(HeatError::not_periodic(runner.cycles, (1.0 - now.1) * way));
         }
         if problem.numerics.accelerate && passed > 1.5 && runner.cycles.is_multiple_of(2) {
             passed += jump(runner, &before, steady, cell);

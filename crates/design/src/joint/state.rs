@@ -138,11 +138,17 @@ impl Joint {
 
     /// Refuses pressures outside the range of the joint.
     fn within(&self, pressures: [f64; 2]) -> Result<(), JointError> {
-        let range @ [low, high] = self.pressure;
+        let [low, high] = self.pressure;
         let slack = 1e-9 * high;
         let is_out = |p: &f64| !(*p >= low - slack && *p <= high + slack);
         match [Side::Agonist, Side::Antagonist].into_iter().zip(pressures).find(|(_, p)| is_out(p)) {
-            Some((side, pressure_pa)) => Err(JointError::Pressure { side, pressure_pa, range }),
+            Some((side, pressure_pa)) => Err(JointError::Outside(format!(
+                "the pressure of the {}, {:.4} bar, is outside the range of the joint, {:.4} to {:.4} bar",
+                side.name(),
+                1e-5 * pressure_pa,
+                1e-5 * low,
+                1e-5 * high
+            ))),
             None => Ok(()),
         }
     }
@@ -252,7 +258,7 @@ impl Closed<'_> {
     /// Gauge pressures of both muscles at an angle \[Pa\].
     ///
     /// # Errors
-    /// [`JointError::Empty`] if a muscle has no gauge pressure left, or [`JointError::Muscle`].
+    /// [`JointError::Outside`] if a muscle has no gauge pressure left, or [`JointError::Muscle`].
     pub fn pressures(&self, angle: f64) -> Result<[f64; 2], JointError> {
         let mut pressures = [0.0; 2];
         for ((found, muscle), gas) in pressures.iter_mut().zip(&self.joint.muscles).zip(&self.gas) {
@@ -268,11 +274,12 @@ impl Closed<'_> {
             };
             let state = gas.state(inside, self.joint.pressure[1]).map_err(|error| match error {
                 GasError::Muscle { pressure_pa, error } => muscle.failed(angle, pressure_pa, error),
-                _ => JointError::Empty {
-                    side: muscle.side,
-                    angle,
-                    pressure_pa: empty.get().unwrap_or_default(),
-                },
+                _ => JointError::Outside(format!(
+                    "the closed {} has no pressure left at {:.4} deg: {:.0} Pa below the air around it; fill it more",
+                    muscle.side.name(),
+                    angle.to_degrees(),
+                    empty.get().unwrap_or_default()
+                )),
             })?;
             *found = state.pressure_pa;
         }
@@ -404,7 +411,7 @@ mod tests {
             let [low, high] = joint.pressure;
             let torque = |one: f64, other: f64| joint.torque(0.0, one, other).unwrap();
             assert!((least + torque(high, low)).abs() < 1e-6 && (most + torque(low, high)).abs() < 1e-6);
-            assert!(matches!(joint.rest([2.0 * high, low], 0.0), Err(JointError::Pressure { .. })));
+            assert!(matches!(joint.rest([2.0 * high, low], 0.0), Err(JointError::Outside(_))));
         }
     }
 

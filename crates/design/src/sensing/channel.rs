@@ -109,7 +109,13 @@ impl Channel<'_> {
 
     fn local(&self, at: f64) -> Result<Local, SensingError> {
         let (offset, turning) = (self.winding.offset_m, self.turning());
-        let folded = || SensingError::Folded { offset_m: offset, at };
+        let folded = || {
+            SensingError::Input(format!(
+                "a channel {:.4} mm outside the fibres has no place at {:.2} % of the fibre length: the muscle is too sharply waisted there; take a thinner layer",
+                1e3 * offset,
+                100.0 * at
+            ))
+        };
         let (now, then) = (self.surface.at(at), self.reference.at(at));
         let [rho_0, meridian_0] = lifted(&then, offset).ok_or_else(folded)?;
         let thickness = match self.winding.layer {

@@ -32,7 +32,7 @@ impl Range {
     /// The contractions.
     ///
     /// # Errors
-    /// [`SensingError::Number`] if the ends are not finite or not in order, or the number is out of its
+    /// [`SensingError::Input`] if the ends are not finite or not in order, or the number is out of its
     /// range.
     pub fn contractions(&self) -> Result<Vec<f64>, SensingError> {
         let Self { from, to, points } = *self;
@@ -117,7 +117,7 @@ impl Curve {
     /// Effect of noise of the resistance \[ohm\] on the contraction.
     ///
     /// # Errors
-    /// [`SensingError::Number`] if the noise isn't greater than 0; as [`Curve::check_monotone`].
+    /// [`SensingError::Input`] if the noise isn't greater than 0; as [`Curve::check_monotone`].
     pub fn resolution(&self, noise_ohm: f64) -> Result<Resolution, SensingError> {
         number("noise of the resistance", noise_ohm, "a finite number of ohm greater than 0", is_positive)?;
         self.check_monotone()?;
@@ -143,7 +143,7 @@ impl Sensor {
     /// The characteristic over a range, computed in parallel.
     ///
     /// # Errors
-    /// [`SensingError::Number`] for an invalid range; as [`Sensor::reading`], for the smallest contraction at
+    /// [`SensingError::Input`] for an invalid range; as [`Sensor::reading`], for the smallest contraction at
     /// which it fails.
     pub fn curve(&self, range: Range) -> Result<Curve, SensingError> {
         let found: Vec<Result<Reading, SensingError>> =
@@ -163,14 +163,17 @@ impl Sensor {
     /// between two points; it is then found on the model itself.
     ///
     /// # Errors
-    /// As [`Curve::check_monotone`]; [`SensingError::OutsideCurve`]; [`SensingError::OtherCurve`]; as
-    /// [`Sensor::reading`].
+    /// As [`Curve::check_monotone`]; [`SensingError::Input`] if the resistance lies outside the curve, or the
+    /// curve belongs to another sensor; as [`Sensor::reading`].
     pub fn contraction(&self, curve: &Curve, resistance_ohm: f64) -> Result<f64, SensingError> {
+        let wrong = |what: String| Err(SensingError::Input(what));
         curve.check_monotone()?;
         let own = [self.reference_resistance_ohm(), self.pressure_pa()].map(f64::to_bits);
         let its = curve.readings.first().map(|reading| [curve.reference_resistance_ohm, reading.pressure_pa]);
         if its.map(|its| its.map(f64::to_bits)) != Some(own) {
-            return Err(SensingError::OtherCurve);
+            return wrong(
+                "this curve is not one of this winding: compute it with the same sensor".to_owned(),
+            );
         }
         let inside = |pair: &&[Reading]| {
             let [a, b] = [pair[0].resistance_ohm, pair[1].resistance_ohm];
@@ -180,8 +183,10 @@ impl Sensor {
             curve.readings.windows(2).find(inside).and_then(|pair| pair.first_chunk::<2>())
         else {
             let ends = [0, curve.readings.len() - 1].map(|i| curve.readings[i].resistance_ohm);
-            let range_ohm = [ends[0].min(ends[1]), ends[0].max(ends[1])];
-            return Err(SensingError::OutsideCurve { resistance_ohm, range_ohm });
+            let (low, high) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
+            return wrong(format!(
+                "the resistance {resistance_ohm} ohm lies outside those of the curve, {low} ohm to {high} ohm: measure within it, or compute a wider curve"
+            ));
         };
         let ends = [left, right];
         if let Some(end) = ends.iter().find(|end| end.resistance_ohm.to_bits() == resistance_ohm.to_bits()) {
@@ -198,9 +203,12 @@ impl Sensor {
         };
         let start = left.contraction + width * (resistance_ohm - left.resistance_ohm) / rise;
         let found = newton_bracketed(value, left.contraction, right.contraction, start, [LAST_STEP, 0.0]);
-        found.map_err(|error| match error {
-            RootError::Function(error) => error,
-            RootError::Budget { at, .. } => SensingError::NoContraction { resistance_ohm, near: at },
+        found.or_else(|error| match error {
+            RootError::Function(error) => Err(error),
+            RootError::Budget { at, .. } => wrong(format!(
+                "no contraction was found to the resistance {resistance_ohm} ohm near {:.4} %: compute the curve with more points",
+                100.0 * at
+            )),
         })
     }
 }

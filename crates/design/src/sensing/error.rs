@@ -1,50 +1,14 @@
 //! Why a winding has no resistance, no contraction or no best zone.
 
 use bulge_fibre::FibreError;
+use bulge_muscles::{Pressure, Quantity};
 
 /// What is wrong, where, and how to correct it.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum SensingError {
-    /// A number outside its range.
-    #[error("the {what} is {value}: it must be {needs}")]
-    Number {
-        /// The number.
-        what: &'static str,
-        /// Its value in SI units.
-        value: f64,
-        /// Its required range.
-        needs: &'static str,
-    },
-    /// An invalid winding zone.
-    #[error(
-        "the winding zone from {start} to {end} of the fibre length is none: it must lie in 0..1, with its end at least 1e-6 beyond its start"
-    )]
-    Zone {
-        /// Start, as a fraction of the fibre length.
-        start: f64,
-        /// End.
-        end: f64,
-    },
-    /// Neighbouring turns would overlap.
-    #[error(
-        "the turns of the channel are {:.4} mm apart, but it is {:.4} mm wide: take fewer turns, a wider zone or a smaller section", 1e3 * pitch_m, 1e3 * diameter_m
-    )]
-    Crowded {
-        /// Meridian per turn in the reference \[m\].
-        pitch_m: f64,
-        /// Diameter of a round channel of this section \[m\].
-        diameter_m: f64,
-    },
-    /// The offset surface folds, or nothing of the layer is left.
-    #[error(
-        "a channel {:.4} mm outside the fibres has no place at {:.2} % of the fibre length: the muscle is too sharply waisted there; take a thinner layer", 1e3 * offset_m, 100.0 * at
-    )]
-    Folded {
-        /// Offset in the reference \[m\].
-        offset_m: f64,
-        /// Position as a fraction of the fibre length.
-        at: f64,
-    },
+    /// A winding, a request, a meridian or a curve that is impossible: what is wrong, and what to do instead.
+    #[error("{0}")]
+    Input(String),
     /// The muscle has no equilibrium in this state.
     #[error("the winding has no resistance at {pressure_pa} Pa and contraction {:.4} %: {error}", 100.0 * contraction)]
     Equilibrium {
@@ -54,14 +18,6 @@ pub enum SensingError {
         contraction: f64,
         /// Error of the solver.
         error: Box<FibreError>,
-    },
-    /// The meridian isn't one of the winding's muscle, or has too few points.
-    #[error(
-        "this meridian doesn't fit the winding: {why}; give a shape of the same muscle with at least 7 points"
-    )]
-    Meridian {
-        /// The reason.
-        why: &'static str,
     },
     /// The elastomer would tear.
     #[error(
@@ -93,25 +49,6 @@ pub enum SensingError {
         /// Contractions between which it turns.
         between: [f64; 2],
     },
-    /// The resistance is outside the range of the curve.
-    #[error("the resistance {resistance_ohm} ohm lies outside those of the curve, {} ohm to {} ohm: measure within it, or compute a wider curve", range_ohm[0], range_ohm[1])]
-    OutsideCurve {
-        /// Given resistance \[ohm\].
-        resistance_ohm: f64,
-        /// Smallest and largest resistance of the curve \[ohm\].
-        range_ohm: [f64; 2],
-    },
-    /// The curve belongs to another sensor.
-    #[error("this curve is not one of this winding: compute it with the same sensor")]
-    OtherCurve,
-    /// The root search ended without a root.
-    #[error("no contraction was found to the resistance {resistance_ohm} ohm near {:.4} %: compute the curve with more points", 100.0 * near)]
-    NoContraction {
-        /// Given resistance \[ohm\].
-        resistance_ohm: f64,
-        /// Last contraction tried.
-        near: f64,
-    },
     /// No zone meets the requirements.
     #[error(
         "none of the {scanned} zones is good enough: the largest mean sensitivity of a monotone one is {largest:.6} per contraction, {wanted:.6} is wanted, \
@@ -127,4 +64,11 @@ pub enum SensingError {
         /// Number of zones that strain the elastomer too much.
         overstrained: usize,
     },
+}
+
+impl SensingError {
+    /// The error of the solver in a state of the muscle.
+    pub(super) fn unsolved(pressure: Pressure, contraction: f64) -> impl Fn(FibreError) -> Self {
+        move |error| Self::Equilibrium { pressure_pa: pressure.si(), contraction, error: Box::new(error) }
+    }
 }

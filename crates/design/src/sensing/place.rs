@@ -151,7 +151,7 @@ impl Sensor {
     /// The best zone for this winding. Its own zone is ignored; its turns, section and layer are kept.
     ///
     /// # Errors
-    /// [`SensingError::Number`] for an invalid search, [`SensingError::Equilibrium`] over the range,
+    /// [`SensingError::Input`] for an invalid search, [`SensingError::Equilibrium`] over the range,
     /// [`SensingError::NoPlace`] if no zone is acceptable.
     pub fn best_place(&self, search: &Search) -> Result<Placement, SensingError> {
         search.check()?;

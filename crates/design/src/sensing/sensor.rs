@@ -57,9 +57,8 @@ impl Sensor {
     /// `MuscleWithEffects::new(&muscle, &[])`.
     ///
     /// # Errors
-    /// [`SensingError::Number`], [`SensingError::Zone`] and [`SensingError::Crowded`] for an impossible
-    /// winding, [`SensingError::Equilibrium`] if the muscle has no equilibrium at the reference,
-    /// [`SensingError::Folded`] if the layer has no room there.
+    /// [`SensingError::Input`] for an impossible winding, or if the layer has no room there;
+    /// [`SensingError::Equilibrium`] if the muscle has no equilibrium at the reference.
     pub fn new(
         muscle: &MuscleWithEffects,
         pressure: Pressure,
@@ -72,12 +71,8 @@ impl Sensor {
         let sigma = own.angle.cos();
         let (r, fibre) = (own.radius, own.length / sigma);
         winding.check(r)?;
-        let unsolved = |error| SensingError::Equilibrium {
-            pressure_pa: pressure.si(),
-            contraction: 0.0,
-            error: Box::new(error),
-        };
-        let problem = Problem::new(own, pressure).map_err(unsolved)?;
+        let unsolved = SensingError::unsolved(pressure, 0.0);
+        let problem = Problem::new(own, pressure).map_err(&unsolved)?;
         let reference = match reference {
             Reference::Rest => Surface::Cylinder { r, sigma, fibre },
             Reference::At { pressure, contraction } => {
@@ -105,12 +100,8 @@ impl Sensor {
     /// # Errors
     /// [`SensingError::Equilibrium`] if the pressure isn't greater than 0.
     pub fn at_pressure(&self, pressure: Pressure) -> Result<Self, SensingError> {
-        let unsolved = |error| SensingError::Equilibrium {
-            pressure_pa: pressure.si(),
-            contraction: 0.0,
-            error: Box::new(error),
-        };
-        Ok(Self { problem: self.problem.at_pressure(pressure).map_err(unsolved)?, ..self.clone() })
+        let problem = self.problem.at_pressure(pressure).map_err(SensingError::unsolved(pressure, 0.0))?;
+        Ok(Self { problem, ..self.clone() })
     }
 
     /// The winding.
@@ -152,7 +143,8 @@ impl Sensor {
     /// The winding at a contraction.
     ///
     /// # Errors
-    /// [`SensingError::Equilibrium`], [`SensingError::Folded`], or [`SensingError::Overstrained`] beyond [`Options::max_strain`].
+    /// [`SensingError::Equilibrium`], [`SensingError::Input`] if the layer has no room, or
+    /// [`SensingError::Overstrained`] beyond [`Options::max_strain`].
     pub fn reading(&self, contraction: f64) -> Result<Reading, SensingError> {
         self.bearable(self.read(&self.winding, self.length_0, &self.pose(contraction)?)?)
     }
@@ -160,7 +152,7 @@ impl Sensor {
     /// The winding on a meridian of the same muscle that was computed elsewhere.
     ///
     /// # Errors
-    /// [`SensingError::Meridian`] if the meridian isn't of the same muscle or has fewer than 7 points; as
+    /// [`SensingError::Input`] if the meridian isn't of the same muscle or has fewer than 7 points; as
     /// [`Sensor::reading`].
     pub fn reading_of(&self, shape: &Shape) -> Result<Reading, SensingError> {
         let surface = Surface::of_shape(shape, self.fibre)?;
@@ -171,23 +163,19 @@ impl Sensor {
     /// to 1e6 points.
     ///
     /// # Errors
-    /// [`SensingError::Number`] for another count, [`SensingError::Equilibrium`] or [`SensingError::Folded`].
+    /// [`SensingError::Input`] for another count or a layer without room, [`SensingError::Equilibrium`].
     /// A strain beyond [`Options::max_strain`] is no error here: the points show where it occurs.
     pub fn channel(&self, contraction: f64, count: usize) -> Result<Vec<ChannelPoint>, SensingError> {
-        number("number of points of the channel", count as f64, "from 2 to 1e6", |_| {
-            (2..=1_000_000).contains(&count)
-        })?;
+        check_count(count)?;
         self.wound(&self.winding, &self.pose(contraction)?.surface).points(count)
     }
 
     /// The channel in its reference, as [`Sensor::channel`].
     ///
     /// # Errors
-    /// [`SensingError::Number`].
+    /// [`SensingError::Input`].
     pub fn reference_channel(&self, count: usize) -> Result<Vec<ChannelPoint>, SensingError> {
-        number("number of points of the channel", count as f64, "from 2 to 1e6", |_| {
-            (2..=1_000_000).contains(&count)
-        })?;
+        check_count(count)?;
         self.wound(&self.winding, &self.reference).points(count)
     }
 
@@ -246,6 +234,13 @@ impl Sensor {
     }
 }
 
+/// Refuses an impossible number of points of a channel.
+fn check_count(count: usize) -> Result<(), SensingError> {
+    number("number of points of the channel", count as f64, "from 2 to 1e6", |_| {
+        (2..=1_000_000).contains(&count)
+    })
+}
+
 /// Resistance \[ohm\] from the integral of lambda dL \[m\].
 fn resistance_of(winding: &Winding, stretched_m: f64) -> f64 {
     winding.resistivity_ohm_m * stretched_m / winding.section_m2
@@ -259,11 +254,7 @@ fn pose(
     fibre: f64,
     contraction: f64,
 ) -> Result<Pose, SensingError> {
-    let unsolved = |error: FibreError| SensingError::Equilibrium {
-        pressure_pa: problem.pressure().si(),
-        contraction,
-        error: Box::new(error),
-    };
+    let unsolved = SensingError::unsolved(problem.pressure(), contraction);
     if !contraction.is_finite() {
         return Err(unsolved(FibreError::NotFinite { what: "contraction", value: contraction }));
     }

@@ -43,7 +43,11 @@ pub(super) enum Surface {
 impl Surface {
     /// From an equilibrium of a muscle whose fibres have this unstretched length \[m\].
     pub(super) fn of_shape(shape: &Shape, fibre: f64) -> Result<Self, SensingError> {
-        let why = |why| Err(SensingError::Meridian { why });
+        let why = |why| {
+            Err(SensingError::Input(format!(
+                "this meridian doesn't fit the winding: {why}; give a shape of the same muscle with at least 7 points"
+            )))
+        };
         if shape.meridian.len() < FEWEST_POINTS {
             return why("it has too few points");
         }

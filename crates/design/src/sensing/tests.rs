@@ -78,3 +78,9 @@ fn search(to: f64, widths: [f64; 2], goal: Goal) -> Search {
     let range = Range { from: 0.05, to, points: 26 };
     Search { range, widths, width_steps, centres: 15, goal }
 }
+
+/// An impossible input is refused with a message that has this part.
+fn assert_refused<T: std::fmt::Debug>(found: Result<T, SensingError>, part: &str) {
+    let Err(SensingError::Input(message)) = found else { panic!("{found:?}") };
+    assert!(message.contains(part), "{message}");
+}

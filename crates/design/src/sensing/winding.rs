@@ -82,7 +82,10 @@ impl Winding {
     pub(super) fn check(&self, radius_m: f64) -> Result<(), SensingError> {
         let inside = self.start >= 0.0 && self.end <= 1.0 && self.width() >= NARROWEST;
         if !inside {
-            return Err(SensingError::Zone { start: self.start, end: self.end });
+            let Self { start, end, .. } = self;
+            return Err(SensingError::Input(format!(
+                "the winding zone from {start} to {end} of the fibre length is none: it must lie in 0..1, with its end at least 1e-6 beyond its start"
+            )));
         }
         number("number of turns", self.turns, "from 0 to 1e6", |n| (0.0..=MOST_TURNS).contains(&n))?;
         number("offset of the channel", self.offset_m, "from 0 to the radius of the muscle", |t| {
@@ -103,7 +106,14 @@ impl Winding {
     /// Checks that the turns fit into a zone with this meridian \[m\].
     pub(super) fn check_pitch(&self, meridian_m: f64) -> Result<(), SensingError> {
         let (pitch_m, diameter_m) = (meridian_m / self.turns, self.diameter_m());
-        if pitch_m < diameter_m { Err(SensingError::Crowded { pitch_m, diameter_m }) } else { Ok(()) }
+        if pitch_m < diameter_m {
+            return Err(SensingError::Input(format!(
+                "the turns of the channel are {:.4} mm apart, but it is {:.4} mm wide: take fewer turns, a wider zone or a smaller section",
+                1e3 * pitch_m,
+                1e3 * diameter_m
+            )));
+        }
+        Ok(())
     }
 }
 
@@ -159,10 +169,13 @@ pub(super) fn is_positive(value: f64) -> bool {
 
 /// An error if a number violates its condition; a comparison with NaN is false.
 pub(super) fn number(
-    what: &'static str,
+    what: &str,
     value: f64,
-    needs: &'static str,
+    needs: &str,
     is_good: impl Fn(f64) -> bool,
 ) -> Result<(), SensingError> {
-    if is_good(value) { Ok(()) } else { Err(SensingError::Number { what, value, needs }) }
+    if is_good(value) {
+        return Ok(());
+    }
+    Err(SensingError::Input(format!("the {what} is {value}: it must be {needs}")))
 }

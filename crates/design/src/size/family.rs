@@ -39,7 +39,7 @@ impl Limits {
     }
 
     fn check(&self) -> Result<(), SizeError> {
-        let wish = |what, value, range| Err(SizeError::Requirements { what, value, range });
+        let wish = |what, value, range| Err(SizeError::out_of_range(what, value, range));
         if !(self.pressure_pa > 0.0 && self.pressure_pa.is_finite()) {
             return wish("highest pressure", self.pressure_pa, "a pressure above 0");
         }

@@ -34,19 +34,26 @@ impl LoadCase {
         for (i, LoadPoint { travel_m, force_n }) in points.iter().enumerate() {
             for (what, value) in [("travel", *travel_m), ("force", *force_n)] {
                 if !(value >= 0.0 && value.is_finite()) {
-                    return Err(SizeError::Load { point: i + 1, what, value });
+                    let point = i + 1;
+                    return Err(SizeError::Input(format!(
+                        "point {point} of the load has the {what} {value}: it must be a finite number, 0 or more"
+                    )));
                 }
             }
             if *travel_m <= before {
-                return Err(SizeError::Order { point: i + 1, travel_m: *travel_m });
+                let point = i + 1;
+                return Err(SizeError::Input(format!(
+                    "point {point} of the load lies at the travel {travel_m} m, not beyond the one before: give the points in order, each travel once"
+                )));
             }
             before = *travel_m;
         }
         if before <= 0.0 {
-            return Err(SizeError::NoStroke);
+            return Err(SizeError::no_stroke());
         }
         if points.iter().all(|point| point.force_n == 0.0) {
-            return Err(SizeError::NoForce);
+            let what = "the load is 0 N everywhere: any muscle carries it";
+            return Err(SizeError::Input(what.to_owned()));
         }
         Ok(Self { points })
     }
@@ -58,7 +65,7 @@ impl LoadCase {
     pub fn lift(stroke_m: f64, at_rest_n: f64, contracted_n: f64) -> Result<Self, SizeError> {
         let point = |travel_m, force_n| LoadPoint { travel_m, force_n };
         if stroke_m == 0.0 {
-            return Err(SizeError::NoStroke);
+            return Err(SizeError::no_stroke());
         }
         Self::new(vec![point(0.0, at_rest_n), point(stroke_m, contracted_n)])
     }
@@ -123,16 +130,18 @@ mod tests {
         let load = |points: &[(f64, f64)]| {
             LoadCase::new(points.iter().map(|(x, f)| point(*x, *f)).collect()).unwrap_err()
         };
-        assert_eq!(load(&[]), SizeError::NoStroke);
-        assert_eq!(load(&[(0.0, 5.0)]), SizeError::NoStroke);
-        assert_eq!(LoadCase::lift(0.0, 1.0, 2.0), Err(SizeError::NoStroke));
-        assert_eq!(load(&[(0.0, 0.0), (0.1, 0.0)]), SizeError::NoForce);
-        assert_eq!(load(&[(0.1, 1.0), (0.1, 2.0)]), SizeError::Order { point: 2, travel_m: 0.1 });
-        assert!(matches!(
-            load(&[(0.0, 1.0), (f64::NAN, 2.0)]),
-            SizeError::Load { point: 2, what: "travel", .. }
-        ));
-        assert!(matches!(load(&[(0.0, -1.0)]), SizeError::Load { point: 1, what: "force", .. }));
-        assert!(matches!(load(&[(0.1, f64::INFINITY)]), SizeError::Load { point: 1, what: "force", .. }));
+        assert_eq!(LoadCase::lift(0.0, 1.0, 2.0), Err(SizeError::no_stroke()));
+        for (points, says) in [
+            (&[][..], "the load has no stroke"),
+            (&[(0.0, 5.0)], "the load has no stroke"),
+            (&[(0.0, 0.0), (0.1, 0.0)], "the load is 0 N everywhere"),
+            (&[(0.1, 1.0), (0.1, 2.0)], "point 2 of the load lies at the travel 0.1 m"),
+            (&[(0.0, 1.0), (f64::NAN, 2.0)], "point 2 of the load has the travel NaN"),
+            (&[(0.0, -1.0)], "point 1 of the load has the force -1"),
+            (&[(0.1, f64::INFINITY)], "point 1 of the load has the force inf"),
+        ] {
+            let message = load(points).to_string();
+            assert!(message.starts_with(says), "{message}");
+        }
     }
 }

@@ -100,7 +100,7 @@ pub fn size(families: &[Family], load: &LoadCase, wish: &Requirements) -> Result
 }
 
 fn check(wish: &Requirements) -> Result<(), SizeError> {
-    let fault = |what, value, range| Err(SizeError::Requirements { what, value, range });
+    let fault = |what, value, range| Err(SizeError::out_of_range(what, value, range));
     for (what, values) in [("pressure", &wish.pressures_pa), ("length", &wish.lengths_m)] {
         if let Some(value) = values.iter().find(|value| !(**value > 0.0 && value.is_finite())) {
             return fault(what, *value, "a finite number above 0");

@@ -1,7 +1,7 @@
 //! Contradictions between data and muscle. A wrong unit, sign or zero is not physics, so the user is asked
 //! about it, with the evidence.
 
-use bulge_measurements::{Data, Motion};
+use bulge_measurements::{Data, Trace};
 use bulge_model::{Model, Record, Wanted, Warm};
 use bulge_muscles::units::significant;
 use bulge_muscles::{Muscle, Quantity};
@@ -241,7 +241,7 @@ fn motions(data: &Data, muscle: &Muscle) -> Vec<Meaning> {
         of: Box::new(move |[p, c, f]| [p, of(c, l0), f]),
     };
     match data.motion() {
-        Motion::Contraction(_) => vec![
+        Trace::Contraction(_) => vec![
             meaning(
                 "contraction-unit",
                 "with contractions 100 times as large",
@@ -278,7 +278,7 @@ fn motions(data: &Data, muscle: &Muscle) -> Vec<Meaning> {
                 |c, l0| 1.0 - 0.1 * c / l0,
             ),
         ],
-        Motion::Length(_) => vec![meaning(
+        Trace::Length(_) => vec![meaning(
             "displacement",
             "with the lengths read as displacements",
             "is this how far the muscle has shortened?",

@@ -15,7 +15,7 @@ pub(super) fn find(gate: &Gate) -> Vec<Finding> {
 }
 
 fn directions(gate: &Gate) -> Option<Finding> {
-    let stated = gate.data.stated_direction()?;
+    let stated = gate.data.columns().direction.as_deref()?;
     let (mut wrong, mut moving) = (Vec::new(), 0);
     for (sweep, driven) in gate.data.driven() {
         for stretch in driven.stretches.iter().filter(|stretch| stretch.direction != 0) {
@@ -131,7 +131,11 @@ fn duplicates(gate: &Gate) -> Option<Finding> {
     }
     let columns: Vec<&[f64]> = data.columns().numbers().map(|(_, values)| values).collect();
     let marks = |row: usize| {
-        (data.specimen_of(row), data.cycle().map(|cycle| cycle[row]), data.stated_direction().map(|d| d[row]))
+        (
+            data.specimen_of(row),
+            data.columns().cycle.as_deref().map(|cycle| cycle[row]),
+            data.columns().direction.as_deref().map(|d| d[row]),
+        )
     };
     let fingerprint = |row: usize| {
         let mut hasher = DefaultHasher::new();

@@ -1,9 +1,9 @@
 //! Each fault planted in clean loops is found in the right place, and nothing else is found.
 
 use super::*;
+use crate::MeasurementError;
 use crate::columns::{Columns, Trace};
 use crate::simulated::{LOOP, Noise, clean_loops, force};
-use crate::{MeasurementError, Motion};
 
 mod sensors;
 
@@ -341,13 +341,10 @@ fn lines_are_those_of_the_files() {
     let data = Data::from_csv(text, "a.csv").unwrap();
     let found = data.quality(&QualityOptions::default());
     assert_eq!(lines(&found, FindingKind::ImpossibleValue), [5, 6]);
-    assert!(matches!(data.motion(), Motion::Length(_)));
+    assert!(matches!(data.motion(), Trace::Length(_)));
     let json = serde_json::to_value(&found).unwrap();
     assert_eq!(json["findings"][1]["kind"], "impossible-value");
     assert_eq!(json["findings"][1]["severity"], "error");
     assert_eq!(json["findings"][1]["rows"][0]["first"], 5);
-    assert_eq!(
-        Data::from_csv("", "a.csv").unwrap_err(),
-        MeasurementError::Empty { file: "a.csv".to_owned() }
-    );
+    assert_eq!(Data::from_csv("", "a.csv").unwrap_err(), MeasurementError::empty("a.csv"));
 }

@@ -1,7 +1,7 @@
 //! Impossible values, most often from a wrong unit or sign.
 
 use super::{Finding, FindingKind, Gate, Severity, rows_in_words};
-use crate::Motion;
+use crate::Trace;
 use crate::resolution::bounds;
 use std::f64::consts::PI;
 
@@ -80,8 +80,8 @@ fn pressures(gate: &Gate) -> Vec<Finding> {
 fn motions(gate: &Gate) -> Vec<Finding> {
     let l0 = gate.options.l0_m.filter(|l0| *l0 > 0.0);
     let (contraction, length): (Vec<f64>, &[f64]) = match gate.data.motion() {
-        Motion::Contraction(values) => (values.to_vec(), &[]),
-        Motion::Length(values) => (l0.map_or_else(Vec::new, |l0| gate.data.contraction(l0)), values),
+        Trace::Contraction(values) => (values.clone(), &[]),
+        Trace::Length(values) => (l0.map_or_else(Vec::new, |l0| gate.data.contraction(l0)), values),
     };
     let outside = impossible(
         gate,
@@ -126,8 +126,8 @@ fn others(gate: &Gate) -> Vec<Finding> {
         "check the unit of the temperature: `temperature [degC]` or `temperature [K]`",
     );
     let positive = [
-        (data.diameter(), ["a diameter of 0 or less", "m"]),
-        (data.volume(), ["a volume of 0 or less", "m^3"]),
+        (data.columns().diameter_m.as_deref(), ["a diameter of 0 or less", "m"]),
+        (data.columns().volume_m3.as_deref(), ["a volume of 0 or less", "m^3"]),
         (data.force_sd(), ["a standard deviation of the force of 0 or less", "N"]),
     ];
     let not_positive = positive.into_iter().filter_map(|(values, what)| {

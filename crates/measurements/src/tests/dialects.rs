@@ -7,7 +7,7 @@
     reason = "a table of dialects is long, and reads best as it is written"
 )]
 
-use crate::{ColumnMap, Data, Motion, ReadOptions};
+use crate::{ColumnMap, Data, ReadOptions, Trace};
 use proptest::prelude::*;
 use std::fmt::Write as _;
 
@@ -41,7 +41,7 @@ pub(super) fn equal(name: &str, found: &Data) {
     let expected = plain();
     let bits = |values: &[f64]| values.iter().map(|value| value.to_bits()).collect::<Vec<_>>();
     let columns = |data: &Data| {
-        let Motion::Length(length) = data.motion() else { panic!("{name}: no length") };
+        let Trace::Length(length) = data.motion() else { panic!("{name}: no length") };
         [data.pressure(), length, data.force(), data.time().unwrap_or_default()].map(bits)
     };
     assert_eq!(columns(found), columns(&expected), "{name}");
@@ -329,8 +329,8 @@ fn displacements() {
     ] {
         let found = reads(name, table(name, values).as_bytes(), columns);
         let length = |data: &Data| match data.motion() {
-            Motion::Length(length) => length.to_vec(),
-            Motion::Contraction(_) => panic!("{name}: a contraction"),
+            Trace::Length(length) => length.clone(),
+            Trace::Contraction(_) => panic!("{name}: a contraction"),
         };
         for (a, b) in length(&found).iter().zip(length(&plain())) {
             assert!((a - b).abs() < 1e-15, "{name}: {a} {b}");
@@ -410,7 +410,7 @@ fn a_computed_contraction_is_left_aside() {
         )
     };
     let data = reads("both", table(0.2).as_bytes(), "");
-    assert!(matches!(data.motion(), Motion::Length(_)));
+    assert!(matches!(data.motion(), Trace::Length(_)));
     assert_eq!(data.reading().columns[1].says.as_deref(), Some("ignored: it follows from the length"));
     let error = Data::from_bytes(table(0.3).as_bytes(), "d.csv", &options("")).unwrap_err().to_string();
     assert!(error.contains("both given"), "{error}");

@@ -171,7 +171,7 @@ impl CaseRun<'_> {
             }
             self.under_way = Some(self.loads(step)?);
         }
-        let Some((begin, end)) = self.under_way.clone() else { return Err(MembraneError::NothingMoves) };
+        let Some((begin, end)) = self.under_way.clone() else { return Err(MembraneError::nothing_moves()) };
         let share = |made: usize| made as f64 / step.states as f64;
         let (from, to) = (begin.towards(&end, share(self.made)), begin.towards(&end, share(self.made + 1)));
         let mut on_the_way = None;
@@ -224,7 +224,7 @@ impl CaseRun<'_> {
     /// # Errors
     /// As [`Self::advance`].
     pub fn last_row(&mut self, mut seen: impl FnMut(&Row)) -> Result<Row, CaseError> {
-        let mut last = Err(CaseError::Structure(MembraneError::NothingMoves));
+        let mut last = Err(CaseError::Structure(MembraneError::nothing_moves()));
         while let Some(next) = self.advance(|_, _| ()) {
             let (row, _, _) = next?;
             seen(&row);

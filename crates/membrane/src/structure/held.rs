@@ -31,7 +31,10 @@ pub(super) fn dofs(
         let nodes = used(mesh, name, is_used)?;
         match support {
             Support::Fitting { fitting } if *fitting >= fittings.len() => {
-                return Err(MembraneError::NoFitting { fitting: *fitting, known: fittings.len() });
+                let known = fittings.len();
+                return Err(MembraneError::Structure(format!(
+                    "there is no fitting {fitting}: {known} are known, counted from 0"
+                )));
             }
             Support::Fitting { fitting } => is_ridden[*fitting] |= !nodes.is_empty(),
             Support::Cyclic { partner, angle } => check_turn(name, partner, *angle)?,
@@ -41,7 +44,9 @@ pub(super) fn dofs(
     }
     let mut all = fittings.iter().zip(&is_ridden);
     if let Some(fitting) = all.position(|(kind, is_ridden)| *kind == Fitting::Loaded && !is_ridden) {
-        return Err(MembraneError::EmptyFitting { fitting });
+        return Err(MembraneError::Structure(format!(
+            "no element has a node on the loaded fitting {fitting} (counted from 0): hold a group of a part by it, or leave it out"
+        )));
     }
     held.dofs(&mesh.nodes).map_err(|clash| named(mesh, supports, clash))
 }
@@ -59,8 +64,10 @@ fn check_turn(group: &str, partner: &str, angle: f64) -> Result<(), MembraneErro
     if group != partner && is_turn {
         return Ok(());
     }
-    let (group, partner) = (group.to_owned(), partner.to_owned());
-    Err(MembraneError::NoTurn { group, partner, degrees: angle.to_degrees() })
+    Err(MembraneError::Structure(format!(
+        "`{group}` is to follow `{partner}` turned by {:.6} degrees about z, which is the same edge: name the other edge of the sector as partner, and the angle from it to `{group}`",
+        angle.to_degrees()
+    )))
 }
 
 fn hold(
@@ -98,11 +105,20 @@ fn hold(
 /// The error of a clash, with numbers and names from the mesh.
 fn named(mesh: &Mesh, supports: &[(String, Support)], clash: Clash) -> MembraneError {
     let node = mesh.number(clash.node);
-    let groups = clash.by.map(|by| supports.get(by).map_or_else(String::new, |(name, _)| name.clone()));
-    match clash.kind {
-        ClashKind::TwoFittings => MembraneError::TwoFittings { node, groups },
-        ClashKind::TwoPartners => MembraneError::TwoPartners { node, groups },
-        ClashKind::Chain => MembraneError::CyclicChain { node, groups },
-        ClashKind::HeldFitting => MembraneError::HeldFitting { node, groups },
-    }
+    let [first, second] = clash.by.map(|by| supports.get(by).map_or("", |(name, _)| name.as_str()));
+    let what = match clash.kind {
+        ClashKind::TwoFittings => format!(
+            "rides on two fittings, by `{first}` and by `{second}`: a node can only ride on one; take it out of one of the groups"
+        ),
+        ClashKind::TwoPartners => format!(
+            "follows two nodes, by `{first}` and by `{second}`: a node can only follow one; take it out of one of the groups"
+        ),
+        ClashKind::Chain => format!(
+            "is the partner of a node of `{first}` and follows another itself, by `{second}`: the two edges of a cyclic sector must be apart; leave one of the supports out"
+        ),
+        ClashKind::HeldFitting => format!(
+            "rides on a fitting, by `{second}`, and is held along z, by `{first}`: a fitting moves along z; keep one of the two supports"
+        ),
+    };
+    MembraneError::Structure(format!("node {node} {what}"))
 }

@@ -58,21 +58,20 @@ pub(super) fn check(
     for node in 0..mesh.nodes.len() {
         pieces.hold(node, &owners);
     }
-    let group_of = |node: usize| {
+    let not_held = |node: usize, motion: &str| {
         let found = groups.iter().find(|(_, group)| {
             let set = group.elements();
             (0..set.count()).any(|e| set.nodes(e).iter().any(|other| *other as usize == node))
         });
-        found.map_or_else(String::new, |(name, _)| name.clone())
+        let (node, group) = (mesh.number(node), found.map_or("", |(name, _)| name.as_str()));
+        Err(MembraneError::Structure(format!(
+            "nothing holds the part of the mesh with node {node} of `{group}` against every rigid motion: it can {motion}; add a `[[support]]` against that"
+        )))
     };
     if let Some((node, motion)) = pieces.free() {
-        return Err(MembraneError::NotHeld { node: mesh.number(node), group: group_of(node), motion });
+        return not_held(node, &motion);
     }
-    if let Some(node) = pieces.free_fitting() {
-        let motion = "move along z with its loaded fitting".to_owned();
-        return Err(MembraneError::NotHeld { node: mesh.number(node), group: group_of(node), motion });
-    }
-    Ok(())
+    pieces.free_fitting().map_or(Ok(()), |node| not_held(node, "move along z with its loaded fitting"))
 }
 
 /// The first node of each degree of freedom.

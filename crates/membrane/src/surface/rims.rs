@@ -68,24 +68,33 @@ impl<'a> Rims<'a> {
     pub(super) fn fault(&self, group: &str, support: &Support, nodes: [usize; 2]) -> Option<MembraneError> {
         let Support::Plane { normal } = support else { return None };
         let normal = scaled(*normal, 1.0 / norm(*normal));
-        let (group, [a, b]) = (group.to_owned(), nodes.map(|node| self.mesh.nodes[node]));
+        let [a, b] = nodes.map(|node| self.mesh.nodes[node]);
+        let [first, second] = nodes.map(|node| self.mesh.number(node));
         let is_direction = normal.iter().all(|x| x.is_finite());
         if !is_direction || (normal[2].abs() > CLOSE && normal[0].hypot(normal[1]) > CLOSE) {
-            return Some(MembraneError::ObliquePlane { group });
+            return Some(MembraneError::Structure(format!(
+                "the plane of symmetry of `{group}` is oblique: it must be level or contain the z axis, from which the volume is measured; turn the mesh"
+            )));
         }
         if normal[2].abs() <= CLOSE {
             let off = |place: Vector| dot(normal, place);
             let far = usize::from(off(b).abs() > off(a).abs());
             let offset = off([a, b][far]);
             let is_far = offset.abs() > CLOSE * self.size;
-            return is_far.then(|| MembraneError::PlaneOffAxis {
-                node: self.mesh.number(nodes[far]),
-                group,
-                offset,
+            return is_far.then(|| {
+                MembraneError::Structure(format!(
+                    "the plane of symmetry of `{group}` misses the z axis by {:.6e} m at node {}: the volume is measured from the axis; move the mesh so that this plane contains the z axis",
+                    offset.abs(),
+                    [first, second][far]
+                ))
             });
         }
         let is_uneven = dot(normal, sub(a, b)).abs() > CLOSE * self.size;
-        is_uneven.then(|| MembraneError::Uneven { group, nodes: nodes.map(|node| self.mesh.number(node)) })
+        is_uneven.then(|| {
+            MembraneError::Structure(format!(
+                "the nodes {first} and {second} of `{group}` lie at different heights, on no level plane of symmetry: move them onto one, or hold them otherwise"
+            ))
+        })
     }
 }
 

@@ -72,17 +72,17 @@ fn source(error: Option<CaseError>) -> MembraneError {
 /// The muscle is the same whichever end is named first, and whichever end moves.
 #[test]
 fn the_order_of_the_supports_is_no_matter() {
-    let folder = std::env::temp_dir().join(format!("bulge-membrane-ends-{}", std::process::id()));
-    std::fs::create_dir_all(&folder).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("tube.msh");
     let mesh = revolved(|t| [10e-3, 60e-3 * t], 40, true, Grading::Ends(3.0));
-    std::fs::write(folder.join("tube.msh"), mesh.to_msh()).unwrap();
+    std::fs::write(&file, mesh.to_msh()).unwrap();
     let bottom = "[[support]]\ngroup = \"first\"\nkind = \"fitting\"\nfitting = \"bottom\"\n";
     let top = "[[support]]\ngroup = \"last\"\nkind = \"fitting\"\nfitting = \"top\"\n";
     let head = "mesh = \"tube.msh\"\n[scale]\nunit = \"m\"\nlength = \"60 mm\"\n";
     let steps = "[[step]]\npressure = \"10 kPa\"\n[[step]]\ncontraction = \"4 %\"\n";
     let run = |supports: &[&str], steps: &str| {
         let text = format!("{head}{RUBBER}{}{steps}", supports.concat());
-        let (rows, error, _) = rows(&text, Some(&folder));
+        let (rows, error, _) = rows(&text, Some(folder.path()));
         assert!(error.is_none(), "{error:?}");
         rows
     };
@@ -105,18 +105,14 @@ fn the_order_of_the_supports_is_no_matter() {
     assert!((moved[1].force.unwrap() / up[1].force.unwrap() - 1.0).abs() < 1e-6);
     // A single fitting below a plane that doesn't move.
     let plane = "[[support]]\ngroup = \"last\"\nkind = \"plane\"\nnormal = [0, 0, 1]\n";
-    std::fs::write(
-        folder.join("tube.msh"),
-        revolved(|t| [10e-3, 30e-3 * t], 20, true, Grading::Even).to_msh(),
-    )
-    .unwrap();
+    let half = revolved(|t| [10e-3, 30e-3 * t], 20, true, Grading::Even);
+    std::fs::write(&file, half.to_msh()).unwrap();
     let head = head.replace("60 mm\"\n", "60 mm\"\nalong = 2\n");
     let text = format!("{head}{RUBBER}{bottom}{plane}{steps}");
-    let (half, error, _) = rows(&text, Some(&folder));
+    let (half, error, _) = rows(&text, Some(folder.path()));
     assert!(error.is_none(), "{error:?}");
     assert!((half[1].contraction.unwrap() - 0.04).abs() < 1e-12);
     assert!((half[1].force.unwrap() / up[1].force.unwrap() - 1.0).abs() < 5e-3, "{half:?} {up:?}");
-    std::fs::remove_dir_all(&folder).unwrap();
 }
 
 #[test]

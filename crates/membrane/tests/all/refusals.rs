@@ -10,7 +10,7 @@ use bulge_membrane::{
     Block, CellKind, Cloth, Fitting, Law, Mesh, Part, RingLayer, Sheet, Structure, Support, Thread,
 };
 use core::f64::consts::FRAC_PI_2;
-use std::path::PathBuf;
+use tempfile::TempDir;
 
 fn rubber() -> Sheet {
     Sheet { cloth: Cloth::Isotropic(Law::NeoHooke { shear: 1.0 }), wrinkles: true, residual: 0.0 }
@@ -401,30 +401,22 @@ fn cables_that_miss_the_middles_of_edges() {
 
 // ---- cases
 
-/// A folder with this mesh, deleted at the end.
-struct Folder(PathBuf);
+/// A folder for a case, perhaps with a mesh; deleted at the end.
+struct Folder(TempDir);
 
 impl Folder {
-    fn new(name: &str) -> Self {
-        let path = std::env::temp_dir().join(format!("bulge-refusals-{}-{name}", std::process::id()));
-        std::fs::create_dir_all(&path).unwrap();
-        Self(path)
+    fn new() -> Self {
+        Self(tempfile::tempdir().unwrap())
     }
 
-    fn with(name: &str, mesh: &Mesh) -> Self {
-        let folder = Self::new(name);
-        std::fs::write(folder.0.join("m.msh"), mesh.to_msh()).unwrap();
+    fn with(mesh: &Mesh) -> Self {
+        let folder = Self::new();
+        std::fs::write(folder.0.path().join("m.msh"), mesh.to_msh()).unwrap();
         folder
     }
 
     fn read(&self, text: &str) -> Result<Case, String> {
-        Case::from_toml(text, "case.toml", Some(&self.0)).map_err(|error| error.to_string())
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_dir_all(&self.0);
+        Case::from_toml(text, "case.toml", Some(self.0.path())).map_err(|error| error.to_string())
     }
 }
 
@@ -451,7 +443,7 @@ fn sectors_that_do_not_go_round() {
         + &support("v0", "kind = \"plane\"\nnormal = [0, 1, 0]")
         + &support("u1", "kind = \"plane\"\nnormal = [0, 0, 1]")
         + &support("v1", "kind = \"plane\"\nnormal = [0, 0, 1]");
-    let folder = Folder::with("pillow", &pillow(0.0, 0.0));
+    let folder = Folder::with(&pillow(0.0, 0.0));
     let read = |scale: &str| folder.read(&(scaled(scale) + &part("cloth", "membrane") + &planes + STEP));
     assert!(read("around = 4\nalong = 2").is_ok());
     for (scale, place) in [("around = 7", ":4:10"), ("around = 1", ":4:10"), ("along = 2", ":2:")] {
@@ -459,7 +451,7 @@ fn sectors_that_do_not_go_round() {
         refused(read(scale), &parts);
     }
     // Three quarters.
-    let folder = Folder::with("three", &quarter());
+    let folder = Folder::with(&quarter());
     let read = |scale: &str, angle: &str| {
         let cyclic = format!("kind = \"cyclic\"\npartner = \"left\"\nangle = \"{angle}\"");
         let ends = support("first", "kind = \"fixed\"") + &support("last", "kind = \"slide\"");
@@ -472,7 +464,7 @@ fn sectors_that_do_not_go_round() {
     refused(read("around = 4", "0 deg"), &["`angle` is no turn", "360 degrees over"]);
     refused(read("around = 4", "360 deg"), &["`angle` is no turn"]);
     // A line is revolved by a full turn.
-    let folder = Folder::with("line", &line());
+    let folder = Folder::with(&line());
     let ends = support("first", "kind = \"fixed\"") + &support("last", "kind = \"slide\"");
     let read = |scale: &str| folder.read(&(scaled(scale) + &part("wall", "sheet") + &ends + STEP));
     assert!(read("along = 2").is_ok());
@@ -487,7 +479,7 @@ fn half_a_tube_is_a_sector_of_180_degrees() {
         [0.01 * cos, if u >= 1.0 { 0.0 } else { 0.01 * sin }, 0.06 * v]
     };
     let mesh = grid(&Surface { place: &place, pattern: None, cells: [8, 4], is_quadratic: true });
-    let folder = Folder::with("half", &mesh);
+    let folder = Folder::with(&mesh);
     let plane = "kind = \"plane\"\nnormal = [0, 1, 0]";
     let supports = support("u0", plane)
         + &support("u1", plane)
@@ -504,9 +496,8 @@ fn a_fitting_has_one_motion() {
     let motion = |motion: &str| {
         support("last", &format!("kind = \"fitting\"\nfitting = \"top\"\nmotion = \"{motion}\""))
     };
-    let read = |supports: String| {
-        Folder::new("motion").read(&(MADE.to_owned() + &part("wall", "sheet") + &supports + STEP))
-    };
+    let read =
+        |supports: String| Folder::new().read(&(MADE.to_owned() + &part("wall", "sheet") + &supports + STEP));
     // The fittings of our own mesh are placed unless the case says otherwise.
     assert_eq!(read(motion("loaded")).unwrap().fittings[1].1, Fitting::Loaded);
     assert_eq!(read(motion("loaded") + &motion("loaded")).unwrap().fittings[1].1, Fitting::Loaded);
@@ -521,7 +512,7 @@ fn a_fitting_has_one_motion() {
 fn iterations_out_of_range() {
     let read = |count: &str| {
         let text = format!("{MADE}{}{STEP}[solver]\niterations = {count}\n", part("wall", "sheet"));
-        Folder::new("iterations").read(&text)
+        Folder::new().read(&text)
     };
     assert_eq!(read("100000").unwrap().tolerance.iterations, 100_000);
     for count in ["0", "100001", "1000000000"] {
@@ -537,14 +528,14 @@ fn iterations_out_of_range() {
 fn a_mesh_that_is_no_file() {
     let read = |mesh: &str| {
         let text = format!("mesh = \"{mesh}\"\n[scale]\nunit = \"m\"\n{}{STEP}", part("wall", "sheet"));
-        Folder::new("device").read(&text)
+        Folder::new().read(&text)
     };
     for mesh in ["/dev/zero", "/dev/null", "."] {
         refused(read(mesh), &["is no file", ":1:8", ".msh"]);
     }
     // A pipe to which nothing is ever written.
-    let folder = Folder::new("pipe");
-    let pipe = folder.0.join("pipe.msh");
+    let folder = Folder::new();
+    let pipe = folder.0.path().join("pipe.msh");
     assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
     refused(read(pipe.to_str().unwrap()), &["pipe.msh is no file"]);
 }

@@ -6,7 +6,7 @@
 
 use super::linear::{decrease, turned};
 use super::residuals::Residuals;
-use super::search::{Search, Trial};
+use super::search::{LEAST_DAMPING, Search, Trial};
 use super::step::damped;
 use super::triangle::norm;
 
@@ -26,7 +26,7 @@ impl<P: Residuals> Search<'_, P> {
     /// within the bounds.
     pub(super) fn bend(&mut self, trial: &Trial, residuals: &[f64]) -> bool {
         let (scale, damping) =
-            if trial.full { (&self.linear.norms, self.least_damping()) } else { (&self.scale, self.damping) };
+            if trial.full { (&self.linear.norms, LEAST_DAMPING) } else { (&self.scale, self.damping) };
         self.linearisations += 1;
         let Ok(turned) = turned(self.problem, &self.theta, residuals) else { return false };
         let step: Vec<f64> = trial.theta.iter().zip(&self.theta).map(|(to, from)| to - from).collect();

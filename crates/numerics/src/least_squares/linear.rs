@@ -2,19 +2,11 @@
 //!
 //! Blocks are combined in a fixed binary tree, so that the sums are the same bytes for any number of threads.
 
+use super::LeastSquaresError;
 use super::residuals::Residuals;
 use super::singular::right_singular;
 use super::triangle::{Triangle, dot, norm};
 use std::ops::Range;
-
-/// Why the residuals have no value at a point.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) enum Failure<E> {
-    Evaluation(E),
-    Residual { row: usize, value: f64 },
-    Derivative { row: usize, parameter: usize, value: f64 },
-    Overflow,
-}
 
 /// Residuals at a point, linearised.
 #[derive(Debug, Clone)]
@@ -91,9 +83,13 @@ fn in_blocks<T: Send, E: Send>(
     Ok(merge(left?, right?))
 }
 
-fn finite<E>(rows: &Range<usize>, residuals: &[f64]) -> Result<(), Failure<E>> {
+fn finite<E>(rows: &Range<usize>, residuals: &[f64]) -> Result<(), LeastSquaresError<E>> {
     match residuals.iter().position(|r| !r.is_finite()) {
-        Some(i) => Err(Failure::Residual { row: rows.start + i, value: residuals[i] }),
+        Some(i) => Err(LeastSquaresError::NotFinite(format!(
+            "residual {} is {} at the start; choose a start where all residuals are finite",
+            rows.start + i,
+            residuals[i]
+        ))),
         None => Ok(()),
     }
 }
@@ -103,14 +99,14 @@ pub(super) fn values<P: Residuals>(
     problem: &P,
     theta: &[f64],
     residuals: &mut [f64],
-) -> Result<f64, Failure<P::Error>> {
+) -> Result<f64, LeastSquaresError<P::Error>> {
     let leaf = |rows: Range<usize>, residuals: &mut [f64]| {
-        problem.evaluate(theta, rows.clone(), residuals, None).map_err(Failure::Evaluation)?;
+        problem.evaluate(theta, rows.clone(), residuals, None).map_err(LeastSquaresError::Start)?;
         finite(&rows, residuals)?;
         Ok(dot(residuals, residuals))
     };
     let cost = in_blocks(residuals, 0, problem.block().max(1), &leaf, &|a, b| a + b)?;
-    if cost.is_finite() { Ok(cost) } else { Err(Failure::Overflow) }
+    if cost.is_finite() { Ok(cost) } else { Err(LeastSquaresError::overflow()) }
 }
 
 /// `Q^T w` for the reflections `Q` that triangularise the Jacobian at `theta`: the first `k` entries.
@@ -118,7 +114,7 @@ pub(super) fn turned<P: Residuals>(
     problem: &P,
     theta: &[f64],
     w: &[f64],
-) -> Result<Vec<f64>, Failure<P::Error>> {
+) -> Result<Vec<f64>, LeastSquaresError<P::Error>> {
     let mut residuals = vec![0.0; w.len()];
     let (whole, _) = triangle(problem, theta, &mut residuals, Some(w))?;
     Ok(whole.column(theta.len())[..theta.len()].to_vec())
@@ -130,13 +126,20 @@ fn derivatives<P: Residuals>(
     theta: &[f64],
     rows: &Range<usize>,
     residuals: &mut [f64],
-) -> Result<Vec<f64>, Failure<P::Error>> {
+) -> Result<Vec<f64>, LeastSquaresError<P::Error>> {
     let k = theta.len();
     let mut jacobian = vec![0.0; rows.len() * k];
-    problem.evaluate(theta, rows.clone(), residuals, Some(&mut jacobian)).map_err(Failure::Evaluation)?;
+    problem
+        .evaluate(theta, rows.clone(), residuals, Some(&mut jacobian))
+        .map_err(LeastSquaresError::Start)?;
     finite(rows, residuals)?;
     match jacobian.iter().position(|x| !x.is_finite()) {
-        Some(i) => Err(Failure::Derivative { row: rows.start + i / k, parameter: i % k, value: jacobian[i] }),
+        Some(i) => Err(LeastSquaresError::NotFinite(format!(
+            "the derivative of residual {} by parameter {} is {} at the start; choose a start where all derivatives are finite",
+            rows.start + i / k,
+            i % k,
+            jacobian[i]
+        ))),
         None => Ok(jacobian),
     }
 }
@@ -146,14 +149,14 @@ pub(super) fn linearise<P: Residuals>(
     problem: &P,
     theta: &[f64],
     residuals: &mut [f64],
-) -> Result<Linear, Failure<P::Error>> {
+) -> Result<Linear, LeastSquaresError<P::Error>> {
     let k = theta.len();
     let (whole, cost) = triangle(problem, theta, residuals, None)?;
     let r = whole.leading(k);
     let q = whole.column(k)[..k].to_vec();
     let norms = r.column_norms();
     if !cost.is_finite() || norms.iter().chain(&q).any(|x| !x.is_finite()) {
-        return Err(Failure::Overflow);
+        return Err(LeastSquaresError::overflow());
     }
     let column = |j: usize| -> Vec<f64> {
         let inverse = if norms[j] > 0.0 { 1.0 / norms[j] } else { 0.0 };
@@ -170,7 +173,7 @@ fn triangle<P: Residuals>(
     theta: &[f64],
     residuals: &mut [f64],
     last: Option<&[f64]>,
-) -> Result<(Triangle, f64), Failure<P::Error>> {
+) -> Result<(Triangle, f64), LeastSquaresError<P::Error>> {
     let k = theta.len();
     let leaf = |rows: Range<usize>, residuals: &mut [f64]| {
         let jacobian = derivatives(problem, theta, &rows, residuals)?;
@@ -203,7 +206,10 @@ fn factored(jacobian: &[f64], last: &[f64], k: usize) -> Triangle {
 }
 
 /// `J^T r`, half the gradient of the sum of squares.
-pub(super) fn gradient<P: Residuals>(problem: &P, theta: &[f64]) -> Result<Vec<f64>, Failure<P::Error>> {
+pub(super) fn gradient<P: Residuals>(
+    problem: &P,
+    theta: &[f64],
+) -> Result<Vec<f64>, LeastSquaresError<P::Error>> {
     let k = theta.len();
     let leaf = |rows: Range<usize>, residuals: &mut [f64]| {
         let jacobian = derivatives(problem, theta, &rows, residuals)?;
@@ -219,7 +225,7 @@ pub(super) fn gradient<P: Residuals>(problem: &P, theta: &[f64]) -> Result<Vec<f
     };
     let mut residuals = vec![0.0; problem.rows()];
     let sum = in_blocks(&mut residuals, 0, problem.block().max(1), &leaf, &merge)?;
-    if norm(&sum).is_finite() { Ok(sum) } else { Err(Failure::Overflow) }
+    if norm(&sum).is_finite() { Ok(sum) } else { Err(LeastSquaresError::overflow()) }
 }
 
 /// Decrease of the sum of squares from `old` to `new` residuals, `sum (r - r')(r + r')`. Near a minimum this

@@ -9,6 +9,9 @@ use super::triangle::norm;
 
 /// A parameter isn't determined by the residuals if its component of a flat direction (a unit vector) exceeds
 /// this.
+/// Directions in which the residuals change by less than this fraction of the largest change are flat, with
+/// parameters scaled by the norms of their columns. No step is made along them, and they are reported.
+pub(super) const RANK_TOLERANCE: f64 = 1e-10;
 const PART_OF_FLAT: f64 = 1e-6;
 
 /// Why a search ended.
@@ -156,14 +159,6 @@ impl Minimum {
         };
         (0..k * k).map(|ij| entry(ij / k, ij % k)).collect()
     }
-
-    /// Residual variance `cost/(rows - rank)`; `None` if there are no more residuals than determined
-    /// directions.
-    #[must_use]
-    pub fn residual_variance(&self) -> Option<f64> {
-        let freedom = self.residuals.len().checked_sub(self.certificate.rank).filter(|f| *f > 0)?;
-        Some(self.cost / freedom as f64)
-    }
 }
 
 /// Final state of a search.
@@ -172,7 +167,6 @@ pub(super) struct End<'a> {
     pub(super) reason: Reason,
     /// The step to the linearised minimum, scaled by the current norms.
     pub(super) newton: &'a Step,
-    pub(super) rank_tolerance: f64,
     pub(super) least_curvature: Option<f64>,
     pub(super) iterations: usize,
     pub(super) evaluations: usize,
@@ -206,7 +200,7 @@ impl End<'_> {
         let length = linear.cost.sqrt();
         let cosine = |j: usize| part(gradient[j].abs(), linear.norms[j] * length);
         let scaled: Vec<f64> = theta.iter().zip(&linear.norms).map(|(t, n)| t * n).collect();
-        let spectrum = Spectrum::new(linear, &free, self.rank_tolerance);
+        let spectrum = Spectrum::new(linear, &free);
         let mut certificate = Certificate {
             converged: self.reason.is_converged(),
             reason: self.reason,
@@ -244,7 +238,7 @@ struct Spectrum<'a> {
 }
 
 impl<'a> Spectrum<'a> {
-    fn new(linear: &Linear, free: &'a [usize], tolerance: f64) -> Self {
+    fn new(linear: &Linear, free: &'a [usize]) -> Self {
         let k = linear.norms.len();
         let column = |j: usize| -> Vec<f64> {
             let scale = if linear.norms[j] > 0.0 { linear.norms[j] } else { 1.0 };
@@ -252,7 +246,7 @@ impl<'a> Spectrum<'a> {
         };
         let pairs = right_singular(free.iter().map(|j| column(*j)).collect());
         let largest = pairs.first().map_or(0.0, |p| p.0);
-        let rank = pairs.iter().filter(|p| p.0 > tolerance * largest).count();
+        let rank = pairs.iter().filter(|p| p.0 > RANK_TOLERANCE * largest).count();
         Self { free, pairs, rank }
     }
 

@@ -1,6 +1,6 @@
 //! Bounded nonlinear least squares for many residuals and few parameters: `min sum r_i(theta)^2`, `lower <= theta <= upper`.
 //!
-//! [`minimise`] searches from one start, [`minimise_from_many`] from several ([`starts_in_box`] makes them), [`profile()`] finds
+//! [`minimise`] searches from one start ([`starts_in_box`] makes several), [`profile()`] finds
 //! how far one parameter can go before the sum of squares rises by a given amount. The normal equations are never formed: the
 //! Jacobian is reduced to a triangle block by block, so that a million rows need the memory of one block.
 
@@ -8,7 +8,6 @@ mod bend;
 mod curvature;
 mod error;
 mod linear;
-mod many;
 mod minimum;
 mod options;
 mod profile;
@@ -23,10 +22,9 @@ mod triangle;
 mod tests;
 
 pub use error::{LeastSquaresError, NotABox};
-pub use many::{DistinctMinimum, ManyStarts, StartEnd, minimise_from_many};
 pub use minimum::{Certificate, Minimum, Reason};
 pub use options::Options;
-pub use profile::{Profile, ProfileEnd, ProfilePoint, profile};
+pub use profile::{Profile, ProfileEnd, profile};
 pub use residuals::{Bounds, Residuals, Side};
 pub use search::minimise;
 pub use starts::starts_in_box;

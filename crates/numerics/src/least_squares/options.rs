@@ -11,13 +11,6 @@ pub struct Options {
     /// fraction of `sqrt(rows - parameters)` standard deviations. In (0, 1); default 1e-10. If the
     /// derivatives are inexact, choose ten times their relative error.
     pub tolerance: f64,
-    /// Directions in which the residuals change by less than this fraction of the largest change are flat,
-    /// with parameters scaled by the norms of their columns. No step is made along them, and they are
-    /// reported. In \[1e-14, 1); default 1e-10.
-    pub rank_tolerance: f64,
-    /// Radius of the first trust region relative to the norm of the start, with parameters scaled by the
-    /// norms of their columns. Positive; default 1.
-    pub first_radius: f64,
     /// Most evaluations of all residuals, with or without derivatives, before the search is given up. The
     /// examination of curvature doesn't count. At least 1; default 2000.
     pub max_evaluations: usize,
@@ -32,28 +25,15 @@ pub struct Options {
 
 impl Default for Options {
     fn default() -> Self {
-        Self {
-            tolerance: 1e-10,
-            rank_tolerance: 1e-10,
-            first_radius: 1.0,
-            max_evaluations: 2000,
-            least_decrease: 0.0,
-            check_curvature: true,
-        }
+        Self { tolerance: 1e-10, max_evaluations: 2000, least_decrease: 0.0, check_curvature: true }
     }
 }
 
 impl Options {
     pub(super) fn check<E>(&self) -> Result<(), LeastSquaresError<E>> {
-        let wrong = |name, value, range| Err(LeastSquaresError::Option { name, value, range });
+        let wrong = |name, value, range| Err(LeastSquaresError::option(name, value, range));
         if !(self.tolerance > 0.0 && self.tolerance < 1.0) {
             return wrong("tolerance", self.tolerance, "above 0 and below 1");
-        }
-        if !(self.rank_tolerance >= 1e-14 && self.rank_tolerance < 1.0) {
-            return wrong("rank_tolerance", self.rank_tolerance, "at least 1e-14 and below 1");
-        }
-        if !(self.first_radius > 0.0 && self.first_radius < f64::INFINITY) {
-            return wrong("first_radius", self.first_radius, "positive and finite");
         }
         if !(self.least_decrease >= 0.0 && self.least_decrease < f64::INFINITY) {
             return wrong("least_decrease", self.least_decrease, "at least 0 and finite");

@@ -49,17 +49,6 @@ pub enum ProfileEnd {
     },
 }
 
-/// A point of a profile.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ProfilePoint {
-    /// Value at which the parameter was held.
-    pub value: f64,
-    /// Least sum of squares with this value.
-    pub cost: f64,
-    /// All parameters there.
-    pub theta: Vec<f64>,
-}
-
 /// The profile of one parameter.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Profile {
@@ -67,8 +56,6 @@ pub struct Profile {
     pub lower: ProfileEnd,
     /// The upper end.
     pub upper: ProfileEnd,
-    /// The points visited, the minimum among them, in ascending order of the parameter.
-    pub points: Vec<ProfilePoint>,
 }
 
 /// The interval of `parameter` in which the sum of squares, minimised over the others within `bounds`, exceeds that of `minimum`
@@ -78,8 +65,8 @@ pub struct Profile {
 /// freedom.
 ///
 /// # Errors
-/// [`LeastSquaresError::NotProfiled`]; [`LeastSquaresError::LowerCost`] if `minimum` turns out not to be one;
-/// [`LeastSquaresError::ProfileUnsolved`] if a search over the other parameters doesn't converge; those of [`minimise`].
+/// [`LeastSquaresError::Request`] if the parameter doesn't exist or is fixed; [`LeastSquaresError::Profile`] if `minimum` turns
+/// out not to be one, or a search over the other parameters doesn't converge; those of [`minimise`].
 pub fn profile<P: Residuals>(
     problem: &P,
     minimum: &Minimum,
@@ -92,30 +79,20 @@ pub fn profile<P: Residuals>(
     check_start(problem.parameters(), &minimum.theta, bounds)?;
     let parameters = minimum.theta.len();
     if parameter >= parameters || bounds.is_fixed(parameter) {
-        return Err(LeastSquaresError::NotProfiled { parameter, parameters });
+        return Err(LeastSquaresError::Request(format!(
+            "parameter {parameter} cannot be profiled: the problem has {parameters} parameters, and this one must not be fixed"
+        )));
     }
     if !(rise > 0.0 && rise < f64::INFINITY) {
-        return Err(LeastSquaresError::Option { name: "rise", value: rise, range: "positive and finite" });
+        return Err(LeastSquaresError::option("rise", rise, "positive and finite"));
     }
     let walk = |side| {
-        let start = Visit {
-            distance: 0.0,
-            zeta: 0.0,
-            slope: f64::INFINITY,
-            theta: minimum.theta.clone(),
-            cost: minimum.cost,
-        };
+        let start = Visit { distance: 0.0, zeta: 0.0, slope: f64::INFINITY, theta: minimum.theta.clone() };
         let options = Options { check_curvature: false, ..*options };
         Walk { problem, minimum, bounds, options, parameter, rise, side, visits: vec![start] }
     };
-    let (mut down, mut up) = (walk(Side::Lower), walk(Side::Upper));
-    let (lower, upper) = (down.end()?, up.end()?);
-    let point = |v: Visit| ProfilePoint { value: v.theta[parameter], cost: v.cost, theta: v.theta };
-    let mut points: Vec<_> =
-        down.visits.into_iter().chain(up.visits.into_iter().skip(1)).map(point).collect();
-    points.sort_by(|a, b| a.value.total_cmp(&b.value));
-    points.dedup_by(|a, b| a.value.total_cmp(&b.value).is_eq());
-    Ok(Profile { lower, upper, points })
+    let (lower, upper) = (walk(Side::Lower).end()?, walk(Side::Upper).end()?);
+    Ok(Profile { lower, upper })
 }
 
 /// One way out of the minimum.
@@ -140,7 +117,6 @@ struct Visit {
     /// Its derivative by the distance.
     slope: f64,
     theta: Vec<f64>,
-    cost: f64,
 }
 
 impl<P: Residuals> Walk<'_, P> {
@@ -216,12 +192,9 @@ impl<P: Residuals> Walk<'_, P> {
         for _ in 0..HALVINGS {
             match self.visit(distance) {
                 Ok(visit) => return Ok(Some(visit)),
-                Err(
-                    LeastSquaresError::Start(_)
-                    | LeastSquaresError::Residual { .. }
-                    | LeastSquaresError::Derivative { .. }
-                    | LeastSquaresError::Overflow,
-                ) => distance = 0.5 * (distance + inside.distance),
+                Err(LeastSquaresError::Start(_) | LeastSquaresError::NotFinite(_)) => {
+                    distance = 0.5 * (distance + inside.distance);
+                }
                 Err(error) => return Err(error),
             }
         }
@@ -257,25 +230,23 @@ impl<P: Residuals> Walk<'_, P> {
         };
         if !solved.certificate.converged {
             let reason = solved.certificate.reason;
-            return Err(LeastSquaresError::ProfileUnsolved { parameter: j, value, reason });
+            return Err(LeastSquaresError::Profile(format!(
+                "with parameter {j} held at {value} the search over the others ended without a minimum ({reason:?})"
+            )));
         }
         let (cost, minimum) = (solved.cost, self.minimum.cost);
         let risen = cost - minimum;
         if risen < -SLACK * self.rise - 1e-12 * minimum {
-            return Err(LeastSquaresError::LowerCost {
-                parameter: j,
-                value,
-                cost,
-                minimum,
-                theta: solved.theta,
-            });
+            return Err(LeastSquaresError::Profile(format!(
+                "with parameter {j} at {value} the sum of squares is {cost}, below that of the given minimum, {minimum}; minimise again from there"
+            )));
         }
         let zeta = risen.max(0.0).sqrt();
         let outward = match self.side {
             Side::Lower => -solved.gradient[j],
             Side::Upper => solved.gradient[j],
         };
-        let visit = Visit { distance, zeta, slope: outward / zeta, theta: solved.theta, cost };
+        let visit = Visit { distance, zeta, slope: outward / zeta, theta: solved.theta };
         self.visits.push(visit.clone());
         Ok(visit)
     }

@@ -5,8 +5,8 @@
 //! minimum, where the sum of squares is blunted by rounding, steps are judged by the gradient.
 
 use super::curvature::{self, Probe};
-use super::linear::{Failure, Linear, decrease, linearise, values};
-use super::minimum::{End, Minimum, Reason};
+use super::linear::{Linear, decrease, linearise, values};
+use super::minimum::{End, Minimum, RANK_TOLERANCE, Reason};
 use super::residuals::{Bounds, Residuals, Side};
 use super::step::{Step, StepBox, damped, of_length};
 use super::triangle::{Triangle, norm};
@@ -19,6 +19,8 @@ const ENOUGH: f64 = 1e-4;
 const POLISH: f64 = 1e-4;
 /// Most trials of one iteration, each at most half as long as the one before.
 const TRIALS: usize = 100;
+/// A damping that keeps the triangle regular if norms are zero, but is too small to have an effect.
+pub(super) const LEAST_DAMPING: f64 = (1e-2 * RANK_TOLERANCE) * (1e-2 * RANK_TOLERANCE);
 /// Most times that the search leaves a saddle.
 const ESCAPES: usize = 10;
 
@@ -73,20 +75,8 @@ pub fn minimise<P: Residuals>(
     options.check()?;
     check_start(problem.parameters(), start, bounds)?;
     let mut residuals = vec![0.0; problem.rows()];
-    let linear = linearise(problem, start, &mut residuals).map_err(failed_start)?;
+    let linear = linearise(problem, start, &mut residuals)?;
     Ok(Search::new(problem, bounds, options, start.to_vec(), residuals, linear).run())
-}
-
-/// The error of a start at which the residuals have no value.
-pub(super) fn failed_start<E>(failure: Failure<E>) -> LeastSquaresError<E> {
-    match failure {
-        Failure::Evaluation(error) => LeastSquaresError::Start(error),
-        Failure::Residual { row, value } => LeastSquaresError::Residual { row, value },
-        Failure::Derivative { row, parameter, value } => {
-            LeastSquaresError::Derivative { row, parameter, value }
-        }
-        Failure::Overflow => LeastSquaresError::Overflow,
-    }
 }
 
 /// Refuses lists of the wrong length, crossed bounds, and starts outside them.
@@ -96,18 +86,23 @@ pub(super) fn check_start<E>(k: usize, start: &[f64], bounds: &Bounds) -> Result
         ("the list of lower bounds", &bounds.lower),
         ("the list of upper bounds", &bounds.upper),
     ];
+    let wrong = |what: String| Err(LeastSquaresError::Request(what));
     for (what, list) in lists {
         if list.len() != k {
-            return Err(LeastSquaresError::Length { what, found: list.len(), parameters: k });
+            return wrong(format!("{what} has {} entries; the problem has {k} parameters", list.len()));
         }
     }
     for (parameter, value) in start.iter().copied().enumerate() {
         let (lower, upper) = (bounds.lower[parameter], bounds.upper[parameter]);
         if lower.is_nan() || upper.is_nan() || lower > upper {
-            return Err(LeastSquaresError::Crossed { parameter, lower, upper });
+            return wrong(format!(
+                "the bounds of parameter {parameter} are [{lower}, {upper}]; the first must be at most the second, and neither NaN"
+            ));
         }
         if !value.is_finite() || value < lower || value > upper {
-            return Err(LeastSquaresError::Outside { parameter, value, lower, upper });
+            return wrong(format!(
+                "the start of parameter {parameter} is {value}, outside its bounds [{lower}, {upper}]"
+            ));
         }
     }
     Ok(())
@@ -169,7 +164,7 @@ impl<'a, P: Residuals> Search<'a, P> {
         let scale = linear.norms.clone();
         let size = norm(&product(&scale, &theta));
         // At the origin, the residuals are the only measure of a step.
-        let radius = options.first_radius * if size > 0.0 { size } else { linear.cost.sqrt() };
+        let radius = if size > 0.0 { size } else { linear.cost.sqrt() };
         Self {
             problem,
             bounds,
@@ -217,7 +212,6 @@ impl<'a, P: Residuals> Search<'a, P> {
             bounds: self.bounds,
             reason,
             newton: &newton,
-            rank_tolerance: self.options.rank_tolerance,
             least_curvature,
             iterations: self.iterations,
             evaluations: self.evaluations,
@@ -255,12 +249,7 @@ impl<'a, P: Residuals> Search<'a, P> {
     pub(super) fn newton(&self) -> Step {
         let norms = &self.linear.norms;
         let (a, b) = self.scaled_by(norms, &self.linear.q);
-        damped(&a, &b, self.least_damping(), &self.limits(norms, &self.theta))
-    }
-
-    /// A damping that keeps the triangle regular if norms are zero, but is too small to have an effect.
-    pub(super) fn least_damping(&self) -> f64 {
-        (1e-2 * self.options.rank_tolerance).powi(2)
+        damped(&a, &b, LEAST_DAMPING, &self.limits(norms, &self.theta))
     }
 
     fn stationary(&self, newton: &Step) -> Option<Reason> {
@@ -287,7 +276,7 @@ impl<'a, P: Residuals> Search<'a, P> {
 
     /// The triangle with columns divided by a scale, and a right-hand side for it.
     pub(super) fn scaled_by(&self, scale: &[f64], rhs: &[f64]) -> (Triangle, Vec<f64>) {
-        let (a, b) = self.linear.regular(rhs, self.options.rank_tolerance);
+        let (a, b) = self.linear.regular(rhs, RANK_TOLERANCE);
         let ratio = |(norm, scale): (&f64, &f64)| if *scale > 0.0 { norm / scale } else { 0.0 };
         let ratios: Vec<f64> = self.linear.norms.iter().zip(scale).map(ratio).collect();
         (a.scaled(&ratios), b)

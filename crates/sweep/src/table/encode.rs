@@ -34,37 +34,17 @@ pub(crate) struct Draft<'a> {
 
 /// Why a table can't be encoded.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-pub enum EncodeError {
-    /// A name or unit that is too long for its field.
-    #[error("`{text}` is too long for a table: at most {most} bytes")]
-    TooLong {
-        /// The name or unit.
-        text: String,
-        /// Most bytes.
-        most: usize,
-    },
-    /// Too many axes or outputs.
-    #[error("a table has at most {MOST_AXES} axes and {MOST_OUTPUTS} outputs, not {axes} and {outputs}")]
-    TooMany {
-        /// Axes.
-        axes: usize,
-        /// Outputs.
-        outputs: usize,
-    },
-    /// More than 4 GiB.
-    #[error("a table of {bytes} bytes is too large for its format")]
-    TooLarge {
-        /// Its size.
-        bytes: usize,
-    },
-}
+#[error("{0}")]
+pub struct EncodeError(String);
 
 impl Draft<'_> {
     /// Encodes the table.
     pub(crate) fn bytes(&self) -> Result<Vec<u8>, EncodeError> {
         let (axes, outputs) = (self.axes.len(), self.outputs.len());
         if axes > MOST_AXES || outputs > MOST_OUTPUTS {
-            return Err(EncodeError::TooMany { axes, outputs });
+            return Err(EncodeError(format!(
+                "a table has at most {MOST_AXES} axes and {MOST_OUTPUTS} outputs, not {axes} and {outputs}"
+            )));
         }
         let records = HEADER + axes * AXIS + outputs * OUTPUT;
         let edge_bytes = self.edge.map_or(0, |(_, numbers)| 8 * numbers.len());
@@ -72,7 +52,8 @@ impl Draft<'_> {
         let data = records + edge_bytes;
         let text = data + each * self.coefficients.len();
         let length = text + self.text.len() + 8;
-        let word = |n: usize| u32::try_from(n).map_err(|_| EncodeError::TooLarge { bytes: length });
+        let too_large = |_| EncodeError(format!("a table of {length} bytes is too large for its format"));
+        let word = |n: usize| u32::try_from(n).map_err(too_large);
         let mut bytes = Vec::with_capacity(length);
         bytes.extend(MAGIC);
         bytes.extend(VERSION.to_le_bytes());
@@ -127,7 +108,7 @@ impl Draft<'_> {
 fn named(bytes: &mut Vec<u8>, name: &str, unit: &str) -> Result<(), EncodeError> {
     for (text, most) in [(name, NAME), (unit, UNIT)] {
         if text.len() > most || text.is_empty() {
-            return Err(EncodeError::TooLong { text: text.to_owned(), most });
+            return Err(EncodeError(format!("`{text}` is too long for a table: at most {most} bytes")));
         }
         bytes.extend(text.as_bytes());
         bytes.extend(std::iter::repeat_n(0, most - text.len()));

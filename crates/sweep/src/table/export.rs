@@ -21,52 +21,9 @@ use bulge_table::{Axis, Output, Table};
 /// Why a table can't be exported.
 #[derive(Debug, thiserror::Error)]
 pub enum ExportError {
-    /// A name that is invalid in the language.
-    #[error("`{name}` is no name for {language}: {instead}")]
-    Name {
-        /// The name.
-        name: String,
-        /// The language.
-        language: &'static str,
-        /// Description of a valid name.
-        instead: &'static str,
-    },
-    /// A grid without inner points.
-    #[error("a grid of {points} points per axis is not possible: it needs at least 2")]
-    TooFewPoints {
-        /// Points per axis.
-        points: usize,
-    },
-    /// A grid that is too large for text.
-    #[error(
-        "a grid of {points} points on each of {axes} axes has more than {MOST_ROWS} rows: use fewer points"
-    )]
-    TooManyRows {
-        /// Points per axis.
-        points: usize,
-        /// Number of axes.
-        axes: usize,
-    },
-    /// The table has no such polynomial: it lacks an axis or output, or has one too many.
-    #[error("no polynomial of this table: {what}")]
-    NotOfThisTable {
-        /// The missing or superfluous axis or output.
-        what: String,
-    },
-    /// A range of contractions that is empty or begins at 0 or below.
-    #[error("no polynomial from {from} % to {to} %: the contractions must rise, from more than 0")]
-    Range {
-        /// Lower end in %.
-        from: f64,
-        /// Upper end in %.
-        to: f64,
-    },
-    /// The curve ends inside the range.
-    #[error("there is no value at the contraction {percent:.4} %: choose a range inside the domain")]
-    Outside {
-        /// Contraction in %.
-        percent: f64,
-    },
+    /// A name, a grid or a range that the table has no export for: what is wrong, and what to choose instead.
+    #[error("{0}")]
+    Input(String),
     /// A muscle that isn't shipped.
     #[error(transparent)]
     Muscle(#[from] PresetError),

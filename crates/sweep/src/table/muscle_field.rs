@@ -56,7 +56,10 @@ impl MuscleField {
             matches!(output, Output::ForceF | Output::VolumeV | Output::Force | Output::Volume)
         };
         if let Some(steep) = wish.outputs.iter().find(|output| is_singular && !is_exact(output)) {
-            return Err(FamilyError::FromZero { output: steep.name() });
+            let output = steep.name();
+            return Err(FamilyError::Input(format!(
+                "a table of `{output}` can't begin at a contraction of 0, where the force of inextensible fibres is infinite: begin at \"0.5 %..limit\", say, or leave `{output}` out"
+            )));
         }
         let to_limit = axes[0].high.is_none();
         if let (Quantity::Contraction, Some(high)) = (&plan.axes[places[0]].quantity, axes[0].high) {

@@ -370,8 +370,8 @@ fn another_sweep_is_refused_with_the_line_that_differs() {
         let changed = plan(&CLOSED.replace(from, to));
         for options in [resume(), RunOptions::default(), RunOptions { chunks: Some(0..1), ..resume() }] {
             let error = go(&changed, folder.path(), &options).unwrap_err();
-            assert!(matches!(error, SweepError::Changed { .. }), "{error}");
             let message = error.to_string();
+            assert!(message.contains(" holds another sweep; the plans differ in\n"), "{message}");
             assert!(lines.iter().all(|line| message.contains(line)), "{to}: {message}");
             assert!(message.contains(&folder.path().display().to_string()) && message.lines().count() < 30);
         }
@@ -388,7 +388,7 @@ fn without_resume_a_sweep_is_not_gone_on_with() {
     let folder = whole(&plan, false);
     let before = files(folder.path());
     let error = go(&plan, folder.path(), &RunOptions::default()).unwrap_err();
-    assert!(matches!(error, SweepError::AlreadyThere { .. }) && error.to_string().contains("--resume"));
+    assert!(error.to_string().contains(" holds this sweep already: add `--resume`"), "{error}");
     assert!(files(folder.path()) == before);
 }
 
@@ -400,10 +400,7 @@ fn chunks_that_do_not_exist_are_refused() {
     for (asked, says) in [(6..9, "6..9"), (5..6, "0..5"), (2..2, "2..2"), (7..u64::MAX, "0..5")] {
         let options = RunOptions { chunks: Some(asked), ..RunOptions::default() };
         let error = go(&plan, &path, &options).unwrap_err();
-        assert!(
-            matches!(error, SweepError::NoSuchChunks { .. }) && error.to_string().contains(says),
-            "{error}"
-        );
+        assert!(matches!(&error, SweepError::Input(message) if message.contains(says)), "{error}");
     }
     assert!(!path.exists());
     // The last of equal parts ends at the end of the sweep.
@@ -411,7 +408,7 @@ fn chunks_that_do_not_exist_are_refused() {
     assert_eq!(summary.chunks, 2);
     let table_only = CLOSED.replace("points = 7\n", "").replace("points = 41\n", "") + "[table]\n";
     let error = go(&self::plan(&table_only), &path, &RunOptions::default()).unwrap_err();
-    assert!(matches!(error, SweepError::NoPoints));
+    assert!(error.to_string().starts_with("this sweep has no points"), "{error}");
 }
 
 #[test]

@@ -28,7 +28,8 @@ pub(super) fn numbers(state: &State, time: f64) -> [(&'static str, f64); 5] {
 
 /// Checks the sizes of the fields. They are public, so they may come from elsewhere than a solver.
 fn check_sizes(fields: &Fields) -> Result<(), VtkError> {
-    let wrong = |what: String| Err(VtkError::Fields { what });
+    let wrong =
+        |what| Err(VtkError::Drawing(format!("the fields of the membrane don't fit together: {what}")));
     let nodes = fields.places.len();
     if fields.displacements.len() != nodes {
         return wrong(format!("{} displacements of {nodes} nodes", fields.displacements.len()));
@@ -57,7 +58,7 @@ fn check_values(picture: &MembranePicture) -> Result<(), VtkError> {
     if let Some((quantity, value)) =
         numbers(picture.state, picture.time).into_iter().find(|(_, value)| !value.is_finite())
     {
-        return Err(VtkError::ResponseNotFinite { quantity, value });
+        return Err(VtkError::not_finite(quantity, value, ""));
     }
     let fields = picture.fields;
     for (quantity, vectors) in [("place_m", &fields.places), ("displacement_m", &fields.displacements)] {
@@ -86,24 +87,23 @@ fn check_values(picture: &MembranePicture) -> Result<(), VtkError> {
 
 fn finite(quantity: &'static str, values: &[f64], place: impl Fn() -> String) -> Result<(), VtkError> {
     match values.iter().find(|value| !value.is_finite()) {
-        Some(value) => Err(VtkError::FieldNotFinite { quantity, place: place(), value: *value }),
+        Some(value) => Err(VtkError::not_finite(quantity, *value, &format!(" at {}", place()))),
         None => Ok(()),
     }
 }
 
 fn check_whole(picture: &MembranePicture) -> Result<(), VtkError> {
-    let wrong = |what: String| Err(VtkError::Whole { what });
     let (mirror, middle) = match picture.whole {
         Whole::AsMeshed => return Ok(()),
         Whole::Revolved { facets, .. } if facets < LEAST_FACETS => {
-            return Err(VtkError::Facets { found: facets, least: LEAST_FACETS });
+            return Err(VtkError::facets(facets, LEAST_FACETS));
         }
         Whole::Revolved { middle, .. } => (None, middle),
-        Whole::Sector { lobes: 0, .. } => return wrong("it has no lobes: give at least 1".to_owned()),
+        Whole::Sector { lobes: 0, .. } => return wrong("it has no lobes: give at least 1"),
         Whole::Sector { mirror, middle, .. } => {
             if let Some(group) = picture.fields.groups.iter().find(|group| group.is_revolved) {
                 let name = &group.name;
-                return wrong(format!(
+                return wrong(&format!(
                     "group `{name}` is a membrane of revolution: draw it revolved, not as a sector"
                 ));
             }
@@ -113,13 +113,13 @@ fn check_whole(picture: &MembranePicture) -> Result<(), VtkError> {
     if let Some(normal) = mirror {
         let is_upright = normal[2].abs() <= 1e-9 * normal[0].hypot(normal[1]);
         if !(is_upright && dot(normal, normal).is_normal()) {
-            return wrong(format!("the z axis doesn't lie in the plane with the normal {normal:?}"));
+            return wrong(&format!("the z axis doesn't lie in the plane with the normal {normal:?}"));
         }
         let size = dot(normal, normal).sqrt();
         one_side(picture.fields, "the plane of its lobe", |x| dot(x, normal) / size)?;
     }
     match middle {
-        Some(z) if !z.is_finite() => wrong(format!("its middle is at z = {z}")),
+        Some(z) if !z.is_finite() => wrong(&format!("its middle is at z = {z}")),
         Some(z) => one_side(picture.fields, "its middle", |x| x[2] - z),
         None => Ok(()),
     }
@@ -138,11 +138,15 @@ fn one_side(fields: &Fields, plane: &str, distance: impl Fn([f64; 3]) -> f64) ->
         high = if d > high.0 { (d, node) } else { high };
     }
     if low.0 < -1e-6 * high.0 && high.0 > -1e-6 * low.0 {
-        let what = format!(
+        return wrong(&format!(
             "nodes {} and {} of the mesh lie on two sides of {plane}: mirrored, they would be drawn twice",
             low.1, high.1
-        );
-        return Err(VtkError::Whole { what });
+        ));
     }
     Ok(())
+}
+
+/// The meshed part can't be completed to the requested whole.
+fn wrong(what: &str) -> Result<(), VtkError> {
+    Err(VtkError::Drawing(format!("the whole can't be drawn: {what}")))
 }

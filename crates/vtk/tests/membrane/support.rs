@@ -4,7 +4,7 @@ use bulge_membrane::case::Case;
 use bulge_membrane::{Fields, State};
 use std::collections::HashMap;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use vtkio::model::{Attribute, CellType, DataSet, Vtk};
 
 pub(crate) type Point = [f64; 3];
@@ -121,13 +121,6 @@ pub(crate) fn solved(toml: &str) -> (Case, State, Fields) {
     let (state, fields) = run.last();
     let state = state.clone();
     (case, state, fields)
-}
-
-pub(crate) fn folder(name: &str) -> PathBuf {
-    let folder = std::env::temp_dir().join(format!("bulge-vtk-membrane-{name}-{}", std::process::id()));
-    let _ = fs::remove_dir_all(&folder);
-    fs::create_dir_all(&folder).unwrap();
-    folder
 }
 
 /// A file read back.

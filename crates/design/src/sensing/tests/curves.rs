@@ -25,13 +25,13 @@ fn the_inverse_gives_the_contraction_back() {
         close(resolution.worst_m, resolution.worst * muscle.muscle().length().si(), 1e-15);
         assert!(resolution.contraction.iter().all(|size| *size <= resolution.worst));
         // Outside the curve, and on the curve of another sensor.
-        let outside = sensor.contraction(&curve, 2.0 * curve.readings[20].resistance_ohm);
-        assert!(matches!(outside, Err(SensingError::OutsideCurve { .. })));
-        assert!(matches!(sensor.contraction(&curve, f64::NAN), Err(SensingError::OutsideCurve { .. })));
+        for outside in [2.0 * curve.readings[20].resistance_ohm, f64::NAN] {
+            assert_refused(sensor.contraction(&curve, outside), "lies outside those of the curve");
+        }
         let other = sensor.rewound(Winding { turns: 19.0, ..winding }).unwrap();
-        assert_eq!(other.contraction(&curve, here.resistance_ohm), Err(SensingError::OtherCurve));
+        assert_refused(other.contraction(&curve, here.resistance_ohm), "not one of this winding");
         let other = sensor.at_pressure(bar(1.0)).unwrap();
-        assert_eq!(other.contraction(&curve, here.resistance_ohm), Err(SensingError::OtherCurve));
+        assert_refused(other.contraction(&curve, here.resistance_ohm), "not one of this winding");
     }
 }
 

@@ -6,6 +6,7 @@
 //! shifting everything after it.
 
 use super::super::MeshError;
+use bulge_muscles::units::shortened_to;
 use std::fmt::Display;
 use std::str::FromStr;
 
@@ -307,12 +308,5 @@ pub(in crate::mesh) fn find(bytes: &[u8], part: &[u8]) -> Option<usize> {
 pub(in crate::mesh) fn quoted(bytes: &[u8]) -> String {
     // A character takes between one and four bytes.
     let start = bytes.get(..bytes.len().min(4 * (LONGEST_QUOTE + 1))).unwrap_or_default();
-    let text = String::from_utf8_lossy(start);
-    let trimmed = text.trim();
-    let printable = |c: char| if c.is_control() { '\u{fffd}' } else { c };
-    let mut out: String = trimmed.chars().take(LONGEST_QUOTE).map(printable).collect();
-    if trimmed.chars().nth(LONGEST_QUOTE).is_some() {
-        out.push('\u{2026}');
-    }
-    out
+    shortened_to(LONGEST_QUOTE, &String::from_utf8_lossy(start))
 }

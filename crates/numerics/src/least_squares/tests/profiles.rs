@@ -17,7 +17,6 @@ fn profile_of_a_linear_problem_is_the_covariance_interval() {
             panic!("{found:?}")
         };
         assert_close(&[lower, upper], &[minimum.theta[j] - half, minimum.theta[j] + half], 1e-9);
-        assert!(found.points.is_sorted_by(|a, b| a.value < b.value));
     }
 }
 
@@ -50,7 +49,6 @@ fn profile_of_a_decay_agrees_with_its_closed_form() {
     };
     assert_close(&[lower, upper], &expected, 1e-9);
     assert!((upper - best) > 1.2 * (best - lower));
-    assert!(found.points.len() < 30, "{}", found.points.len());
 }
 
 #[test]
@@ -87,9 +85,9 @@ fn profiles_refuse_what_is_no_minimum() {
     // From the upper minimum (cost 0.04) towards the lower one.
     let minimum = free(&problem, &[-1.0]);
     let error = profile(&problem, &minimum, &none, &usual, 0, 2.0).unwrap_err();
-    assert!(matches!(error, LeastSquaresError::LowerCost { parameter: 0, .. }), "{error}");
+    assert!(error.to_string().contains("below that of the given minimum"), "{error}");
     let error = profile(&problem, &minimum, &none, &usual, 1, 2.0).unwrap_err();
-    assert_eq!(error, LeastSquaresError::NotProfiled { parameter: 1, parameters: 1 });
+    assert!(error.to_string().starts_with("parameter 1 cannot be profiled: the problem has 1"), "{error}");
     let error = profile(&problem, &minimum, &none, &usual, 0, -1.0).unwrap_err();
     assert_eq!(error.to_string(), "the option rise is -1; it must be positive and finite");
 }

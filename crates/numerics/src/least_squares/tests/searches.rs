@@ -159,7 +159,6 @@ fn straight_line_has_the_textbook_covariance() {
     assert_close(&minimum.correlation(), &[1.0, rho, rho, 1.0], 1e-13);
     let deviation = minimum.standard_deviations(4.0)[1].unwrap();
     assert_close(&[deviation], &[2.0 / 82.5_f64.sqrt()], 1e-13);
-    assert_close(&[minimum.residual_variance().unwrap()], &[minimum.cost / 8.0], 1e-15);
     assert!(minimum.certificate.least_curvature.unwrap() > 0.0);
 }
 
@@ -197,7 +196,6 @@ fn fewer_rows_than_parameters_and_no_parameters() {
     let minimum = free(&problem, &[0.0, 1.0, 0.0]);
     assert!(minimum.certificate.converged && minimum.cost < 1e-28);
     assert_eq!((minimum.certificate.rank, minimum.certificate.flat.len()), (1, 2));
-    assert_eq!(minimum.residual_variance(), None);
     let empty = model(3, 0, |_, i| Some((i as f64, Vec::new())));
     let minimum = free(&empty, &[]);
     assert_eq!(
@@ -407,24 +405,5 @@ fn unusable_calls_say_what_is_wrong() {
     );
     let infinite = model(2, 1, |_, i| Some((1.0, vec![1.0 / (1.0 - i as f64)])));
     let error = minimise(&infinite, &[1.0], &Bounds::none(1), &usual).unwrap_err();
-    assert_eq!(error, LeastSquaresError::Derivative { row: 1, parameter: 0, value: f64::INFINITY });
-}
-
-#[test]
-fn many_starts_find_all_minima() {
-    let bounds = Bounds { lower: vec![-3.0], upper: vec![3.0] };
-    let mut starts = starts_in_box(9, &bounds).unwrap();
-    starts.push(vec![5.0]);
-    let found = minimise_from_many(&two_minima(), &starts, &bounds, &Options::default()).unwrap();
-    assert_close(&found.best.theta, &[1.0], 1e-12);
-    assert_eq!((found.minima.len(), found.best.residuals.len(), found.ends.len()), (2, 2, 10));
-    // 2 x (x^2 - 1) + (x - 1)/100 = 0 without the root 1: 2 x (x + 1) + 0.01 = 0.
-    assert_close(&found.minima[1].theta, &[(-1.0 - 0.98_f64.sqrt()) / 2.0], 1e-9);
-    assert_eq!(found.minima[0].starts.len() + found.minima[1].starts.len(), 9);
-    assert!(found.minima.iter().all(|m| !m.starts.is_empty() && m.starts.is_sorted()));
-    assert!(matches!(found.ends[9], Err(LeastSquaresError::Outside { parameter: 0, .. })));
-    let none = minimise_from_many(&two_minima(), &[], &bounds, &Options::default());
-    assert_eq!(none.unwrap_err(), LeastSquaresError::NoStart);
-    let outside = minimise_from_many(&two_minima(), &[vec![5.0], vec![6.0]], &bounds, &Options::default());
-    assert!(matches!(outside.unwrap_err(), LeastSquaresError::Outside { value: 5.0, .. }));
+    assert!(error.to_string().starts_with("the derivative of residual 1 by parameter 0 is inf"), "{error}");
 }

@@ -23,15 +23,16 @@ const WIDTH: usize = 110;
 /// for a NaN it returns 0 and writes nothing. It agrees with the lookup of `bulge_table` to rounding.
 ///
 /// # Errors
-/// [`ExportError::Name`] if the name has characters other than letters, digits and underscores, or doesn't
+/// [`ExportError::Input`] if the name has characters other than letters, digits and underscores, or doesn't
 /// begin with a letter.
 pub fn c_header(table: &Table<'_>, name: &str) -> Result<String, ExportError> {
     // Names with a leading underscore are reserved for the compiler.
     let is_name = name.starts_with(|c: char| c.is_ascii_alphabetic())
         && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
     if !is_name {
-        let instead = "use letters, digits and underscores, such as `knee_torque`";
-        return Err(ExportError::Name { name: name.to_owned(), language: "C", instead });
+        return Err(ExportError::Input(format!(
+            "`{name}` is no name for C: use letters, digits and underscores, such as `knee_torque`"
+        )));
     }
     let guard = format!("{}_H", name.to_uppercase());
     let mut text = String::from("/*\n");

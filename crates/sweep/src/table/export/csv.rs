@@ -15,15 +15,21 @@ const INSIDE: f64 = 1e-9;
 /// read them back exactly; cells without a value are empty.
 ///
 /// # Errors
-/// [`ExportError::TooFewPoints`] or [`ExportError::TooManyRows`].
+/// [`ExportError::Input`] for a grid of less than 2 points per axis, or with too many rows.
 pub fn csv(table: &Table<'_>, points_per_axis: usize) -> Result<String, ExportError> {
     let (axes, outputs) = (axes(table), outputs(table));
     if points_per_axis < 2 {
-        return Err(ExportError::TooFewPoints { points: points_per_axis });
+        return Err(ExportError::Input(format!(
+            "a grid of {points_per_axis} points per axis is not possible: it needs at least 2"
+        )));
     }
-    let too_many = ExportError::TooManyRows { points: points_per_axis, axes: axes.len() };
     let count = u32::try_from(axes.len()).ok().and_then(|n| points_per_axis.checked_pow(n));
-    let Some(count) = count.filter(|count| *count <= MOST_ROWS) else { return Err(too_many) };
+    let Some(count) = count.filter(|count| *count <= MOST_ROWS) else {
+        let axes = axes.len();
+        return Err(ExportError::Input(format!(
+            "a grid of {points_per_axis} points on each of {axes} axes has more than {MOST_ROWS} rows: use fewer points"
+        )));
+    };
 
     let mut header: Vec<String> =
         axes.iter().map(|axis| quoted(&format!("{} [{}]", axis.name, axis.unit))).collect();

@@ -88,15 +88,14 @@ impl PapersPolynomial {
 /// The fit is a least-squares fit at 400 Chebyshev points, by orthogonal polynomials.
 ///
 /// # Errors
-/// [`ExportError::NotOfThisTable`], [`ExportError::Range`], or [`ExportError::Outside`] where the table has
-/// no value.
+/// [`ExportError::Input`] if the table has no such polynomial, or no value in the range.
 pub fn papers_polynomial(
     table: &Table<'_>,
     slenderness: Option<f64>,
     fibres: Option<u32>,
     range_percent: [f64; 2],
 ) -> Result<PapersPolynomial, ExportError> {
-    let lacks = |what: &str| ExportError::NotOfThisTable { what: what.to_owned() };
+    let lacks = |what: &str| ExportError::Input(format!("no polynomial of this table: {what}"));
     if fibres.is_some_and(|n| n < 3) {
         return Err(lacks("a muscle has at least 3 fibres"));
     }
@@ -123,7 +122,11 @@ pub fn papers_polynomial(
     let curve = |percent: f64| {
         let point = point(percent / 100.0)?;
         let found = table.sample(&point, &mut values, &mut gradients);
-        found.ok_or(ExportError::Outside { percent })?;
+        found.ok_or_else(|| {
+            ExportError::Input(format!(
+                "there is no value at the contraction {percent:.4} %: choose a range inside the domain"
+            ))
+        })?;
         Ok([values[force], values[volume]])
     };
     fitted(curve, slenderness, fibres, range_percent)
@@ -137,7 +140,9 @@ fn fitted(
     range @ [from, to]: [f64; 2],
 ) -> Result<PapersPolynomial, ExportError> {
     if !(from > 0.0 && to > from && to.is_finite()) {
-        return Err(ExportError::Range { from, to });
+        return Err(ExportError::Input(format!(
+            "no polynomial from {from} % to {to} %: the contractions must rise, from more than 0"
+        )));
     }
     let factor = fibres.map_or(1.0, |n| f64::from(n) / TAU * (TAU / f64::from(n)).sin());
     let mut printed = |percent: f64| {

@@ -12,14 +12,15 @@ const ON_A_LINE: usize = 20;
 /// checks them and returns a `bulge_table::Lookup`. It depends only on the crate `bulge-table`.
 ///
 /// # Errors
-/// [`ExportError::Name`] if the name has characters other than capital letters, digits and underscores, or
+/// [`ExportError::Input`] if the name has characters other than capital letters, digits and underscores, or
 /// doesn't begin with a capital letter.
 pub fn rust_source(table: &Table<'_>, name: &str) -> Result<String, ExportError> {
     let is_name = name.starts_with(|c: char| c.is_ascii_uppercase())
         && name.chars().all(|c| c.is_ascii_uppercase() || c.is_ascii_digit() || c == '_');
     if !is_name {
-        let instead = "use capital letters, digits and underscores, such as `KNEE_TORQUE`";
-        return Err(ExportError::Name { name: name.to_owned(), language: "a Rust static", instead });
+        return Err(ExportError::Input(format!(
+            "`{name}` is no name for a Rust static: use capital letters, digits and underscores, such as `KNEE_TORQUE`"
+        )));
     }
     let bytes = table.bytes();
     let mut text = format!("//! The table `{name}`: lookup with exact gradients, `None` outside.\n//!\n");
