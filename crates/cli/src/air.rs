@@ -13,10 +13,10 @@ use serde_json::json;
 use std::fmt::Write;
 use std::path::PathBuf;
 
-use crate::arguments::{TIME, extended, in_unit, quantity, range};
+use crate::arguments::{Json, TIME, extended, in_unit, pretty, quantity, range};
 use crate::failure::Failure;
 use crate::files;
-use crate::text::{significant, table};
+use crate::text::{significant, table, with_units};
 
 /// Units of a sonic conductance, l/(s bar) = 1e-8 m^3/(s Pa).
 const CONDUCTANCE: [(&str, f64); 2] = [("l/(s bar)", 1e-8), ("m^3/(s Pa)", 1.0)];
@@ -55,9 +55,8 @@ struct Common {
     /// Your own effects, where the muscle file states them
     #[arg(long, value_name = "FILE")]
     effects: Option<PathBuf>,
-    /// One JSON document on standard output
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    json: Json,
 }
 
 #[derive(Debug, Args)]
@@ -195,14 +194,14 @@ impl Shut {
         let under = self.force.as_deref().map(|text| quantity::<Force>("--force", text)).transpose()?;
         let under = under.map(|force| closed.under_force(force.si())).transpose()?;
         let wrote = files::wrote(self.plot.as_deref(), || compared(&name, &muscle, pressure, &states))?;
-        if self.common.json {
+        if self.common.json.wanted {
             let states: Vec<_> =
                 states.iter().map(|(state, split)| json!({ "state": state, "stiffness": split })).collect();
             let document = json!({
                 "schema": "bulge.air/1", "muscle": name, "mass_kg": closed.mass_kg(), "exponent": self.exponent,
                 "states": states, "under_force": under,
             });
-            return Ok(serde_json::to_string_pretty(&document)? + "\n");
+            return pretty(&document);
         }
         let mut text = format!(
             "{name}, shut at {} % and {} bar with {} g of air, exponent {}\n\n",
@@ -214,19 +213,18 @@ impl Shut {
         let heading =
             ["contraction", "pressure", "force", "volume", "stiffness", "of geometry", "of the gas"];
         let units = ["%", "bar", "N", "ml", "N/mm", "N/mm", "N/mm"];
-        let mut rows = vec![heading.map(String::from).to_vec(), units.map(String::from).to_vec()];
-        for (state, split) in &states {
-            let stiffness = [split.total_n_per_m, split.geometry_n_per_m, split.gas_n_per_m];
-            let mut row = vec![
+        let rows = states.iter().map(|(state, split)| {
+            [
                 significant(100.0 * state.contraction, 4),
                 significant(1e-5 * state.pressure_pa, 4),
                 significant(state.force_n, 4),
                 significant(1e6 * state.response.volume_m3, 4),
-            ];
-            row.extend(stiffness.map(|k| significant(1e-3 * k, 4)));
-            rows.push(row);
-        }
-        text.push_str(&table(&rows));
+                significant(1e-3 * split.total_n_per_m, 4),
+                significant(1e-3 * split.geometry_n_per_m, 4),
+                significant(1e-3 * split.gas_n_per_m, 4),
+            ]
+        });
+        text.push_str(&with_units(heading, units, rows));
         if let Some(state) = under {
             let _ = writeln!(
                 text,
@@ -251,9 +249,7 @@ fn compared(
     let mut open = Vec::new();
     for (state, _) in states {
         let given = bulge_fibre::Given::Contraction(state.contraction);
-        let found = muscle
-            .solve(Pressure::pa(pressure), given, bulge_fibre::Approach::Auto)
-            .map_err(|error| Failure::MuscleWithEffects(Box::new(error)))?;
+        let found = muscle.solve(Pressure::pa(pressure), given, bulge_fibre::Approach::Auto)?;
         open.push([100.0 * state.contraction, found.force_n]);
     }
     let lines = [("valve open".to_owned(), open), ("valve shut".to_owned(), shut)];
@@ -266,9 +262,9 @@ impl Fill {
         let history = self.filling(&muscle)?.run()?;
         let wanted = [self.csv.as_deref(), self.plot.as_deref()];
         let wrote = files::wrote_both(wanted, || csv(&history), || drawn(&name, &history))?;
-        if self.common.json {
+        if self.common.json.wanted {
             let document = json!({ "schema": "bulge.filling/1", "muscle": name, "filling": history });
-            return Ok(serde_json::to_string_pretty(&document)? + "\n");
+            return pretty(&document);
         }
         let mut text = told(&name, &history);
         if let (Some(load), Some(last)) = (&self.load, history.samples.last()) {
@@ -351,14 +347,13 @@ fn told(name: &str, history: &History) -> String {
     let mut text = format!("{name}\n\n");
     let heading = ["time", "pressure", "contraction", "force", "volume", "air", "temperature", "flow"];
     let units = ["s", "bar", "%", "N", "ml", "g", "K", "g/s"];
-    let mut rows = vec![heading.map(String::from).to_vec(), units.map(String::from).to_vec()];
     let every = history.samples.len().saturating_sub(1).div_ceil(ROWS - 1).max(1);
     let mut kept: Vec<_> = history.samples.iter().step_by(every).collect();
     if let (Some(last), false) = (history.samples.last(), (history.samples.len() - 1).is_multiple_of(every)) {
         kept.push(last);
     }
-    for at in kept {
-        rows.push(vec![
+    let rows = kept.into_iter().map(|at| {
+        [
             significant(at.time_s, 4),
             // A tiny pressure at the start is rounding.
             if at.pressure_pa.abs() < 1e-6 { "0".to_owned() } else { significant(1e-5 * at.pressure_pa, 4) },
@@ -368,9 +363,9 @@ fn told(name: &str, history: &History) -> String {
             significant(1e3 * at.mass_kg, 4),
             significant(at.temperature_k, 4),
             significant(1e3 * at.flow_kg_per_s, 3),
-        ]);
-    }
-    text.push_str(&table(&rows));
+        ]
+    });
+    text.push_str(&with_units(heading, units, rows));
     let after = |time: Option<f64>| {
         time.map_or("not reached".to_owned(), |time| format!("after {} s", significant(time, 4)))
     };
@@ -441,11 +436,8 @@ impl Cycle {
         stroke.dead_volume_m3 = self.common.dead()?;
         let found = stroke.cycle()?;
         let wrote = files::wrote(self.plot.as_deref(), || rising(&name, &stroke, &found))?;
-        if self.common.json {
-            let document = json!({ "schema": "bulge.stroke/1", "muscle": name, "cycle": found });
-            return Ok(serde_json::to_string_pretty(&document)? + "\n");
-        }
-        Ok(spent(&name, load, &found) + &wrote)
+        let document = json!({ "schema": "bulge.stroke/1", "muscle": name, "cycle": found });
+        self.common.json.or(&document, || spent(&name, load, &found) + &wrote)
     }
 }
 

@@ -5,8 +5,9 @@ use bulge_fibre::{Approach, FibreError};
 use bulge_model::{MuscleWithEffects, MuscleWithEffectsError, specimen};
 use bulge_muscles::settings::nearest;
 use bulge_muscles::units::Quantity;
-use bulge_muscles::{Muscle, PRESETS, Pressure, Specimen, preset, read, units};
-use clap::ValueEnum;
+use bulge_muscles::{Muscle, PRESETS, Pressure, Specimen, UnitError, preset, read, units};
+use clap::{Args, ValueEnum};
+use serde::Serialize;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -14,6 +15,30 @@ use crate::failure::Failure;
 
 /// Units of a time, in seconds.
 pub(crate) const TIME: [(&str, f64); 3] = [("s", 1.0), ("ms", 1e-3), ("min", 60.0)];
+
+/// The form of an answer: text, or a document.
+#[derive(Debug, Clone, Copy, Default, Args)]
+pub(crate) struct Json {
+    /// One JSON document on standard output
+    #[arg(id = "json", long)]
+    pub(crate) wanted: bool,
+}
+
+impl Json {
+    /// The document if it is wanted, otherwise the text.
+    pub(crate) fn or(
+        self,
+        document: &impl Serialize,
+        text: impl FnOnce() -> String,
+    ) -> Result<String, Failure> {
+        if self.wanted { pretty(document) } else { Ok(text()) }
+    }
+}
+
+/// A document as it is printed and written.
+pub(crate) fn pretty(document: &impl Serialize) -> Result<String, Failure> {
+    Ok(serde_json::to_string_pretty(document)? + "\n")
+}
 
 /// How to compute.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
@@ -82,9 +107,14 @@ fn check_specimen(muscle: &Muscle, name: &str) -> Result<(), Failure> {
     Err(Failure::Value { option: "--specimen", what: format!("there is no specimen `{name}`: {stated}") })
 }
 
+/// The failure of an option whose quantities can't be read.
+fn unreadable(option: &'static str) -> impl Fn(UnitError) -> Failure {
+    move |error| Failure::Value { option, what: error.to_string() }
+}
+
 /// A quantity with its unit.
 pub(crate) fn quantity<Q: Quantity>(option: &'static str, text: &str) -> Result<Q, Failure> {
-    units::parse(text).map_err(|source| Failure::Option { option, source: Box::new(source) })
+    units::parse(text).map_err(unreadable(option))
 }
 
 /// A number with one of the given units, converted to the first one.
@@ -109,13 +139,12 @@ pub(crate) fn in_unit(option: &'static str, text: &str, units: &[(&str, f64)]) -
 
 /// A list of quantities.
 pub(crate) fn list<Q: Quantity>(option: &'static str, text: &str) -> Result<Vec<Q>, Failure> {
-    units::parse_list(text).map_err(|source| Failure::Option { option, source: Box::new(source) })
+    units::parse_list(text).map_err(unreadable(option))
 }
 
 /// Both ends of a range of quantities, in the order written: either may be the smaller one.
 pub(crate) fn range<Q: Quantity>(option: &'static str, text: &str) -> Result<[f64; 2], Failure> {
-    let (from, to): (Q, Q) =
-        units::parse_range(text).map_err(|source| Failure::Option { option, source: Box::new(source) })?;
+    let (from, to): (Q, Q) = units::parse_range(text).map_err(unreadable(option))?;
     Ok([from.si(), to.si()])
 }
 
@@ -137,8 +166,8 @@ pub(crate) fn about_extended(
     let about = about(muscle, pressure);
     move |error| match error {
         MuscleWithEffectsError::Equilibrium(source) => about(*source),
-        MuscleWithEffectsError::Model(source) => Failure::Model(source),
-        MuscleWithEffectsError::Force { .. } => Failure::MuscleWithEffects(Box::new(error)),
+        MuscleWithEffectsError::Model(source) => (*source).into(),
+        MuscleWithEffectsError::Force { .. } => error.into(),
     }
 }
 

@@ -6,7 +6,7 @@ use bulge_report::{Curve, characteristics_svg};
 use std::fmt::Write;
 
 use crate::failure::Failure;
-use crate::text::{significant, table};
+use crate::text::{significant, with_units};
 
 type Column = (&'static str, fn(&Response) -> f64);
 
@@ -59,11 +59,10 @@ pub(crate) fn summary(isobars: &[Isobar]) -> String {
         );
         let heading = ["contraction", "force", "volume", "largest radius", "fibre tension", "stiffness"];
         let units = ["%", "N", "ml", "mm", "N", "N/mm"];
-        let mut rows = vec![heading.map(String::from).to_vec(), units.map(String::from).to_vec()];
         let largest = isobar.points.iter().map(|r| r.force_n.abs()).fold(0.0, f64::max);
         let every = isobar.points.len().div_ceil(11).max(1);
-        for r in isobar.points.iter().step_by(every) {
-            rows.push(vec![
+        let rows = isobar.points.iter().step_by(every).map(|r| {
+            [
                 significant(100.0 * r.contraction, 4),
                 // At the limit itself the force is only rounding.
                 if r.force_n.abs() < 1e-9 * largest { "0".to_owned() } else { significant(r.force_n, 5) },
@@ -71,9 +70,9 @@ pub(crate) fn summary(isobars: &[Isobar]) -> String {
                 significant(1e3 * r.max_radius_m, 4),
                 significant(r.fibre_tension_n, 4),
                 significant(1e-3 * r.stiffness_n_per_m, 4),
-            ]);
-        }
-        text.push_str(&table(&rows));
+            ]
+        });
+        text.push_str(&with_units(heading, units, rows));
         text.push('\n');
     }
     text

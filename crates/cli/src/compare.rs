@@ -9,7 +9,7 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use crate::arguments;
+use crate::arguments::{self, Json, pretty};
 use crate::data::{DataArguments, told};
 use crate::failure::Failure;
 use crate::files;
@@ -47,9 +47,8 @@ pub(crate) struct CompareCommand {
     /// File for all rows, CSV or Parquet by its ending: what was read, the force of the base and of the last rung, and why a row doesn't count
     #[arg(long, value_name = "FILE.csv|.parquet")]
     rows: Option<PathBuf>,
-    /// One JSON document on standard output
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    json: Json,
 }
 
 impl CompareCommand {
@@ -70,7 +69,7 @@ impl CompareCommand {
             self.data.can_write(("--rows", path), &self.muscle, self.effects.as_deref())?;
         }
         let (comparison, rows) = compare_with_rows(&data, &muscle, &options)?;
-        let document = serde_json::to_string_pretty(&comparison)? + "\n";
+        let document = pretty(&comparison)?;
         let mut wrote = String::new();
         if let Some(path) = &self.rows {
             files::write(path, &written(path, &rows.columns())?)?;
@@ -81,7 +80,7 @@ impl CompareCommand {
                 let _ = writeln!(wrote, "  wrote {}", path.display());
             }
         }
-        if self.json { Ok(document) } else { Ok(text(&comparison, &options.effects) + &wrote) }
+        if self.json.wanted { Ok(document) } else { Ok(text(&comparison, &options.effects) + &wrote) }
     }
 }
 

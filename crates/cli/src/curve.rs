@@ -9,7 +9,7 @@ use serde_json::json;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use crate::arguments::{MethodArgument, about, about_extended, extended, list, range};
+use crate::arguments::{Json, MethodArgument, about, about_extended, extended, list, pretty, range};
 use crate::characteristics;
 use crate::failure::Failure;
 use crate::files;
@@ -59,9 +59,8 @@ pub(crate) struct CurveCommand {
     /// Your own effects, where the muscle file states them
     #[arg(long, value_name = "FILE")]
     effects: Option<PathBuf>,
-    /// One JSON document on standard output
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    json: Json,
 }
 
 impl CurveCommand {
@@ -106,8 +105,8 @@ impl CurveCommand {
                 let _ = writeln!(wrote, "  wrote {}", path.display());
             }
         }
-        if self.json {
-            return Ok(serde_json::to_string_pretty(&document(&muscle, &isobars))? + "\n");
+        if self.json.wanted {
+            return pretty(&document(&muscle, &isobars));
         }
         let mut heading = format!("{}\n\n", muscle.name());
         if extended.adds_force() {

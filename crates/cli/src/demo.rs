@@ -17,7 +17,7 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use crate::arguments::about;
+use crate::arguments::{Json, about, pretty};
 use crate::characteristics;
 use crate::compare::{ladder, parameters, report};
 use crate::failure::Failure;
@@ -40,14 +40,13 @@ pub(crate) struct Demo {
     /// Folder for the files of the tour
     #[arg(long, default_value = "bulge-demo")]
     out: PathBuf,
-    /// One JSON document on standard output
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    json: Json,
 }
 
 impl Default for Demo {
     fn default() -> Self {
-        Self { out: PathBuf::from("bulge-demo"), json: false }
+        Self { out: PathBuf::from("bulge-demo"), json: Json::default() }
     }
 }
 
@@ -110,7 +109,7 @@ impl Demo {
         let hidden = hidden::hidden(&self.out, &mut text, &mut written)?;
         let own_form = own_form::own_form(&self.out, &mut text, &mut written)?;
         let table = tabulated::tabulated(&self.out, &mut text, &mut written)?;
-        if self.json {
+        if self.json.wanted {
             let document = Document {
                 schema: "bulge.demo/1",
                 pleated,
@@ -122,7 +121,7 @@ impl Demo {
                 table,
                 files: written,
             };
-            return Ok(serde_json::to_string_pretty(&document)? + "\n");
+            return pretty(&document);
         }
         text.push_str("Files of this tour (open report.html and the .svg in a browser, the .pvd or a .vtp in ParaView):\n\n");
         for path in &written {
@@ -254,7 +253,7 @@ fn measured(out: &Path, text: &mut String, written: &mut Vec<PathBuf>) -> Result
         parameters(text, fit, &rung.held);
     }
     text.push_str("\n  It was simulated with c10 = 0.31 MPa and a friction of 14 N.\n\n");
-    let document = serde_json::to_string_pretty(&comparison)? + "\n";
+    let document = pretty(&comparison)?;
     written.extend(report(&out.join("report"), &comparison, &rows, &document)?);
     Ok(comparison)
 }

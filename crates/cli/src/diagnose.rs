@@ -12,7 +12,7 @@ use clap::Args;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use crate::arguments;
+use crate::arguments::{self, Json, pretty};
 use crate::data::{DataArguments, told};
 use crate::failure::Failure;
 use crate::files;
@@ -47,9 +47,8 @@ pub(crate) struct DiagnoseCommand {
     /// Folder for report.html, the plots as SVG files, and diagnosis.json
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// One JSON document on standard output
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    json: Json,
 }
 
 impl DiagnoseCommand {
@@ -63,20 +62,20 @@ impl DiagnoseCommand {
         let base = self.data.options(&data, &muscle, catalogue, effects)?;
         // Parameters without a width in the file get the usual one, as in the diagnosis.
         let base = self.restricted.apply(base, &data, &muscle.clone().with_usual_widths().0)?;
-        let bar = Bar::new(self.json);
+        let bar = Bar::new(self.json.wanted);
         let progress = bar.progress();
         let options =
             DiagnoseOptions { among, tolerance_n, seed: self.seed, progress, ..DiagnoseOptions::new(base) };
         let found = diagnose(&data, &muscle, &options)?;
         drop(bar);
-        let document = serde_json::to_string_pretty(&found)? + "\n";
+        let document = pretty(&found)?;
         let mut wrote = String::new();
         if let Some(folder) = &self.out {
             for path in report(folder, &found, &document)? {
                 let _ = writeln!(wrote, "  wrote {}", path.display());
             }
         }
-        if self.json {
+        if self.json.wanted {
             Ok(document)
         } else {
             let mut call = self.data.call(&self.muscle, &self.with, self.effects.as_deref(), &[]);

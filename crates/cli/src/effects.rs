@@ -6,7 +6,7 @@ use clap::Args;
 use serde_json::json;
 use std::path::PathBuf;
 
-use crate::arguments;
+use crate::arguments::{self, Json};
 use crate::failure::Failure;
 
 /// The catalogue: equation, parameters, units, bounds, source, signature, what an effect is confused with.
@@ -20,9 +20,8 @@ pub(crate) struct EffectsCommand {
     /// Your own effects, as expressions in a TOML file
     #[arg(long, value_name = "FILE")]
     effects: Option<PathBuf>,
-    /// One JSON document on standard output
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    json: Json,
 }
 
 impl EffectsCommand {
@@ -36,36 +35,23 @@ impl EffectsCommand {
     }
 
     fn laws(&self) -> Result<String, Failure> {
-        if !self.json {
-            return Ok(reference());
-        }
         let document = json!({"schema": "bulge.laws/1", "papers": PAPERS, "laws": LAWS});
-        Ok(serde_json::to_string_pretty(&document)? + "\n")
+        self.json.or(&document, || reference())
     }
 
     fn one(&self, catalogue: &Catalogue, name: &str) -> Result<String, Failure> {
         if let Some(law) = bulge_effects::law::Law::find(name) {
             let document = json!({"schema": "bulge.law/1", "law": law});
-            return if self.json {
-                Ok(serde_json::to_string_pretty(&document)? + "\n")
-            } else {
-                Ok(law.to_string())
-            };
+            return self.json.or(&document, || law.to_string());
         }
         let effect = catalogue.find(name)?;
-        if !self.json {
-            return Ok(describe(effect.as_ref()));
-        }
         let document = json!({"schema": "bulge.effect/1", "effect": CardDocument::of(effect.as_ref())});
-        Ok(serde_json::to_string_pretty(&document)? + "\n")
+        self.json.or(&document, || describe(effect.as_ref()))
     }
 
     fn all(&self, catalogue: &Catalogue) -> Result<String, Failure> {
-        if !self.json {
-            return Ok(overview(catalogue));
-        }
         let effects: Vec<_> = catalogue.iter().map(|effect| CardDocument::of(effect.as_ref())).collect();
         let document = json!({"schema": "bulge.effects/1", "effects": effects});
-        Ok(serde_json::to_string_pretty(&document)? + "\n")
+        self.json.or(&document, || overview(catalogue))
     }
 }

@@ -12,67 +12,31 @@ use bulge_measurements::{MeasurementError, WrittenError};
 use bulge_membrane::MembraneError;
 use bulge_membrane::case::CaseError;
 use bulge_model::{ModelError, MuscleWithEffectsError};
-use bulge_muscles::{Fault, FileError, PresetError, UnitError};
+use bulge_muscles::{Fault, FileError, PresetError};
 use bulge_report::{LearningError, PlotError};
 use bulge_sweep::export::ExportError;
 use bulge_sweep::{BuildError, SweepError, TabulateError};
 use bulge_table::TableError;
 use bulge_vtk::VtkError;
+use bulge_workbench::WorkbenchError;
 use std::path::PathBuf;
 
 /// Why a command fails.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum Failure {
-    #[error("{0}")]
-    File(Box<FileError>),
-    #[error("{0}")]
-    Preset(Box<PresetError>),
-    #[error("{option}: {source}")]
-    Option { option: &'static str, source: Box<UnitError> },
     #[error("{option}: {what}")]
     Value { option: &'static str, what: String },
     #[error("{muscle} at {pressure}: {source}")]
     Equilibrium { muscle: String, pressure: String, source: Box<FibreError> },
     #[error("cannot write {}: {source}", path.display())]
     Output { path: PathBuf, source: std::io::Error },
-    #[error("{0}")]
-    Vtk(Box<VtkError>),
-    #[error("cannot draw the plot: {0}")]
-    Plot(Box<PlotError>),
-    #[error("{0}")]
-    Effect(Box<CatalogueError>),
-    #[error("{0}")]
-    EffectFile(Box<EffectFileError>),
-    #[error("{0}")]
-    Measurement(Box<MeasurementError>),
-    #[error("{0}")]
-    Inference(Box<InferenceError>),
-    #[error("{0}")]
-    Model(Box<ModelError>),
-    #[error("{0}")]
-    MuscleWithEffects(Box<MuscleWithEffectsError>),
+    /// An error of a library, with the exit status.
+    #[error("{says}")]
+    Library { says: String, status: u8 },
     #[error("{0}")]
     NotConverged(String),
-    #[error("{0}")]
-    Learning(Box<LearningError>),
-    #[error("{0}")]
-    Size(Box<SizeError>),
-    #[error("{0}")]
-    Sensing(Box<SensingError>),
-    #[error("{0}")]
-    Heat(Box<HeatError>),
-    #[error("{0}")]
-    Gas(Box<GasError>),
-    #[error("{0}")]
-    Sweep(Box<SweepError>),
-    #[error("{0}")]
-    Tabulate(Box<TabulateError>),
-    #[error("{0}")]
-    Export(Box<ExportError>),
     #[error("{}: {what}", path.display())]
     TableFile { path: PathBuf, what: String },
-    #[error("{0}")]
-    Table(#[from] TableError),
     #[error("{0}")]
     Outside(String),
     /// As [`Self::Outside`], with an answer on standard output.
@@ -80,12 +44,8 @@ pub(crate) enum Failure {
     NoneFound { answer: String, why: String },
     #[error("{origin}: {source}{kept}")]
     Membrane { origin: String, source: Box<CaseError>, kept: String },
-    #[error(transparent)]
-    Workbench(#[from] bulge_workbench::WorkbenchError),
     #[error("the result cannot be written as JSON: {0}")]
     Json(#[from] serde_json::Error),
-    #[error("{0}")]
-    Written(#[from] WrittenError),
     #[error("{failed} of {all} checks failed:\n{table}")]
     Checks { failed: usize, all: usize, table: String },
 }
@@ -101,36 +61,9 @@ impl Failure {
     pub(crate) fn status(&self) -> u8 {
         match self {
             Self::Equilibrium { source, .. } => status(source.fault()),
-            Self::Inference(error) => status(error.fault()),
-            Self::Model(error) => status(error.fault()),
-            Self::MuscleWithEffects(error) => status(error.fault()),
+            Self::Library { status, .. } => *status,
             Self::NotConverged(_) => 4,
-            Self::Learning(error) => status(error.fault()),
             Self::Outside(_) | Self::NoneFound { .. } => 3,
-            Self::Sensing(error) => match error.as_ref() {
-                SensingError::Equilibrium { .. }
-                | SensingError::Overstrained { .. }
-                | SensingError::NotMonotone { .. }
-                | SensingError::NoChange
-                | SensingError::NoPlace { .. } => 3,
-                _ => 1,
-            },
-            Self::Gas(error) => match error.as_ref() {
-                GasError::Number { .. } => 1,
-                GasError::Stopped { .. } => 4,
-                GasError::Muscle { error, .. } => status(error.fault()),
-                _ => 3,
-            },
-            Self::Heat(error) => match error.as_ref() {
-                HeatError::Invalid { .. } => 1,
-                HeatError::Choked { .. } => 3,
-                HeatError::NotConverged(_) => 4,
-            },
-            Self::Size(error) if matches!(**error, SizeError::Muscle { .. }) => 3,
-            Self::Tabulate(error) => match error.as_ref() {
-                TabulateError::Build(BuildError::NoValue(_)) => 3,
-                _ => 1,
-            },
             Self::Membrane { source, .. } => match source.as_ref() {
                 CaseError::State {
                     source:
@@ -156,6 +89,66 @@ fn status(fault: Fault) -> u8 {
     }
 }
 
+/// Turns errors of the libraries into failures: each with its exit status.
+macro_rules! of_libraries {
+    ($($error:ty: $status:expr,)*) => {
+        $(impl From<$error> for Failure {
+            fn from(error: $error) -> Self {
+                let status: fn(&$error) -> u8 = $status;
+                Self::Library { status: status(&error), says: error.to_string() }
+            }
+        })*
+    };
+}
+
+of_libraries!(
+    FileError: |_| 1,
+    PresetError: |_| 1,
+    VtkError: |_| 1,
+    CatalogueError: |_| 1,
+    EffectFileError: |_| 1,
+    MeasurementError: |_| 1,
+    WrittenError: |_| 1,
+    SweepError: |_| 1,
+    ExportError: |_| 1,
+    TableError: |_| 1,
+    WorkbenchError: |_| 1,
+    InferenceError: |error| status(error.fault()),
+    ModelError: |error| status(error.fault()),
+    MuscleWithEffectsError: |error| status(error.fault()),
+    LearningError: |error| status(error.fault()),
+    SizeError: |error| if matches!(error, SizeError::Muscle { .. }) { 3 } else { 1 },
+    TabulateError: |error| match error {
+        TabulateError::Build(BuildError::NoValue(_)) => 3,
+        _ => 1,
+    },
+    SensingError: |error| match error {
+        SensingError::Equilibrium { .. }
+        | SensingError::Overstrained { .. }
+        | SensingError::NotMonotone { .. }
+        | SensingError::NoChange
+        | SensingError::NoPlace { .. } => 3,
+        _ => 1,
+    },
+    GasError: |error| match error {
+        GasError::Number { .. } => 1,
+        GasError::Stopped { .. } => 4,
+        GasError::Muscle { error, .. } => status(error.fault()),
+        _ => 3,
+    },
+    HeatError: |error| match error {
+        HeatError::Invalid { .. } => 1,
+        HeatError::Choked { .. } => 3,
+        HeatError::NotConverged(_) => 4,
+    },
+);
+
+impl From<PlotError> for Failure {
+    fn from(error: PlotError) -> Self {
+        Self::Library { says: format!("cannot draw the plot: {error}"), status: 1 }
+    }
+}
+
 impl From<HideError> for Failure {
     fn from(error: HideError) -> Self {
         match error {
@@ -172,8 +165,8 @@ impl From<StatementError> for Failure {
     fn from(error: StatementError) -> Self {
         match error {
             StatementError::Text { about, what } => Self::Value { option: option(about), what },
-            StatementError::Lines(error) => Self::Measurement(error),
-            StatementError::Inference(error) => Self::Inference(error),
+            StatementError::Lines(error) => (*error).into(),
+            StatementError::Inference(error) => (*error).into(),
         }
     }
 }
@@ -187,34 +180,3 @@ fn option(about: Stated) -> &'static str {
         Stated::Tie => "--tie",
     }
 }
-
-/// Converts errors of the libraries into failures. They are boxed, since they are large and rare.
-macro_rules! boxed {
-    ($($variant:ident($error:ty)),*) => {
-        $(impl From<$error> for Failure {
-            fn from(error: $error) -> Self {
-                Self::$variant(Box::new(error))
-            }
-        })*
-    };
-}
-
-boxed!(
-    File(FileError),
-    Preset(PresetError),
-    Vtk(VtkError),
-    Plot(PlotError),
-    Effect(CatalogueError),
-    EffectFile(EffectFileError),
-    Measurement(MeasurementError),
-    Inference(InferenceError),
-    Learning(LearningError),
-    Model(ModelError),
-    Size(SizeError),
-    Sensing(SensingError),
-    Heat(HeatError),
-    Gas(GasError),
-    Sweep(SweepError),
-    Tabulate(TabulateError),
-    Export(ExportError)
-);

@@ -8,7 +8,7 @@ use clap::Args;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use crate::arguments;
+use crate::arguments::{self, Json, pretty};
 use crate::compare::parameters;
 use crate::data::{DataArguments, told};
 use crate::failure::Failure;
@@ -37,9 +37,8 @@ pub(crate) struct FitCommand {
     /// The muscle file to write [default: on standard output]
     #[arg(long, value_name = "MODEL.toml")]
     out: Option<PathBuf>,
-    /// One JSON document on standard output
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    json: Json,
 }
 
 impl FitCommand {
@@ -59,9 +58,9 @@ impl FitCommand {
         if let Some(path) = &self.out {
             files::write(path, learnt.model.as_bytes())?;
         }
-        if self.json {
+        if self.json.wanted {
             let document = learnt.document().with_drawn(drawn.as_ref().map(|(drawn, _)| drawn));
-            return Ok(serde_json::to_string_pretty(&document)? + "\n");
+            return pretty(&document);
         }
         if self.out.is_none() {
             // Standard output holds only the file, so that it can be redirected; the numbers are in its
@@ -91,7 +90,7 @@ impl FitCommand {
             self.form_error.as_deref().map(|path| ("--form-error", path)).into_iter().collect();
         files::are_apart(&form_error, &[("the muscle file", Path::new(&self.muscle))])?;
         // Without a name and without JSON the fitted muscle goes to standard output.
-        let out = self.out.as_deref().or((!self.json).then_some(Path::new("-")));
+        let out = self.out.as_deref().or((!self.json.wanted).then_some(Path::new("-")));
         let out = out.map(|path| ("--out", path));
         let written: Vec<Named<'_>> = form_error.into_iter().chain(out).collect();
         files::are_apart(&written, &read)?;

@@ -10,10 +10,10 @@ use serde_json::json;
 use std::fmt::Write;
 use std::path::PathBuf;
 
-use crate::arguments::{TIME, in_unit, quantity, range};
+use crate::arguments::{Json, TIME, in_unit, quantity, range};
 use crate::failure::Failure;
 use crate::files;
-use crate::text::{significant, table};
+use crate::text::{significant, with_units};
 
 /// Most pipes in one call.
 const MOST_PIPES: usize = 100;
@@ -61,9 +61,8 @@ pub(crate) struct HeatCommand {
     /// Draw the mean temperature of the wall along the muscle
     #[arg(long, value_name = "FILE.svg")]
     plot: Option<PathBuf>,
-    /// One JSON document on standard output
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    json: Json,
 }
 
 impl HeatCommand {
@@ -78,19 +77,16 @@ impl HeatCommand {
             files::write(path, drawn(&problem, &pipes, &solved)?.as_bytes())?;
             let _ = writeln!(wrote, "\n  wrote {}", path.display());
         }
-        if self.json {
-            let cases = pipes.iter().zip(&solved).map(|(pipe, solved)| match solved {
-                Ok(solution) => json!({ "pipe": pipe, "solution": solution }),
-                Err(error) => json!({ "pipe": pipe, "why": error.to_string() }),
-            });
-            let document = json!({
-                "schema": "bulge.heat/1",
-                "problem": problem,
-                "cases": cases.collect::<Vec<_>>(),
-            });
-            return Ok(serde_json::to_string_pretty(&document)? + "\n");
-        }
-        Ok(text(&problem, &pipes, &solved) + &wrote)
+        let cases = pipes.iter().zip(&solved).map(|(pipe, solved)| match solved {
+            Ok(solution) => json!({ "pipe": pipe, "solution": solution }),
+            Err(error) => json!({ "pipe": pipe, "why": error.to_string() }),
+        });
+        let document = json!({
+            "schema": "bulge.heat/1",
+            "problem": problem,
+            "cases": cases.collect::<Vec<_>>(),
+        });
+        self.json.or(&document, || text(&problem, &pipes, &solved) + &wrote)
     }
 
     fn problem(&self) -> Result<HeatProblem, Failure> {
@@ -156,12 +152,12 @@ fn text(problem: &HeatProblem, pipes: &[Option<Pipe>], solved: &[Solved]) -> Str
     );
     let heading = ["pipe", "closed end", "inlet", "hottest", "there", "90 % after", "ageing", "heat a cycle"];
     let units = ["", "K", "K", "K", "mm", "s", "times", "J"];
-    let mut rows = vec![heading.map(String::from).to_vec(), units.map(String::from).to_vec()];
+    let mut rows = Vec::new();
     let mut failed = String::new();
     for (pipe, solved) in pipes.iter().zip(solved) {
         let name = name(pipe.as_ref());
         match solved {
-            Ok(found) => rows.push(vec![
+            Ok(found) => rows.push([
                 name,
                 significant(found.end_rise_k, 3),
                 significant(found.inlet_rise_k, 3),
@@ -176,7 +172,7 @@ fn text(problem: &HeatProblem, pipes: &[Option<Pipe>], solved: &[Solved]) -> Str
             }
         }
     }
-    text.push_str(&table(&rows));
+    text.push_str(&with_units(heading, units, rows));
     text.push_str(&failed);
     text.push_str(
         "\n  First order in the cells: at 40 the end without pipe is some 10 % low, and the ageing there by a factor of two; --cells 160 takes seconds a pipe.\n  ageing: how many times faster the rubber ages at its worst place than at the ambient temperature; no life.\n  Compare designs with this; absolute temperatures hold only after a measurement has fixed the coefficients.\n",

@@ -11,10 +11,10 @@ use serde_json::{Value, json};
 use std::fmt::Write;
 use std::path::PathBuf;
 
-use crate::arguments::{in_unit, list, quantity};
+use crate::arguments::{Json, in_unit, list, quantity};
 use crate::failure::Failure;
 use crate::files;
-use crate::text::{shown, significant, table};
+use crate::text::{shown, significant, table, with_units};
 
 /// Number of pressures of each muscle in the map.
 const GRID: usize = 5;
@@ -69,9 +69,8 @@ pub(crate) struct JointCommand {
     /// Draw the torque against the angle at several pairs of pressures
     #[arg(long, value_name = "FILE.svg")]
     plot: Option<PathBuf>,
-    /// One JSON document on standard output
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    json: Json,
 }
 
 impl JointCommand {
@@ -122,14 +121,11 @@ impl JointCommand {
             files::write(path, drawn(&joint)?.as_bytes())?;
             let _ = writeln!(wrote, "\n  wrote {}", path.display());
         }
-        if self.json {
-            let mut document = document;
-            document["schema"] = "bulge.joint/1".into();
-            document["name"] = joint.name.clone().into();
-            document["outside_nm"] = torque.into();
-            return Ok(serde_json::to_string_pretty(&document)? + "\n");
-        }
-        Ok(format!("{}\n\n{text}{wrote}", joint.name))
+        let mut document = document;
+        document["schema"] = "bulge.joint/1".into();
+        document["name"] = joint.name.clone().into();
+        document["outside_nm"] = torque.into();
+        self.json.or(&document, || format!("{}\n\n{text}{wrote}", joint.name))
     }
 
     fn pressures(&self) -> Result<Option<[f64; 2]>, Failure> {
@@ -239,18 +235,17 @@ fn standing(how: &str, stand: &JointState, outside: f64) -> String {
     );
     let heading = ["muscle", "pressure", "contraction", "force", "torque", "volume"];
     let units = ["", "bar", "%", "N", "N m", "ml"];
-    let mut rows = vec![heading.map(String::from).to_vec(), units.map(String::from).to_vec()];
-    for side in stand.sides {
-        rows.push(vec![
+    let rows = stand.sides.map(|side| {
+        [
             side.side.name().to_owned(),
             bar(side.pressure_pa),
             significant(100.0 * side.contraction, 4),
             significant(side.force_n, 4),
             significant(side.torque_nm, 4),
             significant(1e6 * side.volume_m3, 4),
-        ]);
-    }
-    text + &table(&rows)
+        ]
+    });
+    text + &with_units(heading, units, rows)
 }
 
 /// Uncertainty of an external torque.

@@ -54,8 +54,25 @@ struct Arguments {
     command: Option<Command>,
 }
 
-#[derive(Debug, Subcommand)]
-enum Command {
+/// Defines the commands, and how one of them is run.
+macro_rules! commands {
+    ($($(#[$about:meta])* $name:ident($of:ty),)*) => {
+        #[derive(Debug, Subcommand)]
+        enum Command {
+            $($(#[$about])* $name($of),)*
+        }
+
+        impl Command {
+            fn run(&self) -> Result<String, Failure> {
+                match self {
+                    $(Self::$name(command) => command.run(),)*
+                }
+            }
+        }
+    };
+}
+
+commands! {
     /// The tour, on shipped muscles: shapes, VTK, characteristics (what runs when no command is given)
     Demo(demo::Demo),
     /// One equilibrium: force, length, volume, fibre tension, stiffness, meridian
@@ -118,30 +135,7 @@ fn main() -> ExitCode {
     let command = arguments.command.unwrap_or(Command::Demo(demo::Demo::default()));
     // The command runs on a thread of the pool, as the computations do: input and results then share its
     // heap.
-    let outcome = rayon::scope(|_| match command {
-        Command::Demo(command) => command.run(),
-        Command::Shape(command) => command.run(),
-        Command::Curve(command) => command.run(),
-        Command::Membrane(command) => command.run(),
-        Command::Sweep(command) => command.run(),
-        Command::Table(command) => command.run(),
-        Command::Size(command) => command.run(),
-        Command::Joint(command) => command.run(),
-        Command::Air(command) => command.run(),
-        Command::Sense(command) => command.run(),
-        Command::Heat(command) => command.run(),
-        Command::Open(command) => command.run(),
-        Command::Compare(command) => command.run(),
-        Command::Diagnose(command) => command.run(),
-        Command::Fit(command) => command.run(),
-        Command::Plan(command) => command.run(),
-        Command::Predict(command) => command.run(),
-        Command::Next(command) => command.run(),
-        Command::Simulate(command) => command.run(),
-        Command::Effects(command) => command.run(),
-        Command::Muscle(command) => command.run(),
-        Command::Validate(command) => command.run(),
-    });
+    let outcome = rayon::scope(|_| command.run());
     let said = |text: &str| if files::stdout_is_taken() { Ok(()) } else { print(text) };
     match outcome.and_then(|text| said(&text)) {
         Ok(()) => ExitCode::SUCCESS,

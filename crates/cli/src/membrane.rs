@@ -15,7 +15,7 @@ use std::io::{IsTerminal, stderr, stdout};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use crate::arguments;
+use crate::arguments::{self, Json, pretty};
 use crate::failure::Failure;
 use crate::files;
 use crate::fit;
@@ -37,9 +37,8 @@ pub(crate) struct MembraneCommand {
     /// Write the muscle of the case with the effect `limited-unfolding` fitted to the states: what the cloth costs, for all other commands
     #[arg(long, value_name = "MODEL.toml")]
     as_effect: Option<PathBuf>,
-    /// One JSON document on standard output
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    json: Json,
 }
 
 impl MembraneCommand {
@@ -84,7 +83,7 @@ impl MembraneCommand {
         output.finish(&mut run)?;
         let time = clock.elapsed();
         let learnt = self.as_effect.as_ref().map(|path| self.learn(&case, &output, path)).transpose()?;
-        if self.json {
+        if self.json.wanted {
             return self.document(&case, &run, &output, learnt.as_ref());
         }
         let mut text = describe(&case, &run, &output, time);
@@ -107,7 +106,7 @@ impl MembraneCommand {
     }
 
     fn bar(&self, states: usize) -> ProgressBar {
-        if !stderr().is_terminal() || (self.json && !stdout().is_terminal()) {
+        if !stderr().is_terminal() || (self.json.wanted && !stdout().is_terminal()) {
             return ProgressBar::hidden();
         }
         let bar = ProgressBar::with_draw_target(Some(states as u64), ProgressDrawTarget::stderr());
@@ -163,7 +162,7 @@ impl MembraneCommand {
             })),
             "states": output.rows,
         });
-        Ok(serde_json::to_string_pretty(&document)? + "\n")
+        pretty(&document)
     }
 }
 

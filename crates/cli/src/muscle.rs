@@ -6,6 +6,7 @@ use clap::Args;
 use serde_json::json;
 use std::fmt::Write;
 
+use crate::arguments::{Json, pretty};
 use crate::failure::Failure;
 
 /// Shipped muscles: list them, or print one as a file to start from.
@@ -13,9 +14,8 @@ use crate::failure::Failure;
 pub(crate) struct MuscleCommand {
     /// Name of a shipped muscle; its file is printed
     name: Option<String>,
-    /// One JSON document on standard output
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    json: Json,
 }
 
 impl MuscleCommand {
@@ -25,18 +25,16 @@ impl MuscleCommand {
         let Some(shipped) = PRESETS.iter().find(|shipped| shipped.name == name) else {
             return Ok(bulge_muscles::to_toml(&muscle));
         };
-        if self.json {
-            let document = json!({"schema": "bulge.muscle/1", "name": name, "about": shipped.about, "toml": shipped.text});
-            return Ok(serde_json::to_string_pretty(&document)? + "\n");
-        }
-        Ok(shipped.text.to_owned())
+        let document =
+            json!({"schema": "bulge.muscle/1", "name": name, "about": shipped.about, "toml": shipped.text});
+        self.json.or(&document, || shipped.text.to_owned())
     }
 
     fn list(&self) -> Result<String, Failure> {
-        if self.json {
+        if self.json.wanted {
             let muscles: Vec<_> = PRESETS.iter().map(|p| json!({"name": p.name, "about": p.about})).collect();
             let document = json!({"schema": "bulge.muscles/1", "muscles": muscles});
-            return Ok(serde_json::to_string_pretty(&document)? + "\n");
+            return pretty(&document);
         }
         let mut text = String::from(
             "Shipped muscles (`bulge muscle NAME > my-muscle.toml` gives a file to start from):\n\n",

@@ -8,7 +8,7 @@ use clap::Args;
 use std::fmt::Write;
 use std::path::PathBuf;
 
-use crate::arguments;
+use crate::arguments::{self, Json};
 use crate::data::{DataArguments, told};
 use crate::diagnose::paragraph::paragraph;
 use crate::diagnose::progress::Bar;
@@ -51,9 +51,8 @@ pub(crate) struct NextCommand {
     /// Seed of the random numbers: the same seed gives the same answer
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// One JSON document on standard output
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    json: Json,
 }
 
 impl NextCommand {
@@ -69,17 +68,14 @@ impl NextCommand {
         let base = self.data.options(&data, &muscle, catalogue.clone(), effects)?;
         // Usual widths, as in a diagnosis.
         let base = self.restricted.apply(base, &data, &muscle.clone().with_usual_widths().0)?;
-        let bar = Bar::new(self.json);
+        let bar = Bar::new(self.json.wanted);
         let progress = bar.progress();
         let options = DiagnoseOptions { seed: self.seed, limits, progress, ..DiagnoseOptions::new(base) };
         let found = diagnose(&data, &muscle, &options)?;
         drop(bar);
         let step = NextStep::after(&found, &catalogue, limits);
         let wrote = self.write(&step)?;
-        if self.json {
-            return Ok(serde_json::to_string_pretty(&step.document())? + "\n");
-        }
-        Ok(self.text(&found, &step) + &wrote)
+        self.json.or(&step.document(), || self.text(&found, &step) + &wrote)
     }
 
     /// Writes the protocol, if a file was requested and there is a test.

@@ -9,7 +9,7 @@ use clap::{ArgGroup, Args};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use crate::arguments;
+use crate::arguments::{self, Json};
 use crate::data::told;
 use crate::diagnose::paragraph::paragraph;
 use crate::diagnose::untested::reasons;
@@ -56,9 +56,8 @@ pub(crate) struct PlanCommand {
     /// Your own effects, as expressions in a TOML file
     #[arg(long, value_name = "FILE")]
     effects: Option<PathBuf>,
-    /// One JSON document on standard output
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    json: Json,
 }
 
 impl PlanCommand {
@@ -71,11 +70,7 @@ impl PlanCommand {
         if let Some(path) = &self.out {
             files::write(path, protocol.to_toml().as_bytes())?;
         }
-        if self.json {
-            Ok(serde_json::to_string_pretty(&found)? + "\n")
-        } else {
-            Ok(reading + &self.text(&found))
-        }
+        self.json.or(&found, || reading + &self.text(&found))
     }
 
     /// The protocol; or the protocol derived from measurements, with the text on how they were read.

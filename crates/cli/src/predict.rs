@@ -6,7 +6,7 @@ use clap::Args;
 use std::fmt::Write;
 use std::path::PathBuf;
 
-use crate::arguments;
+use crate::arguments::{self, Json};
 use crate::data::{DataArguments, told};
 use crate::failure::Failure;
 use crate::files;
@@ -26,9 +26,8 @@ pub(crate) struct PredictCommand {
     /// File for all rows, CSV or Parquet by its ending; "-" is standard output
     #[arg(long, value_name = "FILE.csv|.parquet")]
     out: Option<PathBuf>,
-    /// One JSON document on standard output
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    json: Json,
 }
 
 impl PredictCommand {
@@ -45,10 +44,7 @@ impl PredictCommand {
             files::write(path, &written(path, &found.written_columns())?)?;
             let _ = writeln!(wrote, "\n  wrote {}", path.display());
         }
-        if self.json {
-            return Ok(serde_json::to_string_pretty(&found)? + "\n");
-        }
-        Ok(format!("{}{}{wrote}", told(data.reading()), text(&found)))
+        self.json.or(&found, || format!("{}{}{wrote}", told(data.reading()), text(&found)))
     }
 }
 

@@ -13,10 +13,10 @@ use std::f64::consts::PI;
 use std::fmt::Write;
 use std::path::PathBuf;
 
-use crate::arguments::{extended, in_unit, quantity, range};
+use crate::arguments::{Json, extended, in_unit, pretty, quantity, range};
 use crate::failure::Failure;
 use crate::files;
-use crate::text::{significant, table};
+use crate::text::{significant, with_units};
 
 /// Units of a resistance.
 const RESISTANCE: [(&str, f64); 4] = [("ohm", 1.0), ("mohm", 1e-3), ("uohm", 1e-6), ("kohm", 1e3)];
@@ -72,9 +72,8 @@ pub(crate) struct SenseCommand {
     /// Your own effects, where the muscle file states them
     #[arg(long, value_name = "FILE")]
     effects: Option<PathBuf>,
-    /// One JSON document on standard output
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    json: Json,
 }
 
 impl SenseCommand {
@@ -94,7 +93,7 @@ impl SenseCommand {
         let resolution = curve.resolution(noise)?;
         let wanted = [self.csv.as_deref(), self.plot.as_deref()];
         let wrote = files::wrote_both(wanted, || csv(&curve), || drawn(muscle.name(), &curve))?;
-        if self.json {
+        if self.json.wanted {
             let document = json!({
                 "schema": "bulge.sensing/1",
                 "muscle": muscle.name(),
@@ -103,7 +102,7 @@ impl SenseCommand {
                 "resolution": resolution,
                 "scanned": placed.as_ref().map(|placed| &placed.scanned),
             });
-            return Ok(serde_json::to_string_pretty(&document)? + "\n");
+            return pretty(&document);
         }
         let heading = format!("{} at {pressure}\n\n", muscle.name());
         let worst = format!(
@@ -164,18 +163,18 @@ fn wound(winding: &Winding, sensor: &Sensor) -> String {
 fn rows(curve: &Curve) -> String {
     let heading = ["contraction", "resistance", "change", "gauge factor", "largest strain"];
     let units = ["%", "ohm", "%", "", "%"];
-    let mut rows = vec![heading.map(String::from).to_vec(), units.map(String::from).to_vec()];
     let every = (curve.readings.len() - 1).div_ceil(ROWS - 1).max(1);
-    for (reading, slope) in curve.readings.iter().zip(&curve.sensitivity).step_by(every) {
-        rows.push(vec![
+    let shown = curve.readings.iter().zip(&curve.sensitivity).step_by(every);
+    let rows = shown.map(|(reading, slope)| {
+        [
             significant(100.0 * reading.contraction, 4),
             significant(reading.resistance_ohm, 5),
             significant(100.0 * reading.relative_change, 4),
             significant(*slope, 4),
             significant(100.0 * reading.largest_strain, 3),
-        ]);
-    }
-    table(&rows)
+        ]
+    });
+    with_units(heading, units, rows)
 }
 
 fn straight(curve: &Curve) -> String {

@@ -10,7 +10,7 @@ use clap::{ArgGroup, Args, ValueEnum};
 use std::fmt::Write;
 use std::path::PathBuf;
 
-use crate::arguments::{MethodArgument, about, about_extended, extended, quantity};
+use crate::arguments::{Json, MethodArgument, about, about_extended, extended, pretty, quantity};
 use crate::failure::Failure;
 use crate::files;
 use crate::sketch::sketch;
@@ -60,9 +60,8 @@ pub(crate) struct ShapeCommand {
     /// Your own effects, where the muscle file states them
     #[arg(long, value_name = "FILE")]
     effects: Option<PathBuf>,
-    /// One JSON document on standard output
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    json: Json,
     /// The meridian as CSV on standard output
     #[arg(long, conflicts_with = "json")]
     csv: bool,
@@ -116,8 +115,8 @@ impl ShapeCommand {
                 write_vtp(path, &drawn)?;
             }
         }
-        if self.json {
-            return Ok(serde_json::to_string_pretty(&found.document())? + "\n");
+        if self.json.wanted {
+            return pretty(&found.document());
         }
         if self.csv {
             return Ok(meridian_csv(&shape.meridian));

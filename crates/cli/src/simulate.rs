@@ -10,7 +10,7 @@ use std::fmt::Write;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use crate::arguments;
+use crate::arguments::{self, pretty};
 use crate::failure::Failure;
 use crate::files;
 use crate::text::significant;
@@ -65,7 +65,7 @@ impl SimulateCommand {
         let protocol = Protocol::read(&self.protocol)?;
         let found = simulate_with(&muscle, &catalogue, &protocol, &self.with, self.seed)?;
         self.check_out()?;
-        let document = serde_json::to_string_pretty(&found.truth)? + "\n";
+        let document = pretty(&found.truth)?;
         let paths = write(&self.out, &found, &document)?;
         if self.json { Ok(document) } else { Ok(text(&found, &paths)) }
     }

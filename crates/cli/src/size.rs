@@ -14,10 +14,10 @@ use serde_json::json;
 use std::fmt::Write;
 use std::path::PathBuf;
 
-use crate::arguments::{catalogue, list, muscle, quantity};
+use crate::arguments::{Json, catalogue, list, muscle, pretty, quantity};
 use crate::failure::Failure;
 use crate::files;
-use crate::text::{significant, table};
+use crate::text::{significant, with_units};
 
 /// Weight of a kilogram \[N\].
 const GRAVITY: f64 = 9.806_65;
@@ -96,9 +96,8 @@ pub(crate) struct SizeCommand {
     /// Your own effects, where a muscle file states them
     #[arg(long, value_name = "FILE")]
     effects: Option<PathBuf>,
-    /// One JSON document on standard output
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    json: Json,
 }
 
 impl SizeCommand {
@@ -106,7 +105,7 @@ impl SizeCommand {
         let load = self.load()?;
         let families = self.families(&load)?;
         let sizing = self.sized(&families, &load)?;
-        let answer = if self.json { document(&sizing)? } else { String::new() };
+        let answer = if self.json.wanted { document(&sizing)? } else { String::new() };
         let Some(best) = sizing.choices.first() else {
             return Err(Failure::NoneFound { answer, why: nothing(&sizing) });
         };
@@ -115,7 +114,7 @@ impl SizeCommand {
             files::write(path, drawn(best, &families)?.as_bytes())?;
             let _ = writeln!(wrote, "\n  wrote {}", path.display());
         }
-        if self.json {
+        if self.json.wanted {
             return Ok(answer);
         }
         Ok(self.text(&sizing) + &wrote)
@@ -285,11 +284,8 @@ impl SizeCommand {
             "sought",
         ];
         let units = ["", "mm", "mm", "bar", "%", "%", "0 to 1", ""];
-        let mut rows = vec![heading.map(String::from).to_vec(), units.map(String::from).to_vec()];
-        for choice in sizing.choices.iter().take(self.top.max(1)) {
-            rows.push(row(choice));
-        }
-        text.push_str(&table(&rows));
+        let shown = sizing.choices.iter().take(self.top.max(1));
+        text.push_str(&with_units(heading, units, shown.map(row)));
         let more = sizing.choices.len().saturating_sub(self.top.max(1));
         if more > 0 {
             let _ = writeln!(text, "  and {more} more: --top {}", sizing.choices.len());
@@ -321,13 +317,13 @@ fn force(option: &'static str, text: &str) -> Result<f64, Failure> {
     Ok(GRAVITY * mass)
 }
 
-fn row(choice: &Choice) -> Vec<String> {
+fn row(choice: &Choice) -> [String; 8] {
     let sought = match choice.given {
         Given::Pressure { .. } => "shortest",
         Given::Length { .. } => "lowest pressure",
         Given::Compromise => "compromise",
     };
-    vec![
+    [
         choice.family.clone(),
         significant(1e3 * choice.diameter_m, 3),
         significant(1e3 * choice.length_m, 4),
@@ -345,7 +341,7 @@ fn row(choice: &Choice) -> Vec<String> {
 
 /// The path of the best choice, as text.
 fn way(best: &Choice) -> String {
-    let mut text = format!(
+    let text = format!(
         "\nthe kindest: {} of {} mm at {} bar\n\n",
         best.family,
         significant(1e3 * best.length_m, 4),
@@ -353,18 +349,16 @@ fn way(best: &Choice) -> String {
     );
     let heading = ["travel", "contraction", "needed", "pulls", "held at"];
     let units = ["mm", "%", "N", "N", "bar"];
-    let mut rows = vec![heading.map(String::from).to_vec(), units.map(String::from).to_vec()];
-    for at in &best.points {
-        rows.push(vec![
+    let rows = best.points.iter().map(|at| {
+        [
             significant(1e3 * at.travel_m, 4),
             significant(100.0 * at.contraction, 3),
             significant(at.force_n, 4),
             at.available_n.map_or("any".to_owned(), |force| significant(force, 4)),
             significant(1e-5 * at.holding_pressure_pa, 3),
-        ]);
-    }
-    text.push_str(&table(&rows));
-    text
+        ]
+    });
+    text + &with_units(heading, units, rows)
 }
 
 /// The first reason for each muscle, and the number of further ones.
@@ -414,7 +408,7 @@ fn document(sizing: &Sizing) -> Result<String, Failure> {
         "choices": sizing.choices,
         "infeasible": sizing.infeasible,
     });
-    Ok(serde_json::to_string_pretty(&document)? + "\n")
+    pretty(&document)
 }
 
 /// Text for the case that nothing carries the load.

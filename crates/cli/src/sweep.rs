@@ -14,6 +14,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
+use crate::arguments::{Json, pretty};
 use crate::failure::Failure;
 use crate::files;
 use crate::table::errors;
@@ -50,9 +51,8 @@ pub(crate) struct SweepCommand {
     /// Run a sweep of more than 10^9 points
     #[arg(long)]
     confirm: bool,
-    /// One JSON document on standard output
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    json: Json,
 }
 
 fn example() -> String {
@@ -74,14 +74,11 @@ impl SweepCommand {
         self.check_options(&plan)?;
         let summary = if plan.points() > 0 { Some(self.points(&plan)?) } else { None };
         let table = if self.chunks.is_none() { self.table(&plan)? } else { None };
-        if self.json {
-            let mut document = json!({ "schema": "bulge.sweep/1", "name": plan.name, "folder": self.out });
-            document["points"] = serde_json::to_value(&summary)?;
-            document["table"] = table.as_ref().map_or(Value::Null, |(description, _)| json!(description));
-            document["table_is_met"] = table.as_ref().map_or(Value::Null, |(_, is_met)| json!(is_met));
-            return Ok(serde_json::to_string_pretty(&document)? + "\n");
-        }
-        Ok(self.text(&plan, summary.as_ref(), table.as_ref()))
+        let mut document = json!({ "schema": "bulge.sweep/1", "name": plan.name, "folder": self.out });
+        document["points"] = serde_json::to_value(&summary)?;
+        document["table"] = table.as_ref().map_or(Value::Null, |(description, _)| json!(description));
+        document["table_is_met"] = table.as_ref().map_or(Value::Null, |(_, is_met)| json!(is_met));
+        self.json.or(&document, || self.text(&plan, summary.as_ref(), table.as_ref()))
     }
 
     /// Rejects options that make no sense if only a table is built.
@@ -117,7 +114,7 @@ impl SweepCommand {
     }
 
     fn points(&self, plan: &Plan) -> Result<Summary, Failure> {
-        let bar = Bar::new(self.json);
+        let bar = Bar::new(self.json.wanted);
         let options = RunOptions {
             chunks: self.chunks.clone(),
             resume: self.resume,
@@ -153,7 +150,7 @@ impl SweepCommand {
             );
             return Err(Failure::Value { option: "--out", what });
         }
-        let bar = Bar::new(self.json);
+        let bar = Bar::new(self.json.wanted);
         let Built { bytes, is_met, .. } = tabulate(plan, wish, &|what| bar.says(what))?;
         let description = TableDescription::of(&Table::from_bytes(&bytes)?)?;
         files::write(&path, &bytes)?;
@@ -163,7 +160,7 @@ impl SweepCommand {
 
     /// Writes the description of the table beside it, also if a killed run has left only the table.
     fn describe(&self, description: &TableDescription) -> Result<(), Failure> {
-        let json = serde_json::to_string_pretty(description)? + "\n";
+        let json = pretty(description)?;
         let path = self.out.join("table.json");
         if fs::read(&path).is_ok_and(|there| there == json.as_bytes()) {
             return Ok(());

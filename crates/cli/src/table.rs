@@ -11,6 +11,7 @@ use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use crate::arguments::{Json, pretty};
 use crate::failure::Failure;
 use crate::text::{significant, table as columns};
 
@@ -46,9 +47,8 @@ struct Eval {
     /// The point: a value for every axis, such as "contraction=20 %,slenderness=6.875"
     #[arg(long, allow_hyphen_values = true)]
     at: String,
-    /// One JSON document on standard output
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    json: Json,
 }
 
 #[derive(Debug, Args)]
@@ -56,9 +56,8 @@ struct Info {
     /// A table, as `bulge sweep` writes it
     #[arg(value_name = "FILE")]
     file: PathBuf,
-    /// One JSON document on standard output
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    json: Json,
 }
 
 impl TableCommand {
@@ -92,8 +91,8 @@ impl Info {
     fn run(&self) -> Result<String, Failure> {
         let bytes = read(&self.file)?;
         let description = TableDescription::of(&Table::from_bytes(&bytes)?)?;
-        if self.json {
-            return Ok(serde_json::to_string_pretty(&description)? + "\n");
+        if self.json.wanted {
+            return pretty(&description);
         }
         let d = &description;
         let mut out = format!("{}\n\n  {}, {} bytes\n\n", self.file.display(), d.form, d.bytes);
@@ -147,7 +146,7 @@ impl Eval {
         if table.sample(&point, &mut values, &mut gradients).is_none() {
             return Err(outside(&table, &description, &point));
         }
-        if self.json {
+        if self.json.wanted {
             let mut at = json!({});
             for (axis, x) in description.axes.iter().zip(&point) {
                 at[axis.name.as_str()] = json!(x);
@@ -162,7 +161,7 @@ impl Eval {
                     "value": values[o], "unit": output.unit, "gradient": gradient, "error": output.error,
                 });
             }
-            return Ok(serde_json::to_string_pretty(&document)? + "\n");
+            return pretty(&document);
         }
         let mut heading = vec!["output".to_owned(), "unit".to_owned(), "value".to_owned()];
         heading.extend(description.axes.iter().map(|axis| format!("d/d({})", axis.name)));

@@ -32,6 +32,16 @@ pub(crate) fn table(rows: &[Vec<String>]) -> String {
     text
 }
 
+/// A table with a heading and units over its rows.
+pub(crate) fn with_units<const N: usize>(
+    heading: [&str; N],
+    units: [&str; N],
+    rows: impl IntoIterator<Item = [String; N]>,
+) -> String {
+    let head = [heading, units].map(|line| line.map(str::to_owned));
+    table(&head.into_iter().chain(rows).map(Vec::from).collect::<Vec<_>>())
+}
+
 /// A file in the format of the long help.
 pub(crate) fn shown(title: &str, file: &str) -> String {
     let mut text = format!("{title}:\n\n");

@@ -5,21 +5,21 @@ use clap::Args;
 use serde_json::json;
 use std::fmt::Write;
 
+use crate::arguments::{Json, pretty};
 use crate::failure::Failure;
 
 /// The verification tables: every check, its error, its tolerance.
 #[derive(Debug, Args)]
 pub(crate) struct Validate {
-    /// One JSON document on standard output
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    json: Json,
 }
 
 impl Validate {
     pub(crate) fn run(&self) -> Result<String, Failure> {
         let checks: Vec<Check> = CHECKS.iter().map(|check| check()).collect();
         let failed = checks.iter().filter(|check| !check.passed()).count();
-        let text = if self.json { document(&checks)? } else { table(&checks) };
+        let text = if self.json.wanted { document(&checks)? } else { table(&checks) };
         if failed > 0 {
             return Err(Failure::Checks { failed, all: checks.len(), table: text });
         }
@@ -37,7 +37,7 @@ fn document(checks: &[Check]) -> Result<String, Failure> {
             })
         })
         .collect();
-    Ok(serde_json::to_string_pretty(&json!({"schema": "bulge.validation/1", "checks": rows}))? + "\n")
+    pretty(&json!({"schema": "bulge.validation/1", "checks": rows}))
 }
 
 fn table(checks: &[Check]) -> String {

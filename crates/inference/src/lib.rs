@@ -20,7 +20,6 @@
 mod chebyshev;
 mod comparison;
 mod diagnosis;
-mod dot;
 mod error;
 mod fit;
 mod median;
@@ -28,6 +27,7 @@ mod noise;
 mod prediction;
 mod progress;
 mod protocol;
+mod vector;
 
 pub use bulge_model::{NumberName, Restriction, Says};
 pub use bulge_numerics::Random;

@@ -10,6 +10,7 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use crate::arguments::pretty;
 use crate::diagnose::paragraph::paragraph;
 use crate::diagnose::report;
 use crate::diagnose::text::{ladder, verdict};
@@ -73,7 +74,7 @@ pub(super) fn hidden(
     let names: Vec<&str> = truth.hidden.iter().map(|hidden| hidden.effect.as_str()).collect();
     paragraph(text, "\n  ", &format!("Hidden was: {} (truth.json).", names.join(" and ")));
     text.push('\n');
-    let document = serde_json::to_string_pretty(&first)? + "\n";
+    let document = pretty(&first)?;
     written.extend(report(&folder.join("report"), &first, &document)?);
     Ok([first, again])
 }

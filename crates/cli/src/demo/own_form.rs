@@ -8,7 +8,7 @@ use bulge_muscles::from_toml;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use crate::arguments;
+use crate::arguments::{self, pretty};
 use crate::diagnose::report;
 use crate::diagnose::text::{ladder, verdict};
 use crate::failure::Failure;
@@ -48,7 +48,7 @@ pub(super) fn own_form(
     let first = asked(Options::new(Catalogue::builtin(), Vec::new()))?;
     verdict(text, &first);
     ladder(text, &first);
-    let document = serde_json::to_string_pretty(&first)? + "\n";
+    let document = pretty(&first)?;
     written.extend(report(&folder.join("report"), &first, &document)?);
     let found: Vec<String> = first.missing.iter().map(|missing| missing.fitted.clone()).collect();
     let catalogue = Catalogue::builtin();

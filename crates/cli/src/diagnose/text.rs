@@ -153,7 +153,7 @@ pub(crate) fn ladder(out: &mut String, diagnosis: &Diagnosis) {
         "noise floor",
         three(diagnosis.noise_floor_n),
         percent(diagnosis.noise_floor_n),
-        diagnosis.noise.source
+        diagnosis.noise.source.name()
     );
     if let Some(directed) = diagnosis.comparison.ladder.last().and_then(|rung| rung.directed_rmse_n) {
         let says = "without the readings whose direction is in doubt, which count less, the last error";

@@ -11,7 +11,7 @@ use std::fmt::Write;
 use std::path::PathBuf;
 
 use super::{errors, read};
-use crate::arguments::range;
+use crate::arguments::{Json, pretty, range};
 use crate::diagnose::paragraph::paragraph;
 use crate::failure::Failure;
 use crate::files;
@@ -68,11 +68,11 @@ impl Export {
             Form::Rust => export::rust_source(&table, &self.name)?,
             Form::C => export::c_header(&table, &self.name)?,
             Form::Csv => export::csv(&table, self.points)?,
-            Form::Json => serde_json::to_string_pretty(&export::json(&table))? + "\n",
+            Form::Json => pretty(&export::json(&table))?,
             Form::Polynomial => {
                 let percent = range::<Ratio>("--contraction", &self.contraction)?.map(|end| 100.0 * end);
                 let found = papers_polynomial(&table, self.slenderness, self.fibres, percent)?;
-                serde_json::to_string_pretty(&found)? + "\n"
+                pretty(&found)?
             }
         };
         let Some(path) = &self.out else { return Ok(text) };
@@ -89,9 +89,8 @@ pub(super) struct JointCommand {
     /// Table to write
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
-    /// One JSON document on standard output
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    json: Json,
 }
 
 fn example() -> String {
@@ -124,10 +123,7 @@ impl JointCommand {
             .map_err(bulge_sweep::TabulateError::from)?;
         let description = TableDescription::of(&Table::from_bytes(&built.bytes)?)?;
         files::write(&self.out, &built.bytes)?;
-        if self.json {
-            return Ok(serde_json::to_string_pretty(&description)? + "\n");
-        }
-        Ok(self.text(&joint.name, &description, built.is_met))
+        self.json.or(&description, || self.text(&joint.name, &description, built.is_met))
     }
 
     fn text(&self, name: &str, description: &TableDescription, is_met: bool) -> String {
@@ -144,16 +140,15 @@ impl JointCommand {
 /// The papers' own polynomials beside what they were fitted to.
 #[derive(Debug, Args)]
 pub(super) struct Papers {
-    /// One JSON document on standard output
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    json: Json,
 }
 
 impl Papers {
     pub(super) fn run(&self) -> Result<String, Failure> {
         let found = polynomial::s1_tables()?;
-        if self.json {
-            return Ok(serde_json::to_string_pretty(&found)? + "\n");
+        if self.json.wanted {
+            return pretty(&found);
         }
         let mut out = String::from("S1 Table 1: force in N at 1 bar and l0 = 110 mm\n\n");
         let mut rows = vec![["contraction", "printed", "computed", "difference"].map(String::from).to_vec()];

@@ -1,6 +1,6 @@
 //! The command as seen by a user: exit statuses, messages, JSON names, and the files left on the disk.
 
-use crate::support::{Folder, bulge, failure, json};
+use crate::support::{Folder, bulge, failure, has_parts, json, line, refused, stdout};
 use std::path::Path;
 use std::process::Command;
 
@@ -77,14 +77,13 @@ fn what_is_wrong_with_the_input_is_status_1() {
         let muscle = with(from, to);
         let (status, message) = failure(&[&["shape", &muscle], &at[..]].concat());
         assert_eq!(status, 1, "{message}");
-        assert!(message.contains(place) && message.contains(cure), "{from} -> {to}: {message}");
+        has_parts(&message, &[place, cure]);
     }
     let folder_path = folder.0.display().to_string();
     for (muscle, says) in
         [(folder_path.as_str(), "directory"), ("nowhere.toml", "no such file"), ("x", "ppam-1")]
     {
-        let (status, message) = failure(&[&["shape", muscle], &at[..]].concat());
-        assert!(status == 1 && message.contains(says), "{message}");
+        refused(&[&["shape", muscle], &at[..]].concat(), 1, &[says]);
     }
     for (pressure, says) in [
         ("0 bar", "greater than 0"),
@@ -101,7 +100,7 @@ fn what_is_wrong_with_the_input_is_status_1() {
 }
 
 /// Files for every kind of input: a braid, data, a test protocol, a sweep, a joint.
-fn ways_in(folder: &Folder, wall: &str, contraction: &str, pressure: &str) -> Vec<Vec<String>> {
+fn ways_in(folder: &Folder, wall: &str, contraction: &str, pressure: &str) -> [String; 9] {
     let braid = format!(
         "name = \"b\"\nkind = \"braided\"\nlength = \"120 mm\"\nradius = \"10 mm\"\nbraid_angle = \"25 deg\"\nwall = \"{wall}\"\n"
     );
@@ -122,33 +121,20 @@ fn ways_in(folder: &Folder, wall: &str, contraction: &str, pressure: &str) -> Ve
         "name = \"j\"\nmuscle = \"m.toml\"\nkind = \"pulley\"\nradius = \"20 mm\"\ncontraction = \"{contraction}\"\nangle = \"-5 deg..5 deg\"\npressure = \"0.5 bar..3 bar\"\n"
     );
     let joint = folder.write("j.toml", &joint);
-    let (range, sides) = (format!("0 %..{contraction}"), format!("{pressure},2 bar"));
     let [out, model] = ["out", "model.toml"].map(|name| folder.path(name));
     [
-        &["shape", &muscle, "--pressure", pressure, "--contraction", contraction][..],
-        &["curve", &muscle, "--pressure", pressure, "--contraction", &range, "--csv", &model],
-        &[
-            "size",
-            "--muscle",
-            &muscle,
-            "--force",
-            "10 N",
-            "--stroke",
-            "5 mm",
-            "--pressure",
-            pressure,
-            "--max-contraction",
-            contraction,
-        ],
-        &["joint", &joint, "--pressure", &sides],
-        &["compare", &data, "--muscle", &muscle, "--out", &out],
-        &["fit", &data, "--muscle", &muscle, "--with", "radius-error", "--out", &model],
-        &["simulate", &muscle, "--protocol", &protocol, "--seed", "1", "--out", &out],
-        &["sweep", &sweep, "--out", &out],
-        &["air", "shut", &muscle, "--pressure", pressure, "--contraction", contraction],
+        format!("shape {muscle} --pressure '{pressure}' --contraction '{contraction}'"),
+        format!("curve {muscle} --pressure '{pressure}' --contraction '0 %..{contraction}' --csv {model}"),
+        format!(
+            "size --muscle {muscle} --force '10 N' --stroke '5 mm' --pressure '{pressure}' --max-contraction '{contraction}'"
+        ),
+        format!("joint {joint} --pressure '{pressure},2 bar'"),
+        format!("compare {data} --muscle {muscle} --out {out}"),
+        format!("fit {data} --muscle {muscle} --with radius-error --out {model}"),
+        format!("simulate {muscle} --protocol {protocol} --seed 1 --out {out}"),
+        format!("sweep {sweep} --out {out}"),
+        format!("air shut {muscle} --pressure '{pressure}' --contraction '{contraction}'"),
     ]
-    .map(|arguments| arguments.iter().map(ToString::to_string).collect())
-    .to_vec()
 }
 
 /// Impossible contractions, walls, pressures and holes give one message and status 1 for every kind of input,
@@ -166,11 +152,8 @@ fn what_no_muscle_can_have_is_refused_by_every_way_in() {
         ("2 mm", "10 %", "inf bar"),
     ] {
         for arguments in ways_in(&folder, wall, contraction, pressure) {
-            let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
-            let (status, message) = failure(&arguments);
-            let case = format!("wall {wall}, {contraction}, {pressure}, {}: {message}", arguments[0]);
-            assert_eq!(status, 1, "{case}");
-            assert!(message.starts_with("error: ") && message.matches("error: ").count() == 1, "{case}");
+            let message = refused(&line(&arguments), 1, &[]);
+            assert!(message.matches("error: ").count() == 1, "{arguments}: {message}");
         }
         assert_eq!(
             folder.names(),
@@ -216,8 +199,7 @@ fn what_does_not_exist_is_status_3_with_the_limit() {
     }
     let folder = Folder::new("range");
     let long = folder.write("long.toml", &PPAM.replace("110 mm", "20 m"));
-    let (status, message) = failure(&["shape", &long, "--pressure", "1 bar", "--contraction", "20 %"]);
-    assert!(status == 3 && message.contains("1250") && message.contains("1000"), "{message}");
+    refused(&["shape", &long, "--pressure", "1 bar", "--contraction", "20 %"], 3, &["1250", "1000"]);
 }
 
 #[test]
@@ -225,8 +207,7 @@ fn files_appear_whole_or_not_at_all() {
     let folder = Folder::new("files");
     let curve = ["curve", "ppam-2-r16", "--pressure", "1 bar,2 bar", "--points", "21"];
     let (csv, svg) = (folder.path("a.csv"), folder.path("a.svg"));
-    let written = bulge(&[&curve[..], &["--csv", &csv, "--plot", &svg]].concat());
-    assert!(written.status.success());
+    stdout(&[&curve[..], &["--csv", &csv, "--plot", &svg]].concat());
     let text = std::fs::read_to_string(&csv).unwrap();
     assert_eq!(text.lines().count(), 1 + 2 * 21);
     assert!(text.starts_with("pressure [Pa],contraction [-],length [m],force [N],volume [m^3],"));
@@ -237,8 +218,7 @@ fn files_appear_whole_or_not_at_all() {
         ("--csv", "", "folder"),
         ("--plot", "missing/a.svg", "no folder"),
     ] {
-        let (status, message) = failure(&[&curve[..], &[option, &folder.path(name)]].concat());
-        assert!(status == 1 && message.contains(says), "{message}");
+        refused(&[&curve[..], &[option, &folder.path(name)]].concat(), 1, &[says]);
     }
     assert_eq!(folder.names(), ["a.csv", "a.svg"]);
 }
@@ -275,7 +255,7 @@ fn a_muscle_whose_fibres_slacken_ends_there() {
     let pulling = json(&[&shape[..], &["10 %", "--json"]].concat());
     assert_eq!(pulling["ends_slack"], true, "{pulling}");
     let limit = pulling["contraction_limit"].as_f64().unwrap();
-    let printed = String::from_utf8(bulge(&[&shape[..], &["10 %"]].concat()).stdout).unwrap();
+    let printed = stdout(&[&shape[..], &["10 %"]].concat());
     let (status, message) = failure(&[&shape[..], &["40 %"]].concat());
     assert_eq!(status, 3);
     for (text, digits) in [(&printed, 3), (&message, 4)] {
@@ -289,25 +269,27 @@ fn a_muscle_whose_fibres_slacken_ends_there() {
     assert_eq!((curve_json["contraction_limit"].as_f64(), points.len()), (Some(limit), 9));
     assert_eq!(curve_json["ends_slack"], true);
     assert!(points[8]["force_n"].as_f64().unwrap() > 1.0, "{curve_json}");
-    let text = String::from_utf8(bulge(&curve).stdout).unwrap();
+    let text = stdout(&curve);
     assert!(text.contains(&format!("{:.3} %, where the fibres slacken", 100.0 * limit)), "{text}");
     // Points beyond the limit are left out, and the limit is given.
     let farther = [&curve[..], &["--contraction", "0 %..40 %"]].concat();
-    let text = String::from_utf8(bulge(&farther).stdout).unwrap();
+    let text = stdout(&farther);
     assert!(text.contains("left out") && text.contains(&format!("{:.4} %", 100.0 * limit)), "{text}");
     // Below, its fibres would have to be longer than they are.
     assert!(text.contains("drawn straight") && !text.contains("converge"), "{text}");
     // For a force beyond the reach of the muscle the answer gives the largest one.
-    let (status, message) = failure(&["shape", &muscle, "--pressure", "2 bar", "--force", "10 MN"]);
-    assert!(status == 3 && message.contains("the largest force found is"), "{message}");
+    refused(
+        &["shape", &muscle, "--pressure", "2 bar", "--force", "10 MN"],
+        3,
+        &["the largest force found is"],
+    );
 }
 
 #[test]
 fn curve_leaves_out_what_does_not_exist_and_says_so() {
     let range =
         ["curve", "ppam-2-r16", "--pressure", "1 bar", "--contraction", "0 %..45 %", "--points", "10"];
-    let output = bulge(&range);
-    let text = String::from_utf8(output.stdout).unwrap();
+    let text = stdout(&range);
     assert!(text.contains("1 contraction is left out") && text.contains("41.8497 %"), "{text}");
     let document = json(&[&range[..], &["--json"]].concat());
     let curve = &document["curves"][0];
@@ -340,7 +322,7 @@ fn the_series_for_paraview_lists_its_members() {
     let out = folder.path("vtk");
     let arguments =
         ["curve", "dmsp-20-250", "--pressure", "3 bar", "--points", "9", "--frames", "3", "--vtk", &out];
-    assert!(bulge(&arguments).status.success());
+    stdout(&arguments);
     let list = std::fs::read_to_string(Path::new(&out).join("bulge.pvd")).unwrap();
     assert_eq!(list.matches("<DataSet").count(), 3);
     assert_eq!(std::fs::read_dir(&out).unwrap().count(), 4);
@@ -349,7 +331,7 @@ fn the_series_for_paraview_lists_its_members() {
 #[test]
 fn a_shipped_muscle_is_a_file_to_start_from() {
     let folder = Folder::new("shipped");
-    let shipped = String::from_utf8(bulge(&["muscle", "ppam-2-r16"]).stdout).unwrap();
+    let shipped = stdout(&["muscle", "ppam-2-r16"]);
     let file = folder.write("my.toml", &shipped);
     let ask = |muscle: &str| json(&["shape", muscle, "--pressure", "2 bar", "--force", "500 N", "--json"]);
     assert_eq!(ask(&file), ask("ppam-2-r16"));
@@ -433,10 +415,9 @@ fn every_writer_writes_into_what_a_name_stands_for() {
     std::fs::create_dir(folder.path("reports")).unwrap();
     symlink("reports", folder.path("behind")).unwrap();
     let compare = ["compare", &data, "--muscle", "dmsp-20-250", "--out"];
-    assert!(bulge(&[&compare[..], &[&folder.path("behind")]].concat()).status.success());
+    stdout(&[&compare[..], &[&folder.path("behind")]].concat());
     assert!(Path::new(&folder.path("reports/report.html")).is_file());
-    let (status, message) = failure(&[&compare[..], &[&data]].concat());
-    assert!(status == 1 && message.contains("it is a file; give the name of a folder"), "{message}");
+    refused(&[&compare[..], &[&data]].concat(), 1, &["it is a file; give the name of a folder"]);
     assert!(!folder.names().iter().any(|name| name.starts_with(".unfinished")), "{:?}", folder.names());
 }
 
@@ -469,21 +450,18 @@ fn targets_that_are_no_regular_files_are_written_through() {
         assert!(std::fs::symlink_metadata(&fifo).unwrap().file_type().is_fifo());
     }
     let json = ["curve", "dmsp-20-250", "--pressure", "1 bar", "--points", "5", "--csv", "-", "--json"];
-    let (status, message) = failure(&json);
-    assert!(status == 1 && message.contains("a file or JSON, not both"), "{message}");
+    refused(&json, 1, &["a file or JSON, not both"]);
     // A picture of one shape can be streamed too; a series is a folder.
     let shape =
         ["shape", "dmsp-20-250", "--pressure", "1 bar", "--contraction", "10 %", "--points", "5", "--vtk"];
     let file = folder.path("shape.vtp");
-    assert!(bulge(&[&shape[..], &[&file]].concat()).status.success());
+    stdout(&[&shape[..], &[&file]].concat());
     let drawn = std::fs::read(&file).unwrap();
     for name in ["-", "/dev/stdout"] {
         assert_eq!(bulge(&[&shape[..], &[name]].concat()).stdout, drawn);
     }
-    let (status, message) = failure(&[&shape[..], &["-", "--json"]].concat());
-    assert!(status == 1 && message.contains("a file or JSON, not both"), "{message}");
-    let (status, message) = failure(&["curve", "dmsp-20-250", "--pressure", "1 bar", "--vtk", "-"]);
-    assert!(status == 1 && message.contains("the name of a folder"), "{message}");
+    refused(&[&shape[..], &["-", "--json"]].concat(), 1, &["a file or JSON, not both"]);
+    refused(&["curve", "dmsp-20-250", "--pressure", "1 bar", "--vtk", "-"], 1, &["the name of a folder"]);
     // With a picture on standard output there is nothing else.
     let svg = bulge(&["curve", "dmsp-20-250", "--pressure", "1 bar", "--points", "5", "--plot", "-"]).stdout;
     assert!(svg.starts_with(b"<svg"), "{}", String::from_utf8_lossy(&svg[..60]));

@@ -1,7 +1,7 @@
 //! `compare` and `fit` as seen by a user: ladders on data with a known truth, output files as further input,
 //! and messages for bad input.
 
-use crate::support::{Folder, bulge, failure, json};
+use crate::support::{Folder, has_parts, json, line, refused, stdout};
 use bulge_effects::{Catalogue, Moment};
 use bulge_model::{Model, Record, Wanted};
 use bulge_muscles::from_toml;
@@ -52,15 +52,20 @@ fn loops(truth: &[(&str, &[f64])]) -> String {
 /// Fibres of 250 kN, friction of 12 N.
 const TRUTH: &[(&str, &[f64])] = &[("fibre-stretch", &[4e-6]), ("coulomb-friction", &[12.0])];
 
+/// A folder with the loops of this muscle, and its two files.
+fn measured(name: &str) -> (Folder, [String; 2]) {
+    let folder = Folder::new(name);
+    let files = [folder.write("data.csv", &loops(TRUTH)), folder.write("muscle.toml", MUSCLE)];
+    (folder, files)
+}
+
 fn rmse(document: &Value, rung: usize) -> f64 {
     document["ladder"][rung]["rmse_n"].as_f64().unwrap()
 }
 
 #[test]
 fn the_error_falls_as_the_right_effects_are_added() {
-    let folder = Folder::new("ladder");
-    let data = folder.write("data.csv", &loops(TRUTH));
-    let muscle = folder.write("muscle.toml", MUSCLE);
+    let (_folder, [data, muscle]) = measured("ladder");
     let found =
         json(&["compare", &data, "--muscle", &muscle, "--with", "fibre-stretch,coulomb-friction", "--json"]);
     assert_eq!(found["schema"], "bulge.comparison/1");
@@ -81,12 +86,9 @@ fn the_error_falls_as_the_right_effects_are_added() {
 
 #[test]
 fn a_report_holds_page_plots_and_numbers() {
-    let folder = Folder::new("report");
-    let data = folder.write("data.csv", &loops(TRUTH));
-    let muscle = folder.write("muscle.toml", MUSCLE);
+    let (folder, [data, muscle]) = measured("report");
     let out = folder.path("report");
-    let text = bulge(&["compare", &data, "--muscle", &muscle, "--with", "fibre-stretch", "--out", &out]);
-    assert!(text.status.success(), "{}", String::from_utf8_lossy(&text.stderr));
+    stdout(&["compare", &data, "--muscle", &muscle, "--with", "fibre-stretch", "--out", &out]);
     let page = std::fs::read_to_string(Path::new(&out).join("report.html")).unwrap();
     assert!(page.starts_with("<!DOCTYPE html>") && page.matches("<svg").count() >= 8);
     for name in ["ladder", "force", "residual-map", "loops", "contributions", "scatter", "parameters"] {
@@ -99,9 +101,7 @@ fn a_report_holds_page_plots_and_numbers() {
 
 #[test]
 fn what_was_learnt_is_used() {
-    let folder = Folder::new("learnt");
-    let data = folder.write("data.csv", &loops(TRUTH));
-    let muscle = folder.write("muscle.toml", MUSCLE);
+    let (folder, [data, muscle]) = measured("learnt");
     let learnt = folder.path("learnt.toml");
     let with = "fibre-stretch,coulomb-friction";
     let fit = json(&["fit", &data, "--muscle", &muscle, "--with", with, "--out", &learnt, "--json"]);
@@ -122,11 +122,9 @@ fn what_was_learnt_is_used() {
     let elastic = folder.write("elastic.toml", &format!("{MUSCLE}fibre = {{ stiffness = \"6.25 kN\" }}\n"));
     assert!((shape(&learnt) / shape(&elastic) - 1.0).abs() < 1e-4);
     assert!((shape(&learnt) / shape(&muscle) - 1.0).abs() > 1e-3);
-    let curve = bulge(&["curve", &learnt, "--pressure", "3 bar", "--points", "5"]);
-    assert!(curve.status.success());
+    stdout(&["curve", &learnt, "--pressure", "3 bar", "--points", "5"]);
     // Standard output is the file itself.
-    let piped = bulge(&["fit", &data, "--muscle", &muscle, "--with", with]);
-    assert_eq!(String::from_utf8(piped.stdout).unwrap(), text);
+    assert_eq!(stdout(&["fit", &data, "--muscle", &muscle, "--with", with]), text);
 }
 
 #[test]
@@ -138,26 +136,14 @@ fn a_users_own_effect_is_one_of_all() {
         "own.toml",
 "[effects.my-drag]\ntitle = \"Drag\"\nforce = \"-drag * direction\"\nparameters.drag = { unit = \"N\", typical = \"5 N\", low = \"0 N\", high = \"100 N\" }\n",
     );
-    let listed = bulge(&["effects", "--effects", &own]);
-    assert!(String::from_utf8(listed.stdout).unwrap().contains("my-drag"));
+    has_parts(&stdout(&["effects", "--effects", &own]), &["my-drag"]);
     let learnt = folder.path("learnt.toml");
-    let fit = json(&[
-        "fit",
-        &data,
-        "--muscle",
-        &muscle,
-        "--effects",
-        &own,
-        "--with",
-        "my-drag",
-        "--out",
-        &learnt,
-        "--json",
-    ]);
+    let fit = json(&line(&format!(
+        "fit {data} --muscle {muscle} --effects {own} --with my-drag --out {learnt} --json"
+    )));
     let drag = fit["fit"]["parameters"][0]["value"].as_f64().unwrap();
     assert!((drag - 12.0).abs() < 0.01, "{drag}");
-    let (status, message) = failure(&["compare", &data, "--muscle", &learnt]);
-    assert!(status == 1 && message.contains("my-drag") && message.contains("--effects"), "{message}");
+    refused(&["compare", &data, "--muscle", &learnt], 1, &["my-drag", "--effects"]);
     let next = json(&["compare", &data, "--muscle", &learnt, "--effects", &own, "--json"]);
     assert!(rmse(&next, 0) < 0.01);
 }
@@ -184,19 +170,20 @@ fn bad_input_gets_one_clear_message() {
     ];
     for (text, parts) in cases {
         let data = folder.write("data.csv", text);
-        let (status, message) = failure(&["compare", &data, "--muscle", &muscle]);
-        assert_eq!(status, 1, "{message}");
-        for part in *parts {
-            assert!(message.contains(part), "{message:?} does not say {part:?}");
-        }
-        assert!(message.starts_with("error: ") && message.lines().count() < 12, "{message}");
+        refused(&["compare", &data, "--muscle", &muscle], 1, parts);
     }
     let one = folder.write("data.csv", &format!("{good}1,5,100\n"));
-    let (status, message) = failure(&["compare", &one, "--muscle", &muscle, "--with", "fibre-stretch"]);
-    assert!(status == 1 && message.contains("1 numbers can't be fitted to 1 rows"), "{message}");
+    refused(
+        &["compare", &one, "--muscle", &muscle, "--with", "fibre-stretch"],
+        1,
+        &["1 numbers can't be fitted to 1 rows"],
+    );
     let same = folder.write("data.csv", &(good.to_owned() + &"1,5,900\n".repeat(9)));
-    let (status, message) = failure(&["compare", &same, "--muscle", &muscle, "--with", "fibre-stretch"]);
-    assert!(status == 1 && message.contains("all 9 rows are identical"), "{message}");
+    refused(
+        &["compare", &same, "--muscle", &muscle, "--with", "fibre-stretch"],
+        1,
+        &["all 9 rows are identical"],
+    );
     let data = folder.write("data.csv", &loops(&[]));
     for (arguments, parts) in [
         (["--with", "fibre-strech"], ["fibre-strech", "did you mean `fibre-stretch`"]),
@@ -206,13 +193,7 @@ fn bad_input_gets_one_clear_message() {
         (["--law", "s9"], ["s9", "bulge effects --laws"]),
         (["--effects", "nowhere.toml"], ["nowhere.toml", ""]),
     ] {
-        let mut call = vec!["compare", &data, "--muscle", &muscle];
-        call.extend(arguments);
-        let (status, message) = failure(&call);
-        assert_eq!(status, 1, "{message}");
-        for part in parts {
-            assert!(message.contains(part), "{message:?} does not say {part:?}");
-        }
+        refused(&[&["compare", &data, "--muscle", &muscle], &arguments[..]].concat(), 1, &parts);
     }
     // Nothing is left behind.
     assert_eq!(folder.names(), ["data.csv", "muscle.toml"]);
@@ -221,9 +202,7 @@ fn bad_input_gets_one_clear_message() {
 /// A parameter that is fixed, bounded or tied is so in every answer, and in the fitted muscle file.
 #[test]
 fn numbers_are_held_bounded_and_tied() {
-    let folder = Folder::new("held");
-    let data = folder.write("data.csv", &loops(TRUTH));
-    let muscle = folder.write("muscle.toml", MUSCLE);
+    let (folder, [data, muscle]) = measured("held");
     let with = "fibre-stretch,coulomb-friction";
     let compared = |more: &[&str]| {
         json(&[&["compare", &data, "--muscle", &muscle, "--with", with, "--json"], more].concat())
@@ -240,30 +219,18 @@ fn numbers_are_held_bounded_and_tied() {
     let bounded = compared(&["--bound", "coulomb-friction=1..11 N"]);
     assert!((rmse(&bounded, 2) - 1.0).abs() < 0.02, "{}", rmse(&bounded, 2));
     let with_offset = "coulomb-friction,force-offset";
-    let tied = json(&[
-        "compare",
-        &data,
-        "--muscle",
-        &muscle,
-        "--with",
-        with_offset,
-        "--tie",
-        "force-offset.offset=coulomb-friction.force",
-        "--json",
-    ]);
+    let tied = json(&line(&format!(
+        "compare {data} --muscle {muscle} --with {with_offset} --tie force-offset.offset=coulomb-friction.force --json"
+    )));
     assert_eq!(tied["ladder"][2]["held"][0]["to"], "coulomb-friction.force");
     let learnt = folder.path("learnt.toml");
     let hold = "coulomb-friction.force=10 N";
-    let fit = bulge(&["fit", &data, "--muscle", &muscle, "--with", with, "--hold", hold, "--out", &learnt]);
-    let says = String::from_utf8(fit.stdout).unwrap();
-    assert!(says.contains("numbers that were not fitted") && says.contains("10.00 N"), "{says}");
+    let says = stdout(&["fit", &data, "--muscle", &muscle, "--with", with, "--hold", hold, "--out", &learnt]);
+    has_parts(&says, &["numbers that were not fitted", "10.00 N"]);
     let text = std::fs::read_to_string(&learnt).unwrap();
-    assert!(
-        text.contains("force = \"10 N\"") && text.contains("# coulomb-friction force = 10 N (held)"),
-        "{text}"
-    );
-    let told = bulge(&["diagnose", &data, "--muscle", &muscle, "--with", "coulomb-friction", "--hold", hold]);
-    let told = String::from_utf8(told.stdout).unwrap();
+    has_parts(&text, &["force = \"10 N\"", "# coulomb-friction force = 10 N (held)"]);
+    let told =
+        stdout(&["diagnose", &data, "--muscle", &muscle, "--with", "coulomb-friction", "--hold", hold]);
     assert!(told.contains("bulge fit") && told.contains("--hold \"coulomb-friction.force=10 N\""), "{told}");
     for (arguments, parts) in [
         (["--hold", "coulomb-frction.force=1 N"], ["--hold: ", "did you mean `coulomb-friction`"]),
@@ -274,17 +241,15 @@ fn numbers_are_held_bounded_and_tied() {
         (["--bound", "coulomb-friction.force=3 N"], ["--bound: ", "is no range"]),
         (["--tie", "coulomb-friction.force=fibre-stretch.compliance"], ["--tie: ", "same unit"]),
     ] {
-        let mut call = vec!["compare", &data, "--muscle", &muscle, "--with", with];
-        call.extend(arguments);
-        let (status, message) = failure(&call);
-        assert_eq!(status, 1, "{message}");
-        for part in parts {
-            assert!(message.contains(part), "{message:?} does not say {part:?}");
-        }
+        refused(
+            &[&["compare", &data, "--muscle", &muscle, "--with", with], &arguments[..]].concat(),
+            1,
+            &parts,
+        );
     }
     let both = ["--hold", hold, "--bound", "coulomb-friction.force=1..3 N"];
     let call = [&["compare", &data, "--muscle", &muscle, "--with", with], &both[..]].concat();
-    assert!(failure(&call).1.contains("is held and bounded"));
+    refused(&call, 1, &["is held and bounded"]);
 }
 
 /// Every row is written with the forces of the first and the last rung, and Bulge reads that file as it read
@@ -328,20 +293,16 @@ fn rows_are_written_and_read_again() {
             assert!((rmse(&again, rung) / rmse(&first, rung) - 1.0).abs() < 1e-9, "{file}");
         }
     }
-    let (status, message) = failure(&["compare", &data, "--muscle", &muscle, "--rows", &data]);
-    assert!(status == 1 && message.contains("the data file, which is read"), "{message}");
+    refused(&["compare", &data, "--muscle", &muscle, "--rows", &data], 1, &["the data file, which is read"]);
 }
 
 /// A muscle fitted to one test predicts another, with or without a measured force.
 #[test]
 fn a_learnt_muscle_predicts_new_rows() {
-    let folder = Folder::new("predict");
-    let data = folder.write("data.csv", &loops(TRUTH));
-    let muscle = folder.write("muscle.toml", MUSCLE);
+    let (folder, [data, muscle]) = measured("predict");
     let learnt = folder.path("learnt.toml");
     let with = "fibre-stretch,coulomb-friction";
-    let fit = bulge(&["fit", &data, "--muscle", &muscle, "--with", with, "--out", &learnt]);
-    assert!(fit.status.success());
+    stdout(&["fit", &data, "--muscle", &muscle, "--with", with, "--out", &learnt]);
     let file = folder.path("predicted.csv");
     let found = json(&["predict", &data, "--muscle", &learnt, "--out", &file, "--json"]);
     assert_eq!((found["schema"].as_str(), found["rows"].as_u64()), (Some("bulge.prediction/1"), Some(200)));
@@ -358,15 +319,14 @@ fn a_learnt_muscle_predicts_new_rows() {
     let again = json(&["predict", &bare, "--muscle", &learnt, "--json"]);
     assert_eq!(again["columns"]["force_n"], found["columns"]["force_n"]);
     assert!(again["against"].is_null() && again["columns"]["measured_n"].is_null());
-    let told = String::from_utf8(bulge(&["predict", &bare, "--muscle", &learnt]).stdout).unwrap();
-    assert!(
-        told.contains("200 of 200 rows have a state") && told.contains("no force to compare with"),
-        "{told}"
+    let told = stdout(&["predict", &bare, "--muscle", &learnt]);
+    has_parts(&told, &["200 of 200 rows have a state", "no force to compare with"]);
+    refused(&["compare", &bare, "--muscle", &learnt], 1, &["force"]);
+    refused(
+        &["predict", &data, "--muscle", &learnt, "--out", &learnt],
+        1,
+        &["the muscle file, which is read"],
     );
-    let (status, message) = failure(&["compare", &bare, "--muscle", &learnt]);
-    assert!(status == 1 && message.contains("force"), "{message}");
-    let (status, message) = failure(&["predict", &data, "--muscle", &learnt, "--out", &learnt]);
-    assert!(status == 1 && message.contains("the muscle file, which is read"), "{message}");
 }
 
 /// The base may be wrong: a muscle that would push where this one pulls is compared all the same, with a
@@ -378,13 +338,7 @@ fn a_base_that_would_push_is_shown_with_a_warning() {
     let rows =
         "1,10,900\n1,12,800\n1,14,700\n1,20,500\n1,52,1000\n1,53,900\n2,52,1900\n2,53,1900\n2,54,1800\n";
     let data = folder.write("data.csv", &format!("pressure [bar],contraction [%],force [N]\n{rows}"));
-    let output = bulge(&["compare", &data, "--muscle", &muscle]);
-    let text = String::from_utf8(output.stdout).unwrap();
-    assert!(
-        output.status.success() && text.contains("would push at 5 of 9 rows (line 6-10;"),
-        "{text}{}",
-        String::from_utf8_lossy(&output.stderr)
-    );
+    has_parts(&stdout(&["compare", &data, "--muscle", &muscle]), &["would push at 5 of 9 rows (line 6-10;"]);
 }
 
 /// A file as written by a laboratory, with an unusable row and one without pressure, also from standard
@@ -414,10 +368,9 @@ fn a_laboratory_file_goes_in_as_it_is() {
     let plain = folder.write("plain.csv", &loops(TRUTH));
     let exact = json(&["compare", &plain, "--muscle", &muscle, "--json"]);
     assert!((rmse(&found, 0) - rmse(&exact, 0)).abs() < 1e-9 * rmse(&exact, 0));
-    let said = String::from_utf8(bulge(&["compare", &data, "--muscle", &muscle]).stdout).unwrap();
-    for part in ["taken for", "Kraft_N", "ignored: Notiz", "decimal commas", "set apart 2 rows", "line 15"] {
-        assert!(said.contains(part), "{part} is not in {said}");
-    }
+    let said = stdout(&["compare", &data, "--muscle", &muscle]);
+    let parts = ["taken for", "Kraft_N", "ignored: Notiz", "decimal commas", "set apart 2 rows", "line 15"];
+    has_parts(&said, &parts);
     // The mapping from the muscle file, and standard input.
     let odd = text.replace("Kraft_N", "ch4").replace("Druck (bar)", "ch2");
     let mapped = folder.write(
@@ -434,11 +387,13 @@ fn a_laboratory_file_goes_in_as_it_is() {
     let answer: Value = serde_json::from_slice(&child.wait_with_output().unwrap().stdout).unwrap();
     assert_eq!(rmse(&answer, 0).to_bits(), rmse(&found, 0).to_bits());
     let file = folder.write("odd.csv", &odd);
-    let (status, message) = failure(&["compare", &file, "--muscle", &muscle]);
-    assert!(status == 1 && message.contains("2 things") && message.contains("--columns"), "{message}");
+    refused(&["compare", &file, "--muscle", &muscle], 1, &["2 things", "--columns"]);
     let wrong = "force=ch9 [N]";
-    let (status, message) = failure(&["compare", &file, "--muscle", &mapped, "--columns", wrong]);
-    assert!(status == 1 && message.contains("there is no column `ch9 [N]`"), "{message}");
+    refused(
+        &["compare", &file, "--muscle", &mapped, "--columns", wrong],
+        1,
+        &["there is no column `ch9 [N]`"],
+    );
 }
 
 /// A file without any unit gives the same result, and the guesses are reported with their reason; a unit that
@@ -454,7 +409,7 @@ fn units_that_are_not_written_are_guessed_or_asked_for() {
     let [exact, found] = [&data, &file].map(|file| json(&["compare", file, "--muscle", &muscle, "--json"]));
     assert_eq!(rmse(&found, 0).to_bits(), rmse(&exact, 0).to_bits());
     assert_eq!([2, 3].map(|i| found["data"]["columns"][i]["unit"].clone()), ["bar", "%"]);
-    let said = String::from_utf8(bulge(&["compare", &file, "--muscle", &muscle]).stdout).unwrap();
+    let said = stdout(&["compare", &file, "--muscle", &muscle]);
     assert!(said.contains("no unit is written: the forces are"), "{said}");
     // With pounds for newtons the pressure could be in psi.
     let in_pounds = |line: &str| {
@@ -463,8 +418,7 @@ fn units_that_are_not_written_are_guessed_or_asked_for() {
     };
     let pounds = bare.lines().map(in_pounds).collect::<Vec<_>>().join("\n");
     let file = folder.write("pounds.csv", &pounds);
-    let (status, message) = failure(&["compare", &file, "--muscle", &muscle]);
-    assert!(status == 1 && message.contains("pressure=p [bar], force=force [lbf]"), "{message}");
+    refused(&["compare", &file, "--muscle", &muscle], 1, &["pressure=p [bar], force=force [lbf]"]);
     let obeyed =
         ["compare", &file, "--muscle", &muscle, "--columns", "pressure=p [bar], force=force [lbf]", "--json"];
     assert!((rmse(&json(&obeyed), 0) / rmse(&exact, 0) - 1.0).abs() < 1e-3);
@@ -478,8 +432,7 @@ fn what_contradicts_the_rows_is_said() {
     let stated = folder.write("stated.toml", &format!("{MUSCLE}\n[specimens.short]\nlength = \"80 mm\"\n"));
     let muscle = folder.write("muscle.toml", MUSCLE);
     let data = folder.write("data.csv", &loops(TRUTH));
-    let (status, message) = failure(&["compare", &data, "--muscle", &stated]);
-    assert!(status == 1 && message.contains("no row of the data is of the specimen `short`"), "{message}");
+    refused(&["compare", &data, "--muscle", &stated], 1, &["no row of the data is of the specimen `short`"]);
     // Labelled opposite to the motion.
     let labelled = |line: &str| match line.split(',').next().and_then(|text| text.parse::<usize>().ok()) {
         Some(row) => format!("{line},{},shrot", if row % 40 < 20 { "down" } else { "up" }),
@@ -487,9 +440,8 @@ fn what_contradicts_the_rows_is_said() {
     };
     let text = loops(TRUTH).lines().map(labelled).collect::<Vec<_>>().join("\n");
     let labelled = folder.write("labelled.csv", &text);
-    let (status, message) = failure(&["compare", &labelled, "--muscle", &stated]);
-    assert!(status == 1 && message.contains("`[specimens.shrot]`"), "{message}");
-    let said = String::from_utf8(bulge(&["compare", &labelled, "--muscle", &muscle]).stdout).unwrap();
+    refused(&["compare", &labelled, "--muscle", &stated], 1, &["`[specimens.shrot]`"]);
+    let said = stdout(&["compare", &labelled, "--muscle", &muscle]);
     assert!(said.contains("with a direction against the motion"), "{said}");
     let mut held = "time [s],pressure [bar],length [mm],force [N]\n".to_owned();
     for i in 0..200 {
@@ -497,7 +449,7 @@ fn what_contradicts_the_rows_is_said() {
         let _ = writeln!(held, "{i},{pressure},{},{}", 100.0 + 0.005 * f64::from(i), 250.0 * pressure);
     }
     let held = folder.write("held.csv", &held);
-    let said = String::from_utf8(bulge(&["compare", &held, "--muscle", &muscle]).stdout).unwrap();
+    let said = stdout(&["compare", &held, "--muscle", &muscle]);
     assert!(said.contains("at held length, whose length changes by up to"), "{said}");
 }
 
@@ -506,9 +458,7 @@ fn what_contradicts_the_rows_is_said() {
 fn a_curve_is_data() {
     let folder = Folder::new("curve-is-data");
     let csv = folder.path("curve.csv");
-    let made =
-        bulge(&["curve", "dmsp-20-250", "--pressure", "1 bar,2 bar,3 bar", "--points", "31", "--csv", &csv]);
-    assert!(made.status.success());
+    stdout(&["curve", "dmsp-20-250", "--pressure", "1 bar,2 bar,3 bar", "--points", "31", "--csv", &csv]);
     let found = json(&["compare", &csv, "--muscle", "dmsp-20-250", "--json"]);
     assert!(rmse(&found, 0) < 1e-3, "{}", rmse(&found, 0));
     let columns = found["data"]["columns"].as_array().unwrap();
@@ -548,9 +498,7 @@ fn files_of_real_tests_are_answered_as_they_are() {
 /// A sweep is excluded by its lines: the rows that count are those of the other sweeps.
 #[test]
 fn rows_are_left_out_by_their_lines() {
-    let folder = Folder::new("exclude");
-    let data = folder.write("data.csv", &loops(TRUTH));
-    let muscle = folder.write("muscle.toml", MUSCLE);
+    let (_folder, [data, muscle]) = measured("exclude");
     let of = |more: &[&str]| json(&[&["compare", &data, "--muscle", &muscle, "--json"], more].concat());
     let (all, some) = (of(&[]), of(&["--exclude", "2-41"]));
     assert_eq!([&all, &some].map(|found| found["data"]["used"].as_u64().unwrap()), [200, 160]);
@@ -559,12 +507,11 @@ fn rows_are_left_out_by_their_lines() {
     // The first sweep is at the lowest pressure, where the fibres stretch least.
     assert!(rmse(&some, 0) > 1.05 * rmse(&all, 0), "{} {}", rmse(&some, 0), rmse(&all, 0));
     for (lines, part) in [("0-1", "no row"), ("x", "no line"), ("2-9999", "all rows")] {
-        let (status, message) = failure(&["compare", &data, "--muscle", &muscle, "--exclude", lines]);
-        assert!(status == 1 && message.contains(part), "{message}");
+        refused(&["compare", &data, "--muscle", &muscle, "--exclude", lines], 1, &[part]);
     }
     // The command proposed by a diagnosis contains the exclusion.
     let command = ["diagnose", &data, "--muscle", &muscle, "--with", "fibre-stretch", "--exclude", "2-41"];
-    let said = String::from_utf8(bulge(&command).stdout).unwrap();
+    let said = stdout(&command);
     assert!(said.contains("--exclude 2-41") && said.contains("coulomb-friction"), "{said}");
     // A prediction has all rows; its errors are those of the other rows.
     let predicted = json(&["predict", &data, "--muscle", &muscle, "--exclude", "2-41", "--json"]);

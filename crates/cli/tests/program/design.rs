@@ -1,6 +1,6 @@
 //! `bulge air`, `bulge sense` and `bulge heat` as seen by a user.
 
-use crate::support::{Folder, bulge, failure, json};
+use crate::support::{Folder, has_parts, json, line, refused, stdout};
 use serde_json::Value;
 
 fn number(value: &Value) -> f64 {
@@ -30,21 +30,9 @@ fn a_channel_tells_the_contraction() {
     assert!(written.lines().last().unwrap().starts_with("0.3,"));
     assert!(std::fs::read_to_string(plot).unwrap().contains("resistance [ohm]"));
     assert_eq!(folder.names().len(), 2);
-    let text = bulge(&[
-        "sense",
-        "dmsp-20-250",
-        "--contraction",
-        "2 %..25 %",
-        "--best",
-        "20 %",
-        "--least-gauge-factor",
-        "2",
-    ]);
-    let text = String::from_utf8(text.stdout).unwrap();
-    assert!(
-        text.contains("the best of 81 places: the middle of the zone at 10") && text.contains("gauge factor"),
-        "{text}"
-    );
+    let text =
+        stdout(&line("sense dmsp-20-250 --contraction '2 %..25 %' --best '20 %' --least-gauge-factor 2"));
+    has_parts(&text, &["the best of 81 places: the middle of the zone at 10", "gauge factor"]);
 }
 
 /// The trends of S3: the end without a pipe is hottest; a longer pipe cools the end and warms the inlet, a
@@ -66,12 +54,8 @@ fn pipes_cool_the_closed_end() {
         assert!((number(&solution["heat_out_j"]) / number(&solution["enthalpy_in_j"]) - 1.0).abs() < 1e-4);
     }
     assert!(std::fs::read_to_string(plot).unwrap().contains("100 x 4.0 mm"));
-    let text =
-        String::from_utf8(bulge(&["heat", "--cells", "10", "--pipe", "none,150 mm x 4 mm"]).stdout).unwrap();
-    assert!(
-        text.contains("closed end") && text.contains("150 x 4.0 mm") && text.contains("no life"),
-        "{text}"
-    );
+    let text = stdout(&["heat", "--cells", "10", "--pipe", "none,150 mm x 4 mm"]);
+    has_parts(&text, &["closed end", "150 x 4.0 mm", "no life"]);
 }
 
 /// Shut, filled and used: the amounts of air agree.
@@ -79,22 +63,9 @@ fn pipes_cool_the_closed_end() {
 fn air_is_kept_counted_and_spent() {
     let folder = Folder::new("air");
     let (plot, csv) = (folder.path("fill.svg"), folder.path("fill.csv"));
-    let shut = json(&[
-        "air",
-        "shut",
-        "ppam-2-r16",
-        "--pressure",
-        "2 bar",
-        "--contraction",
-        "15 %",
-        "--dead-volume",
-        "30 ml",
-        "--force",
-        "500 N",
-        "--json",
-        "--plot",
-        &folder.path("shut.svg"),
-    ]);
+    let held = "--pressure '2 bar' --contraction '15 %' --dead-volume '30 ml' --force '500 N'";
+    let shut = folder.path("shut.svg");
+    let shut = json(&line(&format!("air shut ppam-2-r16 {held} --json --plot {shut}")));
     assert_eq!(shut["schema"], "bulge.air/1");
     let mass = number(&shut["mass_kg"]);
     for at in shut["states"].as_array().unwrap() {
@@ -108,19 +79,8 @@ fn air_is_kept_counted_and_spent() {
     }
     assert!((number(&shut["under_force"]["force_n"]) - 500.0).abs() < 1e-5);
     // Held at the same contraction: the same amount of air, less the initial one.
-    let fill = [
-        "air",
-        "fill",
-        "ppam-2-r16",
-        "--supply",
-        "2 bar",
-        "--conductance",
-        "0.5 l/(s bar)",
-        "--held",
-        "15 %",
-        "--dead-volume",
-        "30 ml",
-    ];
+    let fill = "air fill ppam-2-r16 --supply '2 bar' --conductance '0.5 l/(s bar)' --held '15 %' --dead-volume '30 ml'";
+    let fill = line(fill);
     let filling = json(&[&fill[..], &["--json", "--plot", &plot, "--csv", &csv]].concat());
     let filling = &filling["filling"];
     assert!(filling["settled"].as_bool().unwrap());
@@ -132,22 +92,10 @@ fn air_is_kept_counted_and_spent() {
     assert!((number(&filling["samples"][0]["flow_kg_per_s"]) / flow - 1.0).abs() < 1e-9);
     assert!(std::fs::read_to_string(csv).unwrap().lines().count() > 100);
     assert!(std::fs::read_to_string(plot).unwrap().contains("pressure [bar]"));
-    let text = String::from_utf8(bulge(&fill).stdout).unwrap();
+    let text = stdout(&fill);
     assert!(text.contains("99 % after") && text.contains("litres (ANR)"), "{text}");
-    let stroke = json(&[
-        "air",
-        "stroke",
-        "ppam-2-r16",
-        "--load",
-        "500 N",
-        "--stroke",
-        "10 %..25 %",
-        "--supply",
-        "6 bar",
-        "--json",
-        "--plot",
-        &folder.path("stroke.svg"),
-    ]);
+    let stroke = "air stroke ppam-2-r16 --load '500 N' --stroke '10 %..25 %' --supply '6 bar'";
+    let stroke = json(&line(&format!("{stroke} --json --plot {}", folder.path("stroke.svg"))));
     for (name, words) in [("shut.svg", "valve shut"), ("stroke.svg", "with the load")] {
         assert!(std::fs::read_to_string(folder.path(name)).unwrap().contains(words), "{name}");
     }
@@ -165,11 +113,7 @@ fn fibres_that_are_too_soft_are_named() {
     let soft = "name = \"soft\"\nkind = \"braided\"\nlength = \"60 mm\"\nradius = \"10 mm\"\nbraid_angle = \"25 deg\"\nends = \"cylinder\"\nfibres = 60\nfibre = { stiffness = \"5 N\" }\n";
     let soft = folder.write("soft.toml", soft);
     let shut = ["air", "shut", &soft, "--pressure", "5 bar", "--contraction", "1 %"];
-    let (status, message) = failure(&shut);
-    assert!(
-        status == 3 && message.contains("the fibres are too soft and the muscle balloons"),
-        "{status} {message}"
-    );
+    refused(&shut, 3, &["the fibres are too soft and the muscle balloons"]);
 }
 
 #[test]
@@ -180,75 +124,30 @@ fn mistakes_are_named() {
         "name = \"rigid\"\nkind = \"pleated\"\nlength = \"110 mm\"\nradius = \"16 mm\"\nfibres = 40\n";
     let rigid = folder.write("rigid.toml", rigid);
     for (given, status, words) in [
-        (vec!["sense", "ppam-2-r16", "--turns", "5000"], 1, "take fewer turns"),
-        (vec!["sense", "ppam-2-r16", "--zone", "70 %..30 %"], 1, "from 0.7 to 0.3"),
-        (vec!["sense", "ppam-2-r16", "--channel", "-1 mm"], 1, "section of the channel"),
-        (vec!["sense", "ppam-2-r16", "--points", "3"], 1, "11 to 10001"),
-        (vec!["sense", "ppam-2-r16", "--noise", "1"], 1, "--noise: `1` can't be read"),
+        ("sense ppam-2-r16 --turns 5000", 1, "take fewer turns"),
+        ("sense ppam-2-r16 --zone '70 %..30 %'", 1, "from 0.7 to 0.3"),
+        ("sense ppam-2-r16 --channel '-1 mm'", 1, "section of the channel"),
+        ("sense ppam-2-r16 --points 3", 1, "11 to 10001"),
+        ("sense ppam-2-r16 --noise 1", 1, "--noise: `1` can't be read"),
+        ("sense ppam-2-r16 --contraction '5 %..60 %'", 3, "the limit of this muscle is 41.8497 %"),
+        (&format!("sense {rigid} --turns 0 --offset '0 mm'"), 3, "this winding feels nothing"),
+        ("sense ppam-2-r16 --best '20 %' --least-gauge-factor 99", 3, "none of the 81 zones"),
+        ("air fill ppam-2-r16 --supply '3 bar' --held '10 %'", 2, "--conductance"),
+        ("air fill ppam-2-r16 --supply '3 bar' --hole '-2 mm' --held '10 %'", 1, "diameter of the hole"),
+        ("air fill ppam-2-r16 --supply '3 bar' --conductance 2 --held '10 %'", 1, "`2` can't be read"),
+        ("air shut ppam-2-r16 --pressure '2 bar' --contraction '15 %' --exponent 2", 1, "exponent is 2"),
+        ("air shut ppam-2-r16 --pressure '1 bar' --contraction '42 %'", 3, "the limit of this muscle"),
         (
-            vec!["sense", "ppam-2-r16", "--contraction", "5 %..60 %"],
-            3,
-            "the limit of this muscle is 41.8497 %",
-        ),
-        (vec!["sense", &rigid, "--turns", "0", "--offset", "0 mm"], 3, "this winding feels nothing"),
-        (
-            vec!["sense", "ppam-2-r16", "--best", "20 %", "--least-gauge-factor", "99"],
-            3,
-            "none of the 81 zones",
-        ),
-        (vec!["air", "fill", "ppam-2-r16", "--supply", "3 bar", "--held", "10 %"], 2, "--conductance"),
-        (
-            vec!["air", "fill", "ppam-2-r16", "--supply", "3 bar", "--hole", "-2 mm", "--held", "10 %"],
-            1,
-            "diameter of the hole",
-        ),
-        (
-            vec!["air", "fill", "ppam-2-r16", "--supply", "3 bar", "--conductance", "2", "--held", "10 %"],
-            1,
-            "`2` can't be read",
-        ),
-        (
-            vec![
-                "air",
-                "shut",
-                "ppam-2-r16",
-                "--pressure",
-                "2 bar",
-                "--contraction",
-                "15 %",
-                "--exponent",
-                "2",
-            ],
-            1,
-            "exponent is 2",
-        ),
-        (
-            vec!["air", "shut", "ppam-2-r16", "--pressure", "1 bar", "--contraction", "42 %"],
-            3,
-            "the limit of this muscle",
-        ),
-        (
-            vec![
-                "air",
-                "stroke",
-                "ppam-2-r16",
-                "--load",
-                "5000 N",
-                "--stroke",
-                "10 %..25 %",
-                "--supply",
-                "1 bar",
-            ],
+            "air stroke ppam-2-r16 --load '5000 N' --stroke '10 %..25 %' --supply '1 bar'",
             1,
             "higher supply pressure",
         ),
-        (vec!["heat", "--pipe", "4"], 1, "`4` is no pipe"),
-        (vec!["heat", "--pipe", "300 mm x 4 mm"], 1, "length of the pipe"),
-        (vec!["heat", "--period", "1"], 1, "--period: `1` can't be read"),
-        (vec!["heat", "--pressure", "5 bar..1 bar"], 1, "high gauge pressure"),
-        (vec!["heat", "--port", "0.2 mm", "--pipe", "none"], 3, "Mach"),
+        ("heat --pipe 4", 1, "`4` is no pipe"),
+        ("heat --pipe '300 mm x 4 mm'", 1, "length of the pipe"),
+        ("heat --period 1", 1, "--period: `1` can't be read"),
+        ("heat --pressure '5 bar..1 bar'", 1, "high gauge pressure"),
+        ("heat --port '0.2 mm' --pipe none", 3, "Mach"),
     ] {
-        let (found, message) = failure(&given);
-        assert!(found == status && message.contains(words), "{given:?}: {found} {message}");
+        refused(&line(given), status, &[words]);
     }
 }

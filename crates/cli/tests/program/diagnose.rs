@@ -1,25 +1,15 @@
 //! `diagnose` as seen by a user: hidden effects are named, documents and reports are complete, messages for
 //! bad input.
 
-use crate::support::{Folder, bulge, failure, json};
+use crate::support::{Folder, MUSCLE, PROTOCOL, failure, has_parts, json, refused, simulated, stdout};
 use serde_json::Value;
 use std::fmt::Write;
 use std::fs;
 use std::path::Path;
 
-const MUSCLE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/data/braid.toml");
-const PROTOCOL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/data/protocol.toml");
-
-/// Simulated measurements: data file and muscle file.
-fn simulated(folder: &Folder, hidden: &str) -> [String; 2] {
-    let out = folder.path("trial");
-    let mut arguments = vec!["simulate", MUSCLE, "--protocol", PROTOCOL, "--out", &out, "--seed", "7"];
-    if !hidden.is_empty() {
-        arguments.extend(["--with", hidden]);
-    }
-    let output = bulge(&arguments);
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    [folder.path("trial/data.csv"), folder.path("trial/muscle.toml")]
+/// Simulated measurements with hidden effects: data file and muscle file.
+fn with(folder: &Folder, hidden: &str) -> [String; 2] {
+    simulated(folder, "trial", [PROTOCOL, "7"], &["--with", hidden])
 }
 
 fn has(value: &Value, keys: &[&str]) {
@@ -32,7 +22,7 @@ fn has(value: &Value, keys: &[&str]) {
 #[test]
 fn a_hidden_effect_is_named_and_the_document_has_all_keys() {
     let folder = Folder::new("diagnose-hidden");
-    let [data, muscle] = simulated(&folder, "bladder-elasticity=0.31 MPa");
+    let [data, muscle] = with(&folder, "bladder-elasticity=0.31 MPa");
     let out = folder.path("report");
     let found = json(&["diagnose", &data, "--muscle", &muscle, "--seed", "3", "--out", &out, "--json"]);
     assert_eq!(
@@ -91,14 +81,8 @@ fn a_hidden_effect_is_named_and_the_document_has_all_keys() {
 #[test]
 fn people_read_the_verdict_first_and_how_to_go_on() {
     let folder = Folder::new("diagnose-text");
-    let [data, muscle] = simulated(&folder, "bladder-elasticity=0.31 MPa");
-    let output = bulge(&["diagnose", &data, "--muscle", &muscle]);
-    assert!(
-        output.status.success() && output.stderr.is_empty(),
-        "{}",
-        String::from_utf8_lossy(&output.stderr)
-    );
-    let text = String::from_utf8(output.stdout).unwrap();
+    let [data, muscle] = with(&folder, "bladder-elasticity=0.31 MPa");
+    let text = stdout(&["diagnose", &data, "--muscle", &muscle]);
     let lines: Vec<&str> = text.lines().collect();
     assert!(lines.len() <= 42, "{text}");
     let place = |part: &str| {
@@ -113,22 +97,20 @@ fn people_read_the_verdict_first_and_how_to_go_on() {
     assert_eq!(next["verdict"], "adequate", "{}", next["says"]);
     assert_eq!(next["missing"].as_array().unwrap().len(), 0);
     let learnt = folder.path("learnt.toml");
-    let fit = bulge(&["fit", &data, "--muscle", &muscle, "--with", "bladder-elasticity", "--out", &learnt]);
-    assert!(
-        fit.status.success() && fs::read_to_string(&learnt).unwrap().contains("[effects.bladder-elasticity]")
-    );
+    stdout(&["fit", &data, "--muscle", &muscle, "--with", "bladder-elasticity", "--out", &learnt]);
+    has_parts(&fs::read_to_string(&learnt).unwrap(), &["[effects.bladder-elasticity]"]);
 }
 
 #[test]
 fn nothing_is_named_where_nothing_is_hidden() {
     let folder = Folder::new("diagnose-null");
-    let [data, muscle] = simulated(&folder, "");
+    let [data, muscle] = simulated(&folder, "trial", [PROTOCOL, "7"], &[]);
     let arguments = ["diagnose", &data, "--muscle", &muscle, "--tolerance", "5 N", "--seed", "3", "--json"];
-    let first = bulge(&arguments);
-    let found: Value = serde_json::from_slice(&first.stdout).unwrap();
+    let first = stdout(&arguments);
+    let found: Value = serde_json::from_str(&first).unwrap();
     assert_eq!(found["verdict"], "adequate", "{}", found["says"]);
     // The same seed gives the same bytes.
-    assert_eq!(bulge(&arguments).stdout, first.stdout);
+    assert_eq!(stdout(&arguments), first);
 }
 
 #[test]
@@ -136,11 +118,6 @@ fn bad_input_gets_one_clear_message() {
     let folder = Folder::new("diagnose-bad");
     let data = folder.write("data.csv", "pressure [bar],contraction [%],force [N]\n1,5,100\n1,6,90\n");
     let file = folder.write("taken", "");
-    let call = |more: &[&str]| {
-        let mut arguments = vec!["diagnose", &data, "--muscle", MUSCLE];
-        arguments.extend(more);
-        failure(&arguments)
-    };
     for (more, expected, parts) in [
         (&["--tolerance", "5 mm"][..], 1, &["--tolerance", "mm"][..]),
         (&["--tolerance", "5"], 1, &["--tolerance", "unit"]),
@@ -151,17 +128,10 @@ fn bad_input_gets_one_clear_message() {
         (&["--seed", "x"], 2, &["--seed", "invalid"]),
         (&["--tolerence", "5 N"], 2, &["--tolerance"]),
     ] {
-        let (status, message) = call(more);
-        assert_eq!(status, expected, "{message}");
-        for part in parts {
-            assert!(message.contains(part), "{message:?} does not say {part:?}");
-        }
-        assert!(message.starts_with("error: ") && message.lines().count() < 12, "{message}");
+        refused(&[&["diagnose", &data, "--muscle", MUSCLE], more].concat(), expected, parts);
     }
-    let (status, message) = failure(&["diagnose", "--muscle", MUSCLE]);
-    assert!(status == 2 && message.contains("DATA"), "{message}");
-    let (status, message) = failure(&["diagnose", "nowhere.csv", "--muscle", MUSCLE]);
-    assert!(status == 1 && message.contains("nowhere.csv"), "{message}");
+    refused(&["diagnose", "--muscle", MUSCLE], 2, &["DATA"]);
+    refused(&["diagnose", "nowhere.csv", "--muscle", MUSCLE], 1, &["nowhere.csv"]);
     // Nothing is left behind.
     assert!(Path::new(&file).is_file());
     assert_eq!(folder.names(), ["data.csv", "taken"]);
@@ -170,13 +140,15 @@ fn bad_input_gets_one_clear_message() {
 #[test]
 fn a_report_that_has_no_place_is_refused_and_nothing_is_written() {
     let folder = Folder::new("diagnose-place");
-    let [data, muscle] = simulated(&folder, "bladder-elasticity=0.31 MPa");
+    let [data, muscle] = with(&folder, "bladder-elasticity=0.31 MPa");
     let file = folder.write("taken", "");
-    let (status, message) = failure(&["diagnose", &data, "--muscle", &muscle, "--out", &file]);
-    assert!(status == 1 && message.contains("it is a file"), "{message}");
+    refused(&["diagnose", &data, "--muscle", &muscle, "--out", &file], 1, &["it is a file"]);
     fs::create_dir_all(folder.0.join("out/where.svg")).unwrap();
-    let (status, message) = failure(&["diagnose", &data, "--muscle", &muscle, "--out", &folder.path("out")]);
-    assert!(status == 1 && message.contains("where.svg") && message.contains("move it away"), "{message}");
+    refused(
+        &["diagnose", &data, "--muscle", &muscle, "--out", &folder.path("out")],
+        1,
+        &["where.svg", "move it away"],
+    );
     assert_eq!(fs::read_dir(folder.0.join("out")).unwrap().count(), 1);
 }
 
@@ -220,9 +192,7 @@ impl Answer {
         if tolerance_n > 0.0 {
             call.extend(["--tolerance", &tolerance]);
         }
-        let output = bulge(&call);
-        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-        let text = String::from_utf8(output.stdout).unwrap();
+        let text = stdout(&call);
         let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
         let read = |name: &str| fs::read_to_string(Path::new(&out).join(name)).unwrap();
         let json = serde_json::from_str(&read("diagnosis.json")).unwrap();
@@ -356,7 +326,7 @@ fn sentences_of_a_diagnosis_agree_with_each_other_and_a_tolerance_only_weakens_t
         _ => force - if row % 40 < 20 { 8.0 } else { -8.0 },
     };
     let spiked = folder.write("spiked.csv", &loops([0.0; 4], disturbed));
-    let three = simulated(&folder, "bladder-elasticity=0.31 MPa,coulomb-friction=14 N,force-lag=0.3 s");
+    let three = with(&folder, "bladder-elasticity=0.31 MPa,coulomb-friction=14 N,force-lag=0.3 s");
     let cases = [
         ("adequate", case("null-005")),
         ("missing", case("confusable-011")),
@@ -398,11 +368,8 @@ parameters.mu = { unit = \"N\", typical = \"40 N\", low = \"0 N\", high = \"500 
 fn a_form_that_the_data_want_becomes_an_effect_of_ones_own() {
     let folder = Folder::new("fit-form-error");
     let own = folder.write("own.toml", OWN_FRICTION);
-    let trial = folder.path("trial");
-    let hidden = ["simulate", MUSCLE, "--protocol", PROTOCOL, "--out", &trial, "--seed", "7"];
-    let output = bulge(&[&hidden[..], &["--effects", &own, "--with", "own-friction=40 N"]].concat());
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let (data, muscle) = (folder.path("trial/data.csv"), folder.path("trial/muscle.toml"));
+    let hidden = ["--effects", &own, "--with", "own-friction=40 N"];
+    let [data, muscle] = simulated(&folder, "trial", [PROTOCOL, "7"], &hidden);
     let bent = folder.path("bent.toml");
     let about = [&data[..], "--muscle", &muscle, "--json"];
     let fit = ["--with", "coulomb-friction", "--form-error", &bent];
@@ -465,14 +432,10 @@ fn a_form_along_the_time_is_written_nowhere() {
     let own = folder.write("hums.toml", HUMS);
     let block = "[[block]]\npressures = [\"3 bar\"]\ncontraction = \"1 %..20 %\"\nshape = \"loops\"\ncycles = 6\nperiod = \"50 s\"\nrows = 50\n";
     let protocol = folder.write("protocol.toml", &format!("{block}[noise]\nforce = \"2 N\"\n"));
-    let trial = folder.path("trial");
     let hidden = ["--effects", &own, "--with", "growing-hum=20 N,11 s"];
-    let made = ["simulate", MUSCLE, "--protocol", &protocol, "--out", &trial, "--seed", "7"];
-    let output = bulge(&[&made[..], &hidden].concat());
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let [data, muscle] = simulated(&folder, "trial", [&protocol, "7"], &hidden);
     let listed = folder.names();
-    let (data, muscle, bent) =
-        (folder.path("trial/data.csv"), folder.path("trial/muscle.toml"), folder.path("bent.toml"));
+    let bent = folder.path("bent.toml");
     let call = ["fit", &data, "--muscle", &muscle, "--effects", &own, "--with", "hum", "--form-error", &bent];
     let found = json(&[&call[..], &["--json"]].concat());
     let drawn = &found["drawn"];
@@ -483,13 +446,8 @@ fn a_form_along_the_time_is_written_nowhere() {
     let says = form["says"].as_str().unwrap();
     assert!(says.starts_with("hum is not written: ") && says.contains("along the time"), "{says}");
     let learnt = folder.path("learnt.toml");
-    let output = bulge(&[&call[..], &["--out", &learnt]].concat());
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let text = String::from_utf8(output.stdout).unwrap();
-    assert!(
-        text.contains(says) && text.contains(&format!("{bent} is not written: there is no form")),
-        "{text}"
-    );
+    let text = stdout(&[&call[..], &["--out", &learnt]].concat());
+    has_parts(&text, &[says, &format!("{bent} is not written: there is no form")]);
     assert!(Path::new(&learnt).is_file() && !Path::new(&bent).exists());
     fs::remove_file(&learnt).unwrap();
     assert_eq!(folder.names(), listed);
@@ -536,17 +494,15 @@ fn what_a_fit_writes_is_kept_apart_from_what_it_reads() {
     let nowhere = folder.path("nowhere/learnt.toml");
     let call =
         ["fit", &data, "--muscle", &muscle, "--with", "creep", "--form-error", &new, "--out", &nowhere];
-    let (status, message) = failure(&call);
-    assert!(status == 1 && message.contains("there is no folder"), "{message}");
+    refused(&call, 1, &["there is no folder"]);
     assert_eq!(folder.names(), listed);
 }
 
 #[test]
 fn a_learnt_muscle_may_take_the_place_of_the_one_that_was_read() {
     let folder = Folder::new("fit-in-place");
-    let [data, muscle] = simulated(&folder, "coulomb-friction=14 N");
-    let output = bulge(&["fit", &data, "--muscle", &muscle, "--with", "coulomb-friction", "--out", &muscle]);
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let [data, muscle] = with(&folder, "coulomb-friction=14 N");
+    stdout(&["fit", &data, "--muscle", &muscle, "--with", "coulomb-friction", "--out", &muscle]);
     assert!(fs::read_to_string(&muscle).unwrap().contains("[effects.coulomb-friction]"));
 }
 
@@ -554,12 +510,8 @@ fn a_learnt_muscle_may_take_the_place_of_the_one_that_was_read() {
 const GENT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/data/gent-liner.toml");
 
 fn gent(folder: &Folder, name: &str, numbers: &str) -> [String; 2] {
-    let out = folder.path(name);
     let hidden = format!("gent-liner={numbers}");
-    let arguments = ["simulate", MUSCLE, "--protocol", PROTOCOL, "--out", &out, "--seed", "7"];
-    let output = bulge(&[&arguments[..], &["--effects", GENT, "--with", &hidden]].concat());
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    ["data.csv", "muscle.toml"].map(|file| folder.path(&format!("{name}/{file}")))
+    simulated(folder, name, [PROTOCOL, "7"], &["--effects", GENT, "--with", &hidden])
 }
 
 #[test]

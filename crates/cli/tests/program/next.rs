@@ -1,34 +1,18 @@
 //! `next` as seen by a user: the open question, the experiment that decides it (and does), and the honest
 //! answer if none does.
 
-use crate::support::{Folder, bulge, failure, json};
+use crate::support::{Folder, MUSCLE, PROTOCOL, has_parts, json, refused, simulated, stdout};
 use serde_json::Value;
 use std::fs;
 
-const MUSCLE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/data/braid.toml");
-const PROTOCOL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/data/protocol.toml");
 /// A single loop at one pressure.
 const LOOP: &str =
     "[[block]]\npressures = [\"3 bar\"]\ncontraction = \"1 %..20 %\"\nperiod = \"50 s\"\nrows = 50\n";
 const NOISE: &str = "[noise]\nforce = \"2 N\"\npressure = \"100 Pa\"\n";
 
-/// Simulated measurements in a folder of the given name: data file and muscle file.
-fn simulated(folder: &Folder, name: &str, protocol: &str, hidden: &str, seed: &str) -> [String; 2] {
-    let out = folder.path(name);
-    let output =
-        bulge(&["simulate", MUSCLE, "--protocol", protocol, "--out", &out, "--seed", seed, "--with", hidden]);
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    ["data.csv", "muscle.toml"].map(|file| folder.path(&format!("{name}/{file}")))
-}
-
-fn text(arguments: &[&str]) -> String {
-    let output = bulge(arguments);
-    assert!(
-        output.status.success() && output.stderr.is_empty(),
-        "{}",
-        String::from_utf8_lossy(&output.stderr)
-    );
-    let text = String::from_utf8(output.stdout).unwrap();
+/// The words that a call prints.
+fn words(arguments: &[&str]) -> String {
+    let text = stdout(arguments);
     assert!(text.lines().count() < 25, "{text}");
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
@@ -40,7 +24,7 @@ fn class(found: &Value) -> Vec<&str> {
 #[test]
 fn where_no_test_of_force_separates_that_is_said() {
     let folder = Folder::new("next-threshold");
-    let [data, muscle] = simulated(&folder, "trial", PROTOCOL, "pressure-threshold", "7");
+    let [data, muscle] = simulated(&folder, "trial", [PROTOCOL, "7"], &["--with", "pressure-threshold"]);
     let found = json(&["next", &data, "--muscle", &muscle, "--json"]);
     assert_eq!(
         (found["schema"].as_str(), found["verdict"].as_str()),
@@ -57,15 +41,16 @@ fn where_no_test_of_force_separates_that_is_said() {
         "{next}"
     );
     assert!(found["says"].as_str().unwrap().contains("the reading of the vented pressure sensor"));
-    let text = text(&["next", &data, "--muscle", &muscle]);
-    for part in [
-        "missing: pressure-threshold",
-        "open: these data cannot tell pressure-",
-        "no test of force",
-        "--pressure",
-    ] {
-        assert!(text.contains(part), "{part:?} is not in {text}");
-    }
+    let text = words(&["next", &data, "--muscle", &muscle]);
+    has_parts(
+        &text,
+        &[
+            "missing: pressure-threshold",
+            "open: these data cannot tell pressure-",
+            "no test of force",
+            "--pressure",
+        ],
+    );
     assert!(!text.contains("and then, with both"), "{text}");
 }
 
@@ -101,7 +86,7 @@ fn what_is_proposed_decides_what_was_open() {
     let folder = Folder::new("next-friction");
     let one = folder.write("one.toml", &format!("{LOOP}{NOISE}"));
     // At one pressure, friction proportional to the pressure can't be distinguished from constant friction.
-    let [data, muscle] = simulated(&folder, "one", &one, "coulomb-friction=14 N", "2");
+    let [data, muscle] = simulated(&folder, "one", [&one, "2"], &["--with", "coulomb-friction=14 N"]);
     let arguments = ["next", &data, "--muscle", &muscle, "--pressure", "2 bar..5 bar"];
     let found = json(&[&arguments[..], &["--json"]].concat());
     let class = class(&found);
@@ -110,13 +95,10 @@ fn what_is_proposed_decides_what_was_open() {
     let says = next["says"].as_str().unwrap();
     assert!(next["sigma"].as_f64().unwrap() > 3.29 && next["repeats"].as_u64() == Some(1), "{next}");
     assert!(says.contains("between 2.00 and 5.00 bar"), "{says}");
-    let words = text(&arguments);
-    assert!(
-        words.contains("next: measure ") && words.contains(&format!("bulge diagnose {data} NEW.csv")),
-        "{words}"
-    );
+    let words = words(&arguments);
+    has_parts(&words, &["next: measure ", &format!("bulge diagnose {data} NEW.csv")]);
     let second = folder.write("second.toml", &(proposed(says) + NOISE));
-    let [more, _] = simulated(&folder, "second", &second, "coulomb-friction=14 N", "12");
+    let [more, _] = simulated(&folder, "second", [&second, "12"], &["--with", "coulomb-friction=14 N"]);
     let after = json(&["next", &data, &more, "--muscle", &muscle, "--json"]);
     assert_eq!(after["missing"][0]["effect"], "coulomb-friction", "{after}");
     let left = after["missing"][0]["class"].as_array().unwrap();
@@ -129,7 +111,7 @@ fn what_is_proposed_decides_what_was_open() {
 fn rivals_that_differ_by_their_rate_alone_are_measured_slower_and_faster() {
     let folder = Folder::new("next-rate");
     // At one speed drag is indistinguishable from dry friction.
-    let [data, muscle] = simulated(&folder, "one", PROTOCOL, "viscous-damping", "7");
+    let [data, muscle] = simulated(&folder, "one", [PROTOCOL, "7"], &["--with", "viscous-damping"]);
     let found = json(&["next", &data, "--muscle", &muscle, "--json"]);
     let class = class(&found);
     assert!(class.contains(&"coulomb-friction") && class.contains(&"viscous-damping"), "{class:?}");
@@ -138,7 +120,7 @@ fn rivals_that_differ_by_their_rate_alone_are_measured_slower_and_faster() {
     assert!(says.contains("ten times slower and ten times faster"), "{says}");
     assert!(next["sigma"].as_f64().unwrap() > 3.29 && next["repeats"].as_u64() == Some(1), "{next}");
     let second = folder.write("second.toml", &(proposed(says) + NOISE));
-    let [more, _] = simulated(&folder, "second", &second, "viscous-damping", "12");
+    let [more, _] = simulated(&folder, "second", [&second, "12"], &["--with", "viscous-damping"]);
     let after = json(&["next", &data, &more, "--muscle", &muscle, "--json"]);
     let left = after["missing"][0]["class"].as_array().unwrap();
     assert!(
@@ -156,7 +138,7 @@ fn a_held_length_or_another_stroke_is_proposed_where_that_separates_best() {
         ("pressure-offset", "7", "loops over a third of the stroke, and over all of it"),
         ("force-gain", "7", "loops over a third of the stroke, and over all of it"),
     ] {
-        let [data, muscle] = simulated(&folder, hidden, &one, hidden, seed);
+        let [data, muscle] = simulated(&folder, hidden, [&one, seed], &["--with", hidden]);
         let found = json(&["next", &data, "--muscle", &muscle, "--pressure", "2 bar..5 bar", "--json"]);
         let next = &found["next_experiment"];
         assert!(next["says"].as_str().unwrap().contains(proposal), "{hidden}: {next}");
@@ -167,7 +149,8 @@ fn a_held_length_or_another_stroke_is_proposed_where_that_separates_best() {
 #[test]
 fn where_nothing_is_open_the_largest_limit_is_named() {
     let folder = Folder::new("next-nothing");
-    let [data, muscle] = simulated(&folder, "trial", PROTOCOL, "bladder-elasticity=0.31 MPa", "7");
+    let [data, muscle] =
+        simulated(&folder, "trial", [PROTOCOL, "7"], &["--with", "bladder-elasticity=0.31 MPa"]);
     let with = ["next", &data, "--muscle", &muscle, "--with", "bladder-elasticity"];
     let found = json(&[&with[..], &["--json"]].concat());
     assert_eq!(found["verdict"], "adequate", "{found}");
@@ -179,16 +162,17 @@ fn where_nothing_is_open_the_largest_limit_is_named() {
         "{says}"
     );
     assert!(says.contains(" N). What lowers it: "), "{says}");
-    let words = text(&with);
-    for part in [
-        "adequate: ",
-        "nothing to separate: ",
-        "could not be looked for (needs a path with a column `time` on which the pressure rises",
-    ] {
-        assert!(words.contains(part), "{part:?} is not in {words}");
-    }
+    let words = words(&with);
+    has_parts(
+        &words,
+        &[
+            "adequate: ",
+            "nothing to separate: ",
+            "could not be looked for (needs a path with a column `time` on which the pressure rises",
+        ],
+    );
     // The same seed gives the same bytes.
-    let again = || bulge(&["next", &data, "--muscle", &muscle, "--seed", "5", "--json"]).stdout;
+    let again = || stdout(&["next", &data, "--muscle", &muscle, "--seed", "5", "--json"]);
     assert_eq!(again(), again());
 }
 
@@ -211,20 +195,21 @@ fn with_a_bump(csv: &str) -> String {
 #[test]
 fn the_unknown_is_measured_again_where_it_is_largest() {
     let folder = Folder::new("next-unknown");
-    let [data, muscle] = simulated(&folder, "trial", PROTOCOL, "coulomb-friction=14 N", "7");
+    let [data, muscle] = simulated(&folder, "trial", [PROTOCOL, "7"], &["--with", "coulomb-friction=14 N"]);
     let data = folder.write("bump.csv", &with_a_bump(&fs::read_to_string(data).unwrap()));
     let arguments = ["next", &data, "--muscle", &muscle, "--with", "coulomb-friction"];
     let found = json(&[&arguments[..], &["--json"]].concat());
     assert_eq!(found["verdict"], "unknown", "{found}");
     assert!(found["next_experiment"].is_null(), "{found}");
-    let words = text(&arguments);
-    for part in [
-        "unknown: ",
-        "it is largest near contraction ",
-        "next: repeat the test where the misfit is largest, around contraction ",
-    ] {
-        assert!(words.contains(part), "{part:?} is not in {words}");
-    }
+    let words = words(&arguments);
+    has_parts(
+        &words,
+        &[
+            "unknown: ",
+            "it is largest near contraction ",
+            "next: repeat the test where the misfit is largest, around contraction ",
+        ],
+    );
     let around = words.split("around contraction ").nth(1).unwrap().split(' ').next().unwrap();
     assert!((around.parse::<f64>().unwrap() - 8.0).abs() < 1.0, "{words}");
 }
@@ -236,7 +221,7 @@ fn too_few_rows_are_answered_with_what_to_measure() {
         folder.write("few.csv", "pressure [bar],contraction [%],force [N]\n2,5,300\n3,5,480\n3,9,400\n");
     let found = json(&["next", &data, "--muscle", MUSCLE, "--json"]);
     assert_eq!(found["verdict"], "cannot-tell", "{found}");
-    let words = text(&["next", &data, "--muscle", MUSCLE]);
+    let words = words(&["next", &data, "--muscle", MUSCLE]);
     assert!(words.contains("cannot tell: ") && words.contains("easure at least three pressures"), "{words}");
     assert_eq!(words.matches("can't tell").count(), 0, "{words}");
 }
@@ -264,19 +249,10 @@ fn bad_input_gets_one_clear_message() {
         (&["--seed", "x"], 2, &["--seed", "invalid"]),
         (&["--presure", "1 bar..2 bar"], 2, &["--presure"]),
     ] {
-        let mut arguments = vec!["next", &data, "--muscle", MUSCLE];
-        arguments.extend(more);
-        let (status, message) = failure(&arguments);
-        assert_eq!(status, expected, "{message}");
-        for part in parts {
-            assert!(message.contains(part), "{message:?} does not say {part:?}");
-        }
-        assert!(message.starts_with("error: ") && message.lines().count() < 12, "{message}");
+        refused(&[&["next", &data, "--muscle", MUSCLE], more].concat(), expected, parts);
     }
-    let (status, message) = failure(&["next", "--muscle", MUSCLE]);
-    assert!(status == 2 && message.contains("DATA"), "{message}");
-    let (status, message) = failure(&["next", "nowhere.csv", "--muscle", MUSCLE]);
-    assert!(status == 1 && message.contains("nowhere.csv"), "{message}");
+    refused(&["next", "--muscle", MUSCLE], 2, &["DATA"]);
+    refused(&["next", "nowhere.csv", "--muscle", MUSCLE], 1, &["nowhere.csv"]);
     // Nothing is left behind.
     assert_eq!(folder.names(), ["data.csv"]);
 }

@@ -1,11 +1,9 @@
 //! `plan` as seen by a user: detection limits by hand, twins by name, one message for bad input.
 
-use crate::support::{Folder, bulge, failure, json};
+use crate::support::{Folder, MUSCLE, PROTOCOL, has_parts, json, refused, stdout};
 use serde_json::Value;
 use std::fs;
 
-const MUSCLE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/data/braid.toml");
-const PROTOCOL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/data/protocol.toml");
 /// A static map with white noise of 2 N.
 const MAP: &str = "[[block]]\nshape = \"static\"\npressures = \"2,3,4 bar\"\ncontraction = \"1 %..20 %\"\nrows = 20\n\n[noise]\nforce = \"2 N\"\n";
 
@@ -61,19 +59,20 @@ fn a_test_like_the_one_that_was_made_is_written_as_a_protocol() {
     // At a higher pressure the muscle moved further.
     let block = "pressures = [\"5 bar\"]\ncontraction = \"1 %..20 %\"\nwave = \"sine\"\ncycles = 3\nperiod = \"50 s\"\nrows = 50\n";
     assert!(written.contains(block) && written.matches("[[block]]").count() == 5, "{written}");
-    let (_, says) = failure(&["plan", "--muscle", MUSCLE, "--like", data, "--out", data]);
-    assert!(says.contains("the data file, which is read"), "{says}");
+    refused(
+        &["plan", "--muscle", MUSCLE, "--like", data, "--out", data],
+        1,
+        &["the data file, which is read"],
+    );
     // Meaningless headings, and an unreadable row.
     let text =
         fs::read_to_string(data).unwrap().replace("force [N]", "channel 3").replace("\n30,1,", "\n30,1,x");
     let other = folder.write("other.csv", &text);
-    let (_, says) = failure(&["plan", "--muscle", MUSCLE, "--like", &other]);
-    assert!(says.contains("--columns"), "{says}");
+    refused(&["plan", "--muscle", MUSCLE, "--like", &other], 1, &["--columns"]);
     let arguments = ["plan", "--muscle", MUSCLE, "--like", &other, "--columns", "force=channel 3 [N]"];
-    let text = String::from_utf8(bulge(&arguments).stdout).unwrap();
+    let text = stdout(&arguments);
     assert!(text.contains("set apart 1 row") && text.contains("in 5 sweeps"), "{text}");
-    let (_, says) = failure(&["plan", "--muscle", MUSCLE]);
-    assert!(says.contains("--protocol"), "{says}");
+    refused(&["plan", "--muscle", MUSCLE], 2, &["--protocol"]);
 }
 
 #[test]
@@ -92,19 +91,20 @@ fn effects_that_look_alike_are_named() {
         "{pair}"
     );
     assert!(!pair["separate"].as_str().unwrap().is_empty());
-    let text = String::from_utf8(bulge(&arguments).stdout).unwrap();
+    let text = stdout(&arguments);
     let words = text.split_whitespace().collect::<Vec<_>>().join(" ");
-    for part in [
-        "20 mm braid, textbook, before measuring 600 rows in 4 sweeps: 2.00 to 5.00 bar, contraction 1.00 to 20.0 %",
-        "2.00 N white, 1.00 N correlated over 5.00 s (the protocol)",
-        "seen from (3.3 sigma)",
-        "bladder-elasticity modulus",
-        "cannot be seen (would change nothing here): low-load-slack",
-        "pressure-threshold = pressure-offset",
-        "bulge simulate ",
-    ] {
-        assert!(words.contains(part), "{part:?} is not in {text}");
-    }
+    has_parts(
+        &words,
+        &[
+            "20 mm braid, textbook, before measuring 600 rows in 4 sweeps: 2.00 to 5.00 bar, contraction 1.00 to 20.0 %",
+            "2.00 N white, 1.00 N correlated over 5.00 s (the protocol)",
+            "seen from (3.3 sigma)",
+            "bladder-elasticity modulus",
+            "cannot be seen (would change nothing here): low-load-slack",
+            "pressure-threshold = pressure-offset",
+            "bulge simulate ",
+        ],
+    );
 }
 
 #[test]
@@ -112,9 +112,7 @@ fn the_text_is_short_and_the_hint_can_be_followed() {
     let folder = Folder::new("plan-text");
     let quiet = folder.write("map.toml", MAP.split("[noise]").next().unwrap());
     for (muscle, protocol) in [(MUSCLE, PROTOCOL), (MUSCLE, quiet.as_str()), ("ppam-2-r16", &quiet)] {
-        let output = bulge(&["plan", "--muscle", muscle, "--protocol", protocol]);
-        let text = String::from_utf8(output.stdout).unwrap();
-        assert!(output.status.success() && output.stderr.is_empty());
+        let text = stdout(&["plan", "--muscle", muscle, "--protocol", protocol]);
         assert!(
             text.lines().count() <= 45 && !text.contains("NaN"),
             "{} lines: {text}",
@@ -127,8 +125,7 @@ fn the_text_is_short_and_the_hint_can_be_followed() {
         let out = folder.path("trial");
         let words = hint.split_whitespace().map(|word| if word == "trial" { out.as_str() } else { word });
         let call: Vec<&str> = std::iter::once("simulate").chain(words).collect();
-        let simulated = bulge(&call);
-        assert!(simulated.status.success(), "{hint}: {}", String::from_utf8_lossy(&simulated.stderr));
+        stdout(&call);
     }
 }
 
@@ -147,13 +144,7 @@ fn bad_input_gets_one_clear_message() {
         (&["--protocol", PROTOCOL], 2, &["--muscle"]),
         (&["--muscle", MUSCLE, "--protocol", PROTOCOL, "more"], 2, &["more"]),
     ] {
-        let call = [&["plan"], arguments].concat();
-        let (status, message) = failure(&call);
-        assert_eq!(status, expected, "{message}");
-        for part in parts {
-            assert!(message.contains(part), "{message:?} does not say {part:?}");
-        }
-        assert!(message.starts_with("error: ") && message.lines().count() < 12, "{message}");
+        refused(&[&["plan"], arguments].concat(), expected, parts);
     }
     // Nothing is left behind.
     assert_eq!(folder.names(), ["few.toml", "slip.toml"]);

@@ -1,7 +1,7 @@
 //! The documents of `--json` against `docs/schemas`: required fields are there, and a missing one is noticed.
 
 use crate::schema::{self, holds};
-use crate::support::{Folder, json};
+use crate::support::{Folder, json, line};
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -38,17 +38,9 @@ fn documents(folder: &Folder) -> Vec<Value> {
         json(&["predict", &rows, "--muscle", &learnt, "--json"]),
         json(&["plan", "--muscle", &braid, "--protocol", &protocol, "--json"]),
         on_braid("next", &rows, &["--with", "end-taper,bladder-elasticity"]),
-        json(&[
-            "simulate",
-            &braid,
-            "--protocol",
-            &protocol,
-            "--with",
-            "coulomb-friction",
-            "--out",
-            &trial,
-            "--json",
-        ]),
+        json(&line(&format!(
+            "simulate {braid} --protocol {protocol} --with coulomb-friction --out {trial} --json"
+        ))),
     ];
     for call in [
         &["shape", "ppam-2-r16", "--pressure", "2 bar", "--contraction", "20 %"][..],

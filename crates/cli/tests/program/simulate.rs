@@ -1,12 +1,10 @@
 //! `simulate` as seen by a user: files that `compare` and `fit` can read, the same bytes for the same seed,
 //! one message for bad input.
 
-use crate::support::{Folder, bulge, failure, json};
+use crate::support::{Folder, MUSCLE, PROTOCOL, has_parts, json, line, refused, stdout};
 use serde_json::Value;
 use std::fs;
 
-const MUSCLE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/data/braid.toml");
-const PROTOCOL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/data/protocol.toml");
 const HIDDEN: &str = "end-taper,bladder-elasticity=0.31 MPa,coulomb-friction=14 N";
 
 fn simulated(folder: &Folder, name: &str, more: &[&str]) -> (Value, [String; 3]) {
@@ -33,15 +31,9 @@ fn what_is_hidden_is_found_again() {
     assert!(muscle.contains("noise = \"2.236 N\"") && !muscle.contains("effects"), "{muscle}");
     assert_eq!(csv.lines().count(), 2 + 600);
     let (data, stated) = (folder.path("trial/data.csv"), folder.path("trial/muscle.toml"));
-    let found = json(&[
-        "compare",
-        &data,
-        "--muscle",
-        &stated,
-        "--with",
-        "end-taper,bladder-elasticity,coulomb-friction",
-        "--json",
-    ]);
+    let found = json(&line(&format!(
+        "compare {data} --muscle {stated} --with end-taper,bladder-elasticity,coulomb-friction --json"
+    )));
     let last = &found["ladder"][3];
     // sqrt(2^2 + 1^2) N, and the noise of the pressure.
     let error = last["rmse_n"].as_f64().unwrap();
@@ -50,17 +42,9 @@ fn what_is_hidden_is_found_again() {
         assert!((number["value"].as_f64().unwrap() / expected - 1.0).abs() < 0.03, "{number}");
     }
     let model = folder.path("model.toml");
-    let fitted = json(&[
-        "fit",
-        &data,
-        "--muscle",
-        &stated,
-        "--with",
-        "end-taper,bladder-elasticity,coulomb-friction",
-        "--out",
-        &model,
-        "--json",
-    ]);
+    let fitted = json(&line(&format!(
+        "fit {data} --muscle {stated} --with end-taper,bladder-elasticity,coulomb-friction --out {model} --json"
+    )));
     assert!(fitted["rmse_n"].as_f64().unwrap() < 2.6);
     // The fitted muscle can be simulated in turn, and its effects are then known.
     let again = json(&["simulate", &model, "--protocol", PROTOCOL, "--out", &folder.path("again"), "--json"]);
@@ -119,12 +103,11 @@ fn specimens_differ_by_their_spread() {
     let folder = Folder::new("simulate-specimens");
     let text = fs::read_to_string(PROTOCOL).unwrap().replace("cycles = 3", "cycles = 1\nspecimens = 40");
     let protocol = folder.write("many.toml", &text);
-    let call = |with: &str, protocol: &str| {
-        ["simulate", MUSCLE, "--protocol", protocol, "--with", with, "--out", &folder.path("s"), "--json"]
-            .map(str::to_owned)
+    let out = folder.path("s");
+    let call = |protocol: &str| {
+        format!("simulate {MUSCLE} --protocol {protocol} --with 'specimen-spread=2 %' --out {out} --json")
     };
-    let run = call("specimen-spread=2 %", &protocol);
-    let truth = json(&run.iter().map(String::as_str).collect::<Vec<_>>());
+    let truth = json(&line(&call(&protocol)));
     let drawn: Vec<f64> = truth["effects"][0]["numbers"]
         .as_array()
         .unwrap()
@@ -138,39 +121,31 @@ fn specimens_differ_by_their_spread() {
     );
     let csv = fs::read_to_string(folder.0.join("s/data.csv")).unwrap();
     assert!(csv.contains("time [s],sweep,specimen,pressure"), "{csv:.200}");
-    let one = call("specimen-spread=2 %", PROTOCOL);
-    let (status, message) = failure(&one.iter().map(String::as_str).collect::<Vec<_>>());
-    assert!(status == 1 && message.contains("needs two specimens or more"), "{message}");
+    refused(&line(&call(PROTOCOL)), 1, &["needs two specimens or more"]);
 }
 
 #[test]
 fn people_read_what_was_done() {
     let folder = Folder::new("simulate-text");
     let out = folder.path("trial");
-    let output = bulge(&["simulate", MUSCLE, "--protocol", PROTOCOL, "--with", HIDDEN, "--out", &out]);
-    let text = String::from_utf8(output.stdout).unwrap();
-    assert!(output.status.success());
-    for part in [
-        "600 rows in 4 sweeps",
-        "hidden: coulomb-friction force 14",
-        "at 2.000 bar",
-        "was done (1 sweep)",
-        "truth.json",
-        "bulge compare",
-    ] {
-        assert!(text.contains(part), "{text} does not say {part}");
-    }
-    let help = String::from_utf8(bulge(&["simulate", "--help"]).stdout).unwrap();
-    assert!(
-        help.contains("Example:")
-            && help.contains("[[block]]")
-            && help.contains("--with \"coulomb-friction=14 N"),
-        "{help}"
+    let text = stdout(&["simulate", MUSCLE, "--protocol", PROTOCOL, "--with", HIDDEN, "--out", &out]);
+    has_parts(
+        &text,
+        &[
+            "600 rows in 4 sweeps",
+            "hidden: coulomb-friction force 14",
+            "at 2.000 bar",
+            "was done (1 sweep)",
+            "truth.json",
+            "bulge compare",
+        ],
     );
+    let help = stdout(&["simulate", "--help"]);
+    has_parts(&help, &["Example:", "[[block]]", "--with \"coulomb-friction=14 N"]);
     // The protocol in the help is valid.
     let shown = help.split("every key:\n").nth(1).unwrap();
     let protocol = folder.write("help.toml", &shown.replace("\"drawn\"", "\"none\""));
-    assert!(bulge(&["simulate", MUSCLE, "--protocol", &protocol, "--out", &out]).status.success());
+    stdout(&["simulate", MUSCLE, "--protocol", &protocol, "--out", &out]);
 }
 
 #[test]
@@ -213,18 +188,18 @@ fn bad_input_is_answered_with_one_message() {
         (MUSCLE, PROTOCOL, "coulomb-friction=1 N,coulomb-friction=2 N", ["twice", "once is enough"]),
         (MUSCLE, PROTOCOL, "lobes=300 mm", ["`lobes`", "pleated"]),
     ] {
-        let (status, message) =
-            failure(&["simulate", muscle, "--protocol", protocol, "--with", with, "--out", &out]);
-        assert_eq!((status, message.matches("error: ").count()), (1, 1), "{message}");
-        for part in parts {
-            assert!(message.contains(part), "{message:?} does not say {part:?}");
-        }
+        let call = ["simulate", muscle, "--protocol", protocol, "--with", with, "--out", &out];
+        let message = refused(&call, 1, &parts);
+        assert_eq!(message.matches("error: ").count(), 1, "{message}");
         assert!(!folder.names().contains(&"out".to_owned()), "{with}: a failed call wrote something");
     }
     // No file of the user is overwritten.
     let muscle = folder.write("muscle.toml", &fs::read_to_string(MUSCLE).unwrap());
     let own = folder.0.display().to_string();
-    let (status, message) = failure(&["simulate", &muscle, "--protocol", PROTOCOL, "--out", &own]);
-    assert!(status == 1 && message.contains("muscle.toml would be written over"), "{message}");
+    refused(
+        &["simulate", &muscle, "--protocol", PROTOCOL, "--out", &own],
+        1,
+        &["muscle.toml would be written over"],
+    );
     assert!(!folder.names().contains(&"data.csv".to_owned()));
 }

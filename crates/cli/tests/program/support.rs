@@ -6,6 +6,10 @@ use std::process::{Command, Output};
 use serde_json::Value;
 use tempfile::TempDir;
 
+/// A muscle file and a protocol to simulate it with.
+pub(crate) const MUSCLE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/data/braid.toml");
+pub(crate) const PROTOCOL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/data/protocol.toml");
+
 /// A folder of its own for each test, removed at the end.
 pub(crate) struct Folder(
     pub(crate) PathBuf,
@@ -36,15 +40,28 @@ impl Folder {
     }
 }
 
+/// The words of a call as they are typed: blanks part them, except between single quotes.
+pub(crate) fn line(typed: &str) -> Vec<&str> {
+    let parts = typed.split('\'').enumerate();
+    parts
+        .flat_map(|(place, part)| if place % 2 == 1 { vec![part] } else { part.split_whitespace().collect() })
+        .collect()
+}
+
 pub(crate) fn bulge(arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_bulge")).args(arguments).output().unwrap()
 }
 
-pub(crate) fn json(arguments: &[&str]) -> Value {
+/// What a call prints that succeeds without any message.
+pub(crate) fn stdout(arguments: &[&str]) -> String {
     let output = bulge(arguments);
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    assert!(output.stderr.is_empty());
-    serde_json::from_slice(&output.stdout).unwrap()
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success() && message.is_empty(), "{arguments:?}: {message}");
+    String::from_utf8(output.stdout).unwrap()
+}
+
+pub(crate) fn json(arguments: &[&str]) -> Value {
+    serde_json::from_str(&stdout(arguments)).unwrap()
 }
 
 /// Exit status and message of a failing call, which prints nothing on standard output.
@@ -52,4 +69,32 @@ pub(crate) fn failure(arguments: &[&str]) -> (i32, String) {
     let output = bulge(arguments);
     assert!(output.stdout.is_empty(), "{arguments:?} printed {}", String::from_utf8_lossy(&output.stdout));
     (output.status.code().unwrap(), String::from_utf8(output.stderr).unwrap())
+}
+
+/// The message of a call that fails with this status; it is short and has these parts.
+pub(crate) fn refused(arguments: &[&str], expected: i32, parts: &[&str]) -> String {
+    let (status, message) = failure(arguments);
+    assert_eq!(status, expected, "{arguments:?}: {message}");
+    assert!(message.starts_with("error: ") && message.lines().count() < 12, "{arguments:?}: {message}");
+    has_parts(&message, parts);
+    message
+}
+
+pub(crate) fn has_parts(text: &str, parts: &[&str]) {
+    for part in parts {
+        assert!(text.contains(part), "{part:?} is not in {text}");
+    }
+}
+
+/// Simulated measurements in a folder of this name: data file and muscle file.
+pub(crate) fn simulated(
+    folder: &Folder,
+    name: &str,
+    [protocol, seed]: [&str; 2],
+    more: &[&str],
+) -> [String; 2] {
+    let out = folder.path(name);
+    let call = ["simulate", MUSCLE, "--protocol", protocol, "--out", &out, "--seed", seed];
+    stdout(&[&call[..], more].concat());
+    ["data.csv", "muscle.toml"].map(|file| folder.path(&format!("{name}/{file}")))
 }

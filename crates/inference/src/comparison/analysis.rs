@@ -28,11 +28,13 @@ use crate::fit::problem::free;
 use crate::fit::search::{Task, fit, fit_and_force, some_of_long};
 use crate::fit::states::is_of_rows;
 use crate::fit::weights::Noise;
+use crate::vector::range;
 
 /// Rows for held-out errors and contributions.
 pub(crate) const FEWER_ROWS: usize = 4000;
 
 /// One rung with its predictions.
+#[derive(Clone)]
 pub(crate) struct Climbed {
     pub(crate) prepared: Prepared,
     pub(crate) theta: Vec<f64>,
@@ -41,6 +43,13 @@ pub(crate) struct Climbed {
     pub(crate) force: Vec<f64>,
     /// Why its parameters couldn't be fitted.
     pub(crate) failed: Option<ModelError>,
+}
+
+/// The base, as the first rung of a ladder, and the noise that it shows.
+#[derive(Clone)]
+pub(crate) struct First {
+    pub(crate) climbed: Climbed,
+    pub(crate) floor: Option<NoiseFloor>,
 }
 
 /// A comparison in progress.
@@ -70,11 +79,6 @@ pub(crate) struct Analysis<'a> {
     pub(crate) near: Option<(&'a Model, &'a [f64])>,
 }
 
-/// Noise of the force before it is estimated: a hundredth of full scale.
-fn unknown_noise(muscle: &Muscle, full_scale: f64) -> Noise {
-    Noise::of(muscle, (0.01 * full_scale).max(f64::MIN_POSITIVE))
-}
-
 impl<'a> Analysis<'a> {
     pub(crate) fn new(
         data: &'a Data,
@@ -98,7 +102,8 @@ impl<'a> Analysis<'a> {
         let full_scale = full_scale(data.force(), used.rows());
         let levels = Levels::of(&record, &used.mask);
         let folds = Folds::of(&record, &levels, &used.mask);
-        let noise = unknown_noise(muscle, full_scale);
+        // Before it is estimated: a hundredth of full scale.
+        let noise = Noise::of(muscle, (0.01 * full_scale).max(f64::MIN_POSITIVE));
         let root = match &options.law {
             Some((law, values, free)) => Model::from_law(muscle, law, values, *free),
             None => Model::new(muscle),
@@ -136,25 +141,22 @@ impl<'a> Analysis<'a> {
         Ok(model)
     }
 
+    /// The base model with the first `count` requested effects, without nuisance parameters.
+    fn with_first(&self, count: usize) -> Result<Model, ModelError> {
+        let effects = &self.options.effects[..count];
+        effects.iter().try_fold(self.base(count)?, |model, effect| model.with(effect, None))
+    }
+
     /// The base model with all requested effects, without nuisance parameters.
-    pub(crate) fn base_with_effects(&self) -> Result<Model, ModelError> {
-        let mut model = self.base(self.options.effects.len())?;
-        for effect in &self.options.effects {
-            model = model.with(effect, None)?;
-        }
-        Ok(model)
+    pub(crate) fn base_with_effects(&self) -> Result<Model, InferenceError> {
+        self.with_first(self.options.effects.len()).map_err(|error| self.about(error))
     }
 
     /// The model with the first `count` effects and its nuisance parameters.
     pub(crate) fn model(&self, count: usize) -> Result<Prepared, InferenceError> {
-        let with_effects = || {
-            let mut model = self.base(count)?;
-            for effect in &self.options.effects[..count] {
-                model = model.with(effect, None)?;
-            }
-            with_nuisances(&model, &self.options.catalogue)
-        };
-        with_effects().map_err(|error| self.about(error))
+        let with_effects = self.with_first(count);
+        let prepared = with_effects.and_then(|model| with_nuisances(&model, &self.options.catalogue));
+        prepared.map_err(|error| self.about(error))
     }
 
     /// The rung with the first `count` effects, fitted if there are free parameters.
@@ -263,21 +265,8 @@ impl<'a> Analysis<'a> {
         InferenceError::Model { what, source: Box::new(error) }
     }
 
-    /// The same data and muscle with other effects. Questions are not asked again, and solved equilibria are
-    /// shared.
-    pub(crate) fn with_options<'b>(
-        &'b self,
-        options: &'b Options,
-        near: (&'b Model, &'b [f64]),
-    ) -> Result<Analysis<'b>, InferenceError> {
-        for effect in &options.effects {
-            check_needs(effect, &self.record)?;
-        }
-        let noise = unknown_noise(self.muscle, self.full_scale);
-        Ok(Analysis { noise, near: Some(near), ..self.sharing(Cow::Borrowed(options)) })
-    }
-
-    /// The same with other effects and further restrictions; noise, weights and rows stay.
+    /// The same with other effects and further restrictions; noise, weights and rows stay. Data, record and
+    /// solved equilibria are shared.
     pub(crate) fn with_effects<'b>(
         &'b self,
         effects: &[Arc<dyn Effect>],
@@ -288,16 +277,11 @@ impl<'a> Analysis<'a> {
         }
         let mut options = Options { effects: effects.to_vec(), ..Options::clone(&self.options) };
         options.restrictions.extend_from_slice(restrictions);
-        let root = self.root.clone().restricted(&options.restrictions);
-        Ok(Analysis { root, ..self.sharing(Cow::Owned(options)) })
-    }
-
-    /// The same with other options; data, record and solved equilibria are shared.
-    fn sharing<'b>(&'b self, options: Cow<'b, Options>) -> Analysis<'b> {
-        Analysis {
+        Ok(Analysis {
+            root: self.root.clone().restricted(&options.restrictions),
             data: Cow::Borrowed(&self.data),
             muscle: self.muscle,
-            options,
+            options: Cow::Owned(options),
             record: Arc::clone(&self.record),
             used: self.used.clone(),
             levels: self.levels.clone(),
@@ -308,9 +292,8 @@ impl<'a> Analysis<'a> {
             pure_error: self.pure_error,
             doubtful: self.doubtful.clone(),
             slack: self.slack.clone(),
-            root: self.root.clone(),
             near: self.near,
-        }
+        })
     }
 
     /// Checks once for impossible units, signs and scales, and leaves out rows in which the muscle as stated
@@ -334,9 +317,16 @@ impl<'a> Analysis<'a> {
         self.slack = Some(rows);
     }
 
+    /// Climbs the base and measures the noise with it, after [`Self::ask`].
+    pub(crate) fn begin(&mut self) -> Result<First, InferenceError> {
+        self.ask()?;
+        let climbed = self.climb(0, None)?;
+        Ok(First { floor: self.measure_noise(&climbed), climbed })
+    }
+
     /// Estimates the noise floor and sets the noise of the force. From here on, readings that the residuals
     /// show to be disturbed don't count, and rows of uncertain direction get larger standard deviations.
-    pub(crate) fn measure_noise(&mut self, first: &Climbed) -> Option<NoiseFloor> {
+    fn measure_noise(&mut self, first: &Climbed) -> Option<NoiseFloor> {
         let floor = self.noise_floor(first);
         let stated = self.muscle.instruments().force.map_or(0.0, |force| force.noise());
         let sd = if stated > 0.0 { stated } else { floor.as_ref().map_or(0.0, |floor| floor.sd_n) };
@@ -450,9 +440,7 @@ impl<'a> Analysis<'a> {
     }
 
     pub(crate) fn summary(&self) -> DataSummary {
-        let range = |value: &dyn Fn(usize) -> f64| {
-            self.rows().map(value).fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], v| [l.min(v), h.max(v)])
-        };
+        let range = |value: &dyn Fn(usize) -> f64| range(self.rows().map(value));
         let moments = self.record.moments();
         DataSummary {
             rows: self.record.len(),

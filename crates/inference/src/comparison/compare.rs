@@ -6,7 +6,7 @@ use bulge_model::{Model, ModelError, Restriction};
 use bulge_muscles::{Muscle, Quantity};
 use std::sync::Arc;
 
-use crate::comparison::analysis::{Analysis, Climbed};
+use crate::comparison::analysis::{Analysis, Climbed, First};
 use crate::comparison::document::{Comparison, DataSummary, NoiseFloor, Rung};
 use crate::comparison::options::Options;
 use crate::comparison::recent::Recent;
@@ -25,7 +25,7 @@ use crate::fit::held::{HeldNumber, held};
 /// or the data.
 pub fn compare(data: &Data, muscle: &Muscle, options: &Options) -> Result<Comparison, InferenceError> {
     // On a thread of the pool, so that small evaluations aren't handed over to it one by one.
-    rayon::scope(|_| Comparing::of(Analysis::new(data, muscle, options)?)?.asked())
+    rayon::scope(|_| Comparing::of(Analysis::new(data, muscle, options)?)?.asked(Comparing::compared))
 }
 
 /// The comparison with its rows and the force of each rung, as a report draws them.
@@ -40,14 +40,17 @@ pub fn compare_with_rows(
     rayon::scope(|_| Comparing::of(Analysis::new(data, muscle, options)?)?.asked_with_rows())
 }
 
-/// The comparison for a model with the same effects whose parameters are approximately known; it shares the
-/// record of another analysis.
-pub(crate) fn compare_near(
-    other: &Analysis<'_>,
-    options: &Options,
-    near: (&Model, &[f64]),
+/// The comparison that goes on from the first rung of an analysis, with effects whose parameters are
+/// approximately known.
+pub(crate) fn compare_after<'b>(
+    first: &First,
+    analysis: &'b Analysis<'_>,
+    effects: &[Arc<dyn Effect>],
+    near: (&'b Model, &'b [f64]),
 ) -> Result<(Comparison, Rows), InferenceError> {
-    Comparing::of(other.with_options(options, near)?)?.asked_with_rows()
+    let mut analysis = analysis.with_effects(effects, &[])?;
+    analysis.near = Some(near);
+    Comparing::after(first.clone(), analysis)?.asked_with_rows()
 }
 
 /// A comparison that is repeated with other effects and other restrictions. The base and each rung of the
@@ -101,6 +104,14 @@ fn last_that_says_something(analysis: &Analysis<'_>, ladder: &[Arc<Step>]) -> us
     ladder.iter().rposition(|step| step.says_something(analysis)).unwrap_or(0)
 }
 
+/// The rows with the forces of the base and the last rung, or of all rungs.
+fn rungs(analysis: &Analysis<'_>, ladder: &[Arc<Step>], of_all: bool) -> Result<Rows, InferenceError> {
+    let last = last_that_says_something(analysis, ladder);
+    let wanted = (0..=last).filter(|place| of_all || [0, last].contains(place));
+    let rungs: Vec<&Climbed> = wanted.map(|place| &ladder[place].climbed).collect();
+    Rows::of(analysis, &rungs, last)
+}
+
 /// Findings of the data check, for the muscle's length.
 pub(crate) fn quality(data: &Data, muscle: &Muscle) -> Vec<Finding> {
     let known = QualityOptions { l0_m: Some(muscle.length().si()), ..QualityOptions::default() };
@@ -117,12 +128,14 @@ impl<'a> Comparing<'a> {
     }
 
     fn of(mut analysis: Analysis<'a>) -> Result<Self, InferenceError> {
-        analysis.ask()?;
-        let first = analysis.climb(0, None)?;
-        let floor = analysis.measure_noise(&first);
-        analysis.bound_tails(&first);
+        Self::after(analysis.begin()?, analysis)
+    }
+
+    /// Goes on from the first rung.
+    fn after(First { climbed, floor }: First, mut analysis: Analysis<'a>) -> Result<Self, InferenceError> {
+        analysis.bound_tails(&climbed);
         // The weights follow from the noise: repeat the first rung if it fits anything.
-        let climbed = if first.fit.is_some() { analysis.climb(0, Some(&first))? } else { first };
+        let climbed = if climbed.fit.is_some() { analysis.climb(0, Some(&climbed))? } else { climbed };
         let base = Arc::new(Step { rung: analysis.rung(0, &climbed), climbed });
         let quality = quality(&analysis.data, analysis.muscle);
         let most = (MOST_FORCES / analysis.record.len()).clamp(FEWEST_KEPT, MOST_KEPT);
@@ -140,30 +153,47 @@ impl<'a> Comparing<'a> {
         effects: &[Arc<dyn Effect>],
         restrictions: &[Restriction],
     ) -> Result<Comparison, InferenceError> {
-        if let Some(options) = self.of_other_base(effects, restrictions) {
-            return rayon::scope(|_| self.begun_with(&options)?.asked());
+        let answer = |own: &Comparing<'_>, analysis: &Analysis<'_>, ladder: &[Arc<Step>]| {
+            own.compared(analysis, ladder)
+        };
+        if self.is_of_base(restrictions) {
+            return self.asking(effects, restrictions, answer);
         }
-        let found = self.answers.of(&key(effects, restrictions), || {
-            let analysis = self.analysis.with_effects(effects, restrictions)?;
-            rayon::scope(|_| self.compared(&analysis, restrictions, true))
-        })?;
+        let key = key(effects, restrictions);
+        let found = self.answers.of(&key, || self.asking(effects, restrictions, answer))?;
         Ok(Comparison::clone(&found))
     }
 
-    /// The options of a comparison with another base, if a restriction concerns a parameter of the base, such
-    /// as a rig error that is fitted along.
-    fn of_other_base(&self, effects: &[Arc<dyn Effect>], restrictions: &[Restriction]) -> Option<Options> {
+    /// Whether a restriction concerns a parameter of the base, such as a rig error that is fitted along.
+    fn is_of_base(&self, restrictions: &[Restriction]) -> bool {
         let base = &self.base.climbed.prepared.model;
-        restrictions.iter().any(|restriction| base.mentions(restriction)).then(|| {
-            let mut options = Options { effects: effects.to_vec(), ..Options::clone(&self.analysis.options) };
-            options.restrictions.extend_from_slice(restrictions);
-            options
+        restrictions.iter().any(|restriction| base.mentions(restriction))
+    }
+
+    /// An answer from the ladder with these effects and restrictions. The comparison starts anew if a
+    /// restriction concerns the base.
+    fn asking<T: Send>(
+        &self,
+        effects: &[Arc<dyn Effect>],
+        restrictions: &[Restriction],
+        answer: impl FnOnce(&Comparing<'_>, &Analysis<'_>, &[Arc<Step>]) -> Result<T, InferenceError> + Send,
+    ) -> Result<T, InferenceError> {
+        rayon::scope(|_| {
+            let analysis = self.analysis.with_effects(effects, restrictions)?;
+            if self.is_of_base(restrictions) {
+                let other = Analysis::new(&analysis.data, analysis.muscle, &analysis.options)?;
+                return Comparing::of(other)?.asked(answer);
+            }
+            answer(self, &analysis, &self.ladder(&analysis, restrictions)?)
         })
     }
 
-    /// The comparison of the same data and muscle, started anew with other options.
-    fn begun_with<'b>(&'b self, options: &'b Options) -> Result<Comparing<'b>, InferenceError> {
-        Comparing::of(Analysis::new(&self.analysis.data, self.analysis.muscle, options)?)
+    /// An answer from the ladder with the effects of the options.
+    fn asked<T>(
+        &self,
+        answer: impl FnOnce(&Self, &Analysis<'_>, &[Arc<Step>]) -> Result<T, InferenceError>,
+    ) -> Result<T, InferenceError> {
+        answer(self, &self.analysis, &self.ladder(&self.analysis, &[])?)
     }
 
     /// Why an effect can't be added to this muscle with these data; none if it can.
@@ -184,7 +214,7 @@ impl<'a> Comparing<'a> {
         effects: &[Arc<dyn Effect>],
         restrictions: &[Restriction],
     ) -> Result<Rows, InferenceError> {
-        self.rows_with(effects, restrictions, false)
+        self.asking(effects, restrictions, |_, analysis, ladder| rungs(analysis, ladder, false))
     }
 
     /// The rows with the force of each rung, for a report.
@@ -196,24 +226,7 @@ impl<'a> Comparing<'a> {
         effects: &[Arc<dyn Effect>],
         restrictions: &[Restriction],
     ) -> Result<Rows, InferenceError> {
-        self.rows_with(effects, restrictions, true)
-    }
-
-    fn rows_with(
-        &self,
-        effects: &[Arc<dyn Effect>],
-        restrictions: &[Restriction],
-        of_all_rungs: bool,
-    ) -> Result<Rows, InferenceError> {
-        rayon::scope(|_| match self.of_other_base(effects, restrictions) {
-            Some(options) => {
-                let other = self.begun_with(&options)?;
-                other.rungs(&other.analysis, &[], of_all_rungs)
-            }
-            None => {
-                self.rungs(&self.analysis.with_effects(effects, restrictions)?, restrictions, of_all_rungs)
-            }
-        })
+        self.asking(effects, restrictions, |_, analysis, ladder| rungs(analysis, ladder, true))
     }
 
     /// The last rung alone; equals the result of [`fit_effects`] with these effects and restrictions.
@@ -225,22 +238,10 @@ impl<'a> Comparing<'a> {
         effects: &[Arc<dyn Effect>],
         restrictions: &[Restriction],
     ) -> Result<Fitting, InferenceError> {
-        rayon::scope(|_| match self.of_other_base(effects, restrictions) {
-            Some(options) => {
-                let other = self.begun_with(&options)?;
-                other.fitted(&other.analysis, &[], false)
-            }
-            None => self.fitted(&self.analysis.with_effects(effects, restrictions)?, restrictions, true),
-        })
+        self.asking(effects, restrictions, |own, analysis, ladder| own.fitted(analysis, ladder))
     }
 
-    fn fitted(
-        &self,
-        analysis: &Analysis<'_>,
-        restrictions: &[Restriction],
-        again: bool,
-    ) -> Result<Fitting, InferenceError> {
-        let ladder = self.ladder(analysis, restrictions, again)?;
+    fn fitted(&self, analysis: &Analysis<'_>, ladder: &[Arc<Step>]) -> Result<Fitting, InferenceError> {
         let (base, last) = (&self.base, &ladder[ladder.len() - 1]);
         let Climbed { prepared, theta, fit, force, failed } = &last.climbed;
         let mut fit = fit.clone().unwrap_or_else(|| nothing_fitted(analysis, theta.clone(), force));
@@ -259,78 +260,32 @@ impl<'a> Comparing<'a> {
         })
     }
 
-    /// The rows with the forces of the base and the last rung, or of all rungs.
-    fn rungs(
-        &self,
-        analysis: &Analysis<'_>,
-        restrictions: &[Restriction],
-        of_all: bool,
-    ) -> Result<Rows, InferenceError> {
-        let ladder = self.ladder(analysis, restrictions, true)?;
-        let last = last_that_says_something(analysis, &ladder);
-        let wanted = (0..=last).filter(|place| of_all || [0, last].contains(place));
-        let rungs: Vec<&Climbed> = wanted.map(|place| &ladder[place].climbed).collect();
-        Rows::of(analysis, &rungs, last)
+    fn asked_with_rows(&self) -> Result<(Comparison, Rows), InferenceError> {
+        self.asked(|comparing, analysis, ladder| {
+            Ok((comparing.compared(analysis, ladder)?, rungs(analysis, ladder, true)?))
+        })
     }
 
-    /// The comparison with the effects of the options, when nothing else will be asked.
-    fn asked(self) -> Result<Comparison, InferenceError> {
-        self.compared(&self.analysis, &[], false)
-    }
-
-    fn asked_with_rows(self) -> Result<(Comparison, Rows), InferenceError> {
-        Ok((self.compared(&self.analysis, &[], true)?, self.rungs(&self.analysis, &[], true)?))
-    }
-
-    /// The rungs from the base to the last effect; they are kept if more questions will follow.
+    /// The rungs from the base to the last effect. They are kept for further questions.
     fn ladder(
         &self,
         analysis: &Analysis<'_>,
         restrictions: &[Restriction],
-        again: bool,
     ) -> Result<Vec<Arc<Step>>, InferenceError> {
         let mut ladder = vec![Arc::clone(&self.base)];
         let key = key(&analysis.options.effects, restrictions);
         for place in 0..key.len() {
-            if place > 0
-                && let Some(below) = Arc::get_mut(&mut ladder[place])
-            {
-                // The forces of many rows are large, and the ladder has the results of the rungs between.
-                below.climbed.force = Vec::new();
-            }
-            let step = self.step(&key[..=place], again, || {
+            let step = self.steps.of(&key[..=place], || {
                 let climbed = analysis.climb(place + 1, Some(&ladder[place].climbed))?;
-                Ok(Step { rung: analysis.rung(place + 1, &climbed), climbed })
+                Ok::<_, InferenceError>(Step { rung: analysis.rung(place + 1, &climbed), climbed })
             })?;
             ladder.push(step);
         }
         Ok(ladder)
     }
 
-    /// The rung that is kept under a key, or a new one, which is kept if more questions will follow.
-    fn step(
-        &self,
-        key: &[String],
-        again: bool,
-        climb: impl FnOnce() -> Result<Step, InferenceError>,
-    ) -> Result<Arc<Step>, InferenceError> {
-        if again { self.steps.of(key, climb) } else { Ok(Arc::new(climb()?)) }
-    }
-
-    fn compared(
-        &self,
-        analysis: &Analysis<'_>,
-        restrictions: &[Restriction],
-        again: bool,
-    ) -> Result<Comparison, InferenceError> {
-        let mut ladder = self.ladder(analysis, restrictions, again)?;
-        let place = last_that_says_something(analysis, &ladder);
-        if let Some(Step { climbed, .. }) = Arc::get_mut(&mut ladder[place])
-            && climbed.force.is_empty()
-        {
-            climbed.force = analysis.predicted(&climbed.prepared, &climbed.theta)?.prediction.force;
-        }
-        let last = &ladder[place].climbed;
+    fn compared(&self, analysis: &Analysis<'_>, ladder: &[Arc<Step>]) -> Result<Comparison, InferenceError> {
+        let last = &ladder[last_that_says_something(analysis, ladder)].climbed;
         // The saturated surface follows the residuals of a better model more closely: less of them is taken
         // for noise then.
         let again = analysis.noise_floor(last);
@@ -341,7 +296,7 @@ impl<'a> Comparing<'a> {
         let forces = [&ladder[0].climbed.force, &last.force];
         let rungs: Vec<Rung> = ladder.iter().map(|step| step.rung.clone()).collect();
         let mut warnings = analysis.warnings(&rungs);
-        for step in &ladder {
+        for step in ladder {
             let name = step.rung.added.as_deref().unwrap_or("base");
             warnings.extend(step.climbed.failed.as_ref().map(|error| not_fitted(name, error)));
         }
@@ -426,33 +381,19 @@ pub struct Fitting {
 /// As [`compare`].
 pub fn fit_effects(data: &Data, muscle: &Muscle, options: &Options) -> Result<Fitting, InferenceError> {
     let options = Options { held_out: false, ..options.clone() };
-    rayon::scope(|_| {
-        let comparing = Comparing::of(Analysis::new(data, muscle, &options)?)?;
-        comparing.fitted(&comparing.analysis, &[], false)
-    })
+    rayon::scope(|_| Comparing::of(Analysis::new(data, muscle, &options)?)?.asked(Comparing::fitted))
 }
 
 /// The fit of a model without free parameters.
 fn nothing_fitted(analysis: &Analysis<'_>, theta: Vec<f64>, force: &Vec<f64>) -> Fit {
     let error = residuals::summary(analysis, force);
+    let reason = "there was nothing to fit".to_owned();
     Fit {
-        parameters: Vec::new(),
         theta,
         rmse_n: error.rmse,
-        cost: 0.0,
         sd_n: analysis.noise.force_n,
         effective_rows: analysis.rows().count() as f64,
-        correlations: Vec::new(),
-        convergence: Convergence {
-            converged: true,
-            reason: "there was nothing to fit".to_owned(),
-            gradient_cosine: 0.0,
-            iterations: 0,
-            starts: 0,
-            agreeing: 0,
-            minima: 0,
-            rank: 0,
-        },
-        warnings: Vec::new(),
+        convergence: Convergence { converged: true, reason, ..Convergence::default() },
+        ..Fit::default()
     }
 }

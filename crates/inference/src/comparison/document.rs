@@ -7,7 +7,7 @@ use crate::fit::document::Fit;
 use crate::fit::held::HeldNumber;
 
 /// The comparison of a model with measurements, from the base to the last effect added.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct Comparison {
     /// Name and version of the document: `bulge.comparison/1`.
     pub schema: &'static str,
@@ -44,7 +44,7 @@ pub struct Comparison {
 }
 
 /// Summary of the data.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct DataSummary {
     /// Rows in the files.
     pub rows: usize,

@@ -12,6 +12,7 @@ use crate::chebyshev::chebyshev;
 use crate::comparison::analysis::{Analysis, Climbed};
 use crate::comparison::document::NoiseFloor;
 use crate::comparison::levels::sweep_of;
+use crate::vector::range;
 
 /// Degrees of freedom from which the scatter of repeats is used.
 const ENOUGH: f64 = 8.0;
@@ -233,7 +234,7 @@ struct Scaled {
 
 impl Scaled {
     fn of(values: impl Iterator<Item = f64>) -> Self {
-        let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
+        let [low, high] = range(values);
         Self { middle: 0.5 * (low + high), half: (0.5 * (high - low)).max(f64::MIN_POSITIVE) }
     }
 

@@ -4,6 +4,7 @@ use crate::comparison::analysis::{Analysis, Climbed};
 use crate::comparison::document::{Bin, Breakdown, Curve, CurvePoint, ResidualMap};
 use crate::comparison::levels::sweep_of;
 use crate::comparison::loops::branches;
+use crate::vector::{minus, range};
 
 /// Bins of a continuous variable.
 const BINS: usize = 10;
@@ -27,7 +28,7 @@ pub(crate) struct Errors {
 impl Analysis<'_> {
     /// Measured less model force of all rows \[N\].
     pub(crate) fn residuals(&self, climbed: &Climbed) -> Vec<f64> {
-        self.record.force().iter().zip(&climbed.force).map(|(measured, model)| measured - model).collect()
+        minus(self.record.force(), &climbed.force)
     }
 }
 
@@ -123,8 +124,7 @@ fn even<'a>(
     unit: &'static str,
     value: &'a dyn Fn(usize) -> f64,
 ) -> Option<Groups<'a>> {
-    let [low, high] =
-        analysis.rows().map(value).fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], v| [l.min(v), h.max(v)]);
+    let [low, high] = range(analysis.rows().map(value));
     if high.is_nan() || high <= low {
         return None;
     }
@@ -216,10 +216,7 @@ pub(crate) fn maps(analysis: &Analysis<'_>, forces: [&Vec<f64>; 2]) -> Vec<Resid
 /// Range of the contraction of the rows that count.
 pub(crate) fn contractions(analysis: &Analysis<'_>) -> [f64; 2] {
     let moments = analysis.record.moments();
-    let [low, high] = analysis
-        .rows()
-        .map(|row| moments[row].contraction)
-        .fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], v| [l.min(v), h.max(v)]);
+    let [low, high] = range(analysis.rows().map(|row| moments[row].contraction));
     if high > low { [low, high] } else { [low - 1e-3, high + 1e-3] }
 }
 

@@ -7,6 +7,7 @@ use serde::Serialize;
 use crate::comparison::analysis::{Analysis, Climbed};
 use crate::comparison::levels::sweep_of;
 use crate::error::InferenceError;
+use crate::vector::minus;
 
 /// Every row of the data in the order of the files; each column has one entry per row.
 ///
@@ -163,23 +164,13 @@ impl Rows {
     /// Measured force less that of the model with the effects \[N\]; NaN without a state.
     #[must_use]
     pub fn residual_n(&self) -> Vec<f64> {
-        difference(&self.measured_n, &self.model_n)
-    }
-
-    /// Measured force less that of the base \[N\]; NaN without a state.
-    #[must_use]
-    pub fn base_residual_n(&self) -> Vec<f64> {
-        difference(&self.measured_n, &self.base_n)
+        minus(&self.measured_n, &self.model_n)
     }
 }
 
 /// The force of all rows \[N\], including those that don't count and are left out of the fits.
 fn force_of_all(analysis: &Analysis<'_>, climbed: &Climbed) -> Result<Vec<f64>, InferenceError> {
-    let mut force = if climbed.force.is_empty() {
-        analysis.predicted(&climbed.prepared, &climbed.theta)?.prediction.force
-    } else {
-        climbed.force.clone()
-    };
+    let mut force = climbed.force.clone();
     let others: Vec<bool> = analysis.used.mask.iter().map(|counts| !counts).collect();
     if others.contains(&true) {
         let only = Warm::of_rows(&others);
@@ -191,10 +182,6 @@ fn force_of_all(analysis: &Analysis<'_>, climbed: &Climbed) -> Result<Vec<f64>, 
         }
     }
     Ok(force)
-}
-
-fn difference(measured: &[f64], model: &[f64]) -> Vec<f64> {
-    measured.iter().zip(model).map(|(measured, model)| measured - model).collect()
 }
 
 pub(crate) fn short(number: usize) -> u32 {

@@ -20,8 +20,8 @@ use std::ops::Range;
 
 use crate::chebyshev::chebyshev;
 use crate::comparison::rows::Used;
-use crate::dot::dot;
 use crate::noise::orthonormal::Basis;
+use crate::vector::{add, dot, range};
 
 /// Most rows for fitting the surface.
 const MOST_ROWS: usize = 4_000;
@@ -146,9 +146,7 @@ fn shifted(record: &Record, used: &[bool], residuals: &[f64], sd_n: f64) -> Opti
 
 fn take_out(vector: &mut [f64], column: &[f64]) {
     let part = dot(vector, column) / dot(column, column);
-    for (value, c) in vector.iter_mut().zip(column) {
-        *value -= part * c;
-    }
+    add(vector, -part, column);
 }
 
 /// Rows that count, thinned at a constant stride within each sweep, and the range of each sweep among them.
@@ -169,7 +167,7 @@ fn thinned(
 
 /// Middle and half-width of the range of some values.
 fn scale(values: impl Iterator<Item = f64>) -> [f64; 2] {
-    let [low, high] = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], v| [l.min(v), h.max(v)]);
+    let [low, high] = range(values);
     [0.5 * (low + high), (0.5 * (high - low)).max(f64::MIN_POSITIVE)]
 }
 

@@ -7,6 +7,7 @@ use crate::comparison::document::{Part, Stack};
 use crate::comparison::residuals::{bin, contractions};
 use crate::error::InferenceError;
 use crate::fit::carry_over::carry_over;
+use crate::vector::minus;
 
 /// Bins of contraction.
 const BINS: usize = 25;
@@ -65,9 +66,7 @@ pub(crate) fn contributions(analysis: &Analysis<'_>, last: &Climbed) -> Result<V
                 .map(|rows| rows.iter().map(|i| values[*i]).sum::<f64>() / rows.len() as f64)
                 .collect()
         };
-        let added = |i: usize| -> Vec<f64> {
-            forces[i + 1].iter().zip(&forces[i]).map(|(with, without)| with - without).collect()
-        };
+        let added = |i: usize| minus(&forces[i + 1], &forces[i]);
         stacks.push(Stack {
             pressure_pa: *pressure_pa,
             contraction: mean(&contraction),

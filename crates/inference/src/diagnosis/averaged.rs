@@ -7,6 +7,7 @@ use std::ops::Range;
 use crate::comparison::levels::Levels;
 use crate::comparison::tails::{self, ways};
 use crate::noise::inputs::Scatter;
+use crate::vector::minus;
 
 /// Means of each stroke from one reversal to the next, if it has enough rows; fewer would hide the shape of
 /// the loop.
@@ -88,9 +89,7 @@ impl Averaged {
     /// curvature within a group that the model already describes isn't taken for a misfit. Outliers among the
     /// residuals are bounded first, see [`Averaged::bounded`].
     pub(crate) fn forces(&self, record: &Record, model: &[f64], at_means: &[f64]) -> Vec<f64> {
-        let residual: Vec<f64> =
-            record.force().iter().zip(model).map(|(measured, force)| measured - force).collect();
-        let residual = self.bounded(&residual);
+        let residual = self.bounded(&minus(record.force(), model));
         self.means(&residual).iter().zip(at_means).map(|(residual, force)| residual + force).collect()
     }
 

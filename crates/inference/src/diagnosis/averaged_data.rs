@@ -76,18 +76,12 @@ impl AveragedData {
         fits: Option<&'a Fits<'a>>,
     ) -> Context<'a> {
         Context {
-            catalogue: &options.base.catalogue,
-            record: &self.record,
-            whitening: &self.whitening,
-            law,
             row_n: (white_of_row(law, self) - self.stated).max(law.white_n.powi(2)).sqrt(),
             seed: options.seed,
             only: options.among.as_deref(),
-            is_planned: false,
-            to_draw: false,
             progress: &options.progress,
-            kin: None,
             fits,
+            ..Context::new(&options.base.catalogue, &self.record, &self.whitening, law)
         }
     }
 
@@ -163,8 +157,7 @@ pub(crate) fn averaged_data(
         .collect();
     let counts: Vec<f64> = averaged.counts().collect();
     let stated = variance_of_rows(&input_variances, &counts);
-    let residual: Vec<f64> =
-        analysis.record.force().iter().zip(&base.force).map(|(measured, force)| measured - force).collect();
+    let residual = analysis.residuals(base);
     let (sum, freedom) = averaged.within(&residual);
     let within = (freedom > 0.0).then(|| sum / freedom);
     let extra = unequal(&averaged, &counts, within.unwrap_or(0.0), analysis.record.force_sd());

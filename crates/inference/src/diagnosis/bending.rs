@@ -22,8 +22,8 @@ use crate::diagnosis::confirm::roles;
 use crate::diagnosis::sensitivity::{Sensitivities, spread};
 use crate::diagnosis::smooth::{drives_pressure, over_range, scaled, ways_to_reversals};
 use crate::diagnosis::tangents::Tangents;
-use crate::dot::dot;
 use crate::fit::nuisance::Prepared;
+use crate::vector::{add, dot, minus};
 
 /// Size of the columns along the state: a form error of one standard deviation changes the effect by about
 /// that fraction of it.
@@ -197,14 +197,12 @@ impl Bent<'_> {
         if let Ok(off) = self.force(&theta)
             && off.iter().all(|force| force.is_finite())
         {
-            return Some((with.iter().zip(&off).map(|(with, off)| with - off).collect(), Some(off)));
+            return Some((minus(with, &off), Some(off)));
         }
         let mut change = vec![0.0; with.len()];
         for (index, off) in &sizes {
             let place = self.tangent.free.iter().position(|free| free == index)?;
-            for (sum, d) in change.iter_mut().zip(&self.tangent.columns[place]) {
-                *sum += (self.theta[*index] - off) * d;
-            }
+            add(&mut change, self.theta[*index] - off, &self.tangent.columns[place]);
         }
         Some((change, None))
     }

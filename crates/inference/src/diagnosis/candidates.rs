@@ -7,8 +7,8 @@
 //! ```
 
 use crate::diagnosis::sensitivity::{Sensitivities, Sensitivity, Sign, Size};
-use crate::diagnosis::space::{Space, norm};
-use crate::dot::dot;
+use crate::diagnosis::space::Space;
+use crate::vector::{add, dot, norm};
 
 /// The prior of a size is uniform per decade from this fraction of the literature's scale
 const SMALLEST: f64 = 1e-3;
@@ -125,9 +125,7 @@ pub(crate) fn explained(together: &[&Candidate], z: &[f64]) -> Explained {
     let mut left = z.to_vec();
     for (column, _) in columns.iter().zip(&wholes).filter(|(_, whole)| **whole) {
         left.resize(left.len().max(column.len()), 0.0);
-        for (value, c) in left.iter_mut().zip(*column) {
-            *value -= c;
-        }
+        add(&mut left, -1.0, column);
     }
     let of = |whole: bool| (0..columns.len()).filter(move |i| wholes[*i] == whole).collect::<Vec<_>>();
     let others = of(false);

@@ -11,7 +11,7 @@ use crate::diagnosis::decision_rule::RULE;
 use crate::diagnosis::document::{FormErrorAt, FormErrorResult, Level};
 use crate::diagnosis::explained::bent_curves;
 use crate::diagnosis::form_error::Bent;
-use crate::dot::dot;
+use crate::vector::rms;
 
 /// Probability that a claim is right on three levels.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -62,7 +62,6 @@ fn is_same_mechanism(a: &Arc<dyn Effect>, b: &Arc<dyn Effect>) -> bool {
 
 /// The form error of an effect that the data want.
 pub(crate) fn form_error(record: &Record, bent: &Bent) -> FormErrorResult {
-    let rows = record.len().max(1) as f64;
     let largest =
         (0..bent.bending.len()).max_by(|a, b| bent.bending[*a].abs().total_cmp(&bent.bending[*b].abs()));
     let at = largest.filter(|_| bent.may_bend()).map(|row| {
@@ -78,7 +77,7 @@ pub(crate) fn form_error(record: &Record, bent: &Bent) -> FormErrorResult {
     });
     FormErrorResult {
         share: bent.part,
-        rms_n: (dot(&bent.bending, &bent.bending) / rows).sqrt(),
+        rms_n: rms(&bent.bending),
         r#where: at,
         curves: if bent.may_bend() { bent_curves(record, bent) } else { Vec::new() },
     }

@@ -17,7 +17,7 @@ use crate::diagnosis::hypotheses::{Hypothesis, Tried, effect_log_prior, singles}
 use crate::diagnosis::linearised_model::{Context, LinearisedModel};
 use crate::diagnosis::space::Space;
 use crate::diagnosis::stage::{Stage, tempered};
-use crate::dot::dot;
+use crate::vector::{dot, minus, norm};
 
 /// Rivals whose linear evidence is this far below the best are not fitted.
 const FITTED: f64 = 8.0;
@@ -170,7 +170,7 @@ impl Context<'_> {
             })
             .collect();
         let seen = without.linear.space.coordinates(&self.white(&signal, without.linear.priors));
-        let detectability = dot(&seen, &seen).sqrt() / scatter.sqrt();
+        let detectability = norm(&seen) / scatter.sqrt();
         let is_further = stage.added.len() > 1;
         Some((Class { effect, log_evidence, detectability, scatter, is_further, rivals }, made))
     }
@@ -266,7 +266,7 @@ impl Context<'_> {
     pub(crate) fn signal(&self, with: &Confirmed, without: &LinearisedModel) -> Result<Vec<f64>, ModelError> {
         let model = &with.prepared.model;
         let force = model.evaluate_warm(self.record, &with.theta, &Wanted::default(), &Warm::new())?.force;
-        Ok(force.iter().zip(&without.force).map(|(with, without)| with - without).collect())
+        Ok(minus(&force, &without.force))
     }
 
     /// A signal \[N\] relative to a linearised model and form errors `bent` of one standard deviation \[N\].
@@ -369,7 +369,7 @@ mod tests {
         let record = record.with_force(measured);
         let law = NoiseLaw::white(1.0, NoiseSource::Saturated, 1e6, String::new());
         let whitening = Whitening::new(&law, &record, &vec![true; record.len()], &[]).unwrap();
-        let context = Context::plain(&catalogue, &record, &whitening, &law);
+        let context = Context::new(&catalogue, &record, &whitening, &law);
         let [friction, offset] =
             ["coulomb-friction", "force-offset"].map(|n| Arc::clone(catalogue.find(n).unwrap()));
         let both = vec![friction, offset];

@@ -17,7 +17,7 @@ use crate::diagnosis::hypotheses::{Tried, effect_log_prior};
 use crate::diagnosis::linearised_model::{Context, LinearisedModel};
 use crate::diagnosis::null::{Null, Statistics};
 use crate::diagnosis::sensitivity::Screened;
-use crate::dot::dot;
+use crate::vector::{add, norm};
 use bulge_numerics::Random;
 
 /// Number of simulated data sets.
@@ -204,14 +204,12 @@ fn misfit(
     let Some((truth, candidate)) = truth.and_then(|t| Some((t, t.candidate?))) else { return z };
     for (column, size) in candidate.columns.iter().zip(&truth.sizes) {
         // Draw the size within its uncertainty, but keep its sign.
-        let sd = 1.0 / dot(column, column).sqrt().max(f64::MIN_POSITIVE);
+        let sd = 1.0 / norm(column).max(f64::MIN_POSITIVE);
         let mut drawn = if candidate.whole { *size } else { size + sd * random.normal() };
         if drawn * size < 0.0 {
             drawn = 0.0;
         }
-        for (value, c) in z.iter_mut().zip(column) {
-            *value += drawn * c;
-        }
+        add(&mut z, drawn, column);
     }
     z
 }
@@ -255,9 +253,7 @@ impl Claim {
         let length = candidate.columns.iter().map(Vec::len).max().unwrap_or(0);
         let mut signal = vec![0.0; length];
         for (column, size) in candidate.columns.iter().zip(&sizes) {
-            for (value, c) in signal.iter_mut().zip(column) {
-                *value += size * c;
-            }
+            add(&mut signal, *size, column);
         }
         Some(Self { named, evidence, signal, worth })
     }

@@ -104,10 +104,7 @@ impl Context<'_> {
         from: Option<(&Model, &[f64])>,
         starts: &[Vec<f64>],
     ) -> Result<Confirmed, ModelError> {
-        let mut model = base.clone();
-        for effect in effects {
-            model = model.with(effect, None)?;
-        }
+        let model = effects.iter().try_fold(base.clone(), |model, effect| model.with(effect, None))?;
         let prepared = with_nuisances(&model, self.catalogue)?;
         let mut first = prepared.start();
         if let Some((model, numbers)) = from {
@@ -191,7 +188,7 @@ impl Context<'_> {
 
     /// The lowest of the minima that several starts lead to.
     fn best(&self, prepared: Prepared, starts: &[Vec<f64>]) -> Result<Confirmed, ModelError> {
-        let priors = nuisance_priors(&prepared);
+        let priors = prepared.nuisance_priors();
         let searched: Vec<Result<(Minimum, Vec<f64>), ModelError>> = self
             .nearest(&prepared, starts, &priors)
             .into_par_iter()
@@ -250,17 +247,6 @@ impl Context<'_> {
         let converged = minimum.certificate.converged || minimum.certificate.reason == Reason::Kink;
         Ok(Confirmed { prepared, theta, minimum, log_evidence, penalty, form, converged })
     }
-}
-
-/// Priors of the fit are only those of data sheets. Sizes of effects are free in the fit; their priors enter
-/// the evidence.
-fn nuisance_priors(prepared: &Prepared) -> Vec<Option<(f64, f64)>> {
-    prepared
-        .priors
-        .iter()
-        .zip(&prepared.nuisance)
-        .map(|(prior, nuisance)| prior.filter(|_| *nuisance))
-        .collect()
 }
 
 fn inside(mut coordinates: Vec<f64>, bounds: &Bounds) -> Vec<f64> {
@@ -436,7 +422,7 @@ mod tests {
         let record = record(&base);
         let law = NoiseLaw::white(NOISE, NoiseSource::Saturated, 1e6, String::new());
         let whitening = Whitening::new(&law, &record, &vec![true; record.len()], &[]).unwrap();
-        let context = Context::plain(&catalogue, &record, &whitening, &law);
+        let context = Context::new(&catalogue, &record, &whitening, &law);
         let offset = catalogue.find("force-offset").unwrap();
         let without = context.confirm(&base, &[], None, &[]).unwrap();
         let with = context.confirm(&base, &[Arc::clone(offset)], None, &[]).unwrap();
@@ -477,7 +463,7 @@ mod tests {
             let record = record.clone().with_force(force);
             let law = NoiseLaw::white(1.0, NoiseSource::Saturated, 1e6, String::new());
             let whitening = Whitening::new(&law, &record, &vec![true; record.len()], &[]).unwrap();
-            let context = Context::plain(&catalogue, &record, &whitening, &law);
+            let context = Context::new(&catalogue, &record, &whitening, &law);
             let found = context.confirm(&base, &friction, None, &[vec![2.0], vec![2.0]]).unwrap();
             assert_eq!(found.is_idle(&friction), idle, "{:?}", found.theta);
             let one = context.confirm(&base, &friction, None, &[vec![2.0]]).unwrap();

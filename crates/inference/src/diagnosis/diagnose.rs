@@ -1,16 +1,15 @@
 //! Diagnosis: the noise first, then the missing effects, step by step, with the confidence of the answer.
 
+use bulge_effects::Effect;
 use bulge_measurements::Data;
 use bulge_model::Model;
 use bulge_muscles::Muscle;
 use rayon::prelude::*;
 use std::sync::Arc;
 
-use crate::comparison::analysis::{Analysis, Climbed};
-use crate::comparison::compare::{compare_near, compare_with_rows};
-use crate::comparison::document::Comparison;
+use crate::comparison::analysis::{Analysis, Climbed, First};
+use crate::comparison::compare::{compare_after, compare_with_rows};
 use crate::comparison::options::Options;
-use crate::comparison::row_by_row::Rows;
 use crate::comparison::rows::lines;
 use crate::comparison::specimens::of_specimens;
 use crate::diagnosis::averaged_data::{
@@ -123,15 +122,15 @@ fn diagnosed(
     let mut analysis = Analysis::new(data, muscle, &options.base)?;
     analysis.ask()?;
     if analysis.findings.iter().any(|finding| finding.decided) {
-        let (comparison, rows) = compared_as_stated(data, stated, options)?;
+        let options = Options { rivals: false, held_out: false, ..options.base.clone() };
+        let (comparison, rows) = compare_with_rows(data, stated, &options)?;
         return Ok(Diagnosis { rows: Some(rows), ..unanswered(&analysis.data, stated, comparison) });
     }
-    let first = analysis.climb(0, None)?;
-    analysis.measure_noise(&first);
-    let mut base = analysis.climb(options.base.effects.len(), Some(&first))?;
-    drop(first);
-    let (diagnosis, used) =
-        where_it_has_a_state(&analysis, &mut base, |base, used| on_rows(&analysis, base, used, options))?;
+    let first = analysis.begin()?;
+    let mut base = analysis.climb(options.base.effects.len(), Some(&first.climbed))?;
+    let (diagnosis, used) = where_it_has_a_state(&analysis, &mut base, |base, used| {
+        on_rows(&analysis, &first, base, used, options)
+    })?;
     Ok(diagnosis.without(&analysis, &used))
 }
 
@@ -181,13 +180,14 @@ impl Diagnosis {
 /// The diagnosis on some of the rows.
 fn on_rows(
     analysis: &Analysis<'_>,
+    first: &First,
     base: &mut Climbed,
     used: &[bool],
     options: &DiagnoseOptions,
 ) -> Result<Diagnosis, Stop> {
     let progress = &options.progress;
     progress.at(0.1, "the noise");
-    let model = analysis.base_with_effects().map_err(|error| analysis.about(error))?;
+    let model = analysis.base_with_effects()?;
     let averaged_data = averaged_data(analysis, base, used, options)?;
     // The forces of many rows are large, and the means are used from here on.
     base.force = Vec::new();
@@ -202,33 +202,33 @@ fn on_rows(
         let search = context.search(&model, near);
         search.map_err(|error| Stop::at_means(error, &averaged_data.averaged, analysis))
     };
-    let first = Fits::after(None);
-    let mut search = searched(&averaged_data, &averaged_data.context(law, options, Some(&first)))?;
+    let fits = Fits::after(None);
+    let mut search = searched(&averaged_data, &averaged_data.context(law, options, Some(&fits)))?;
     // The first law includes the part of the base's misfit that no smooth function follows. The residuals of
     // a better model give a better law.
     let again = averaged_data_again(analysis, &search, &averaged_data, used, options);
-    let second = Fits::after(Some(&first));
+    let second = Fits::after(Some(&fits));
     let (averaged_data, context) = match again.as_ref().and_then(|again| Some((again, again.law.as_ref()?))) {
         Some((again, law)) => {
             let context = again.context(law, options, Some(&second));
             search = searched(again, &context)?;
             (again, context)
         }
-        None => (&averaged_data, averaged_data.context(law, options, Some(&first))),
+        None => (&averaged_data, averaged_data.context(law, options, Some(&fits))),
     };
     let quieter = quieter(&context, averaged_data, &model, &mut search);
     let quieter = quieter.map_err(|error| Stop::at_means(error, &averaged_data.averaged, analysis))?;
     if let Some((law, whitening)) = &quieter {
         let quiet = Context { whitening, law, fits: None, ..context };
-        return concluded(analysis, (&quiet, averaged_data), &model, search, options);
+        return concluded((analysis, first), (&quiet, averaged_data), &model, search, options);
     }
     context.exchange(&model, &mut search);
-    concluded(analysis, (&context, averaged_data), &model, search, options)
+    concluded((analysis, first), (&context, averaged_data), &model, search, options)
 }
 
 /// Classes, confidence and the ladder for the result of a search.
 fn concluded(
-    analysis: &Analysis<'_>,
+    (analysis, first): (&Analysis<'_>, &First),
     (context, averaged_data): (&Context<'_>, &AveragedData),
     model: &Model,
     mut search: Search,
@@ -264,25 +264,14 @@ fn concluded(
         tolerance_n: options.tolerance_n,
         next,
     };
-    let mut compared = options.base.clone();
-    compared.effects.extend(found.shown().iter().map(Arc::clone));
-    let last = &search.stages[search.stages.len() - 1].confirmed;
-    let answer = compare_near(analysis, &compared, last.numbers())?;
+    let effects: Vec<Arc<dyn Effect>> = options.base.effects.iter().chain(found.shown()).cloned().collect();
+    let answer = compare_after(first, analysis, &effects, found.last().confirmed.numbers())?;
     progress.at(1.0, "done");
     let above_n = answer.0.ladder.last().map_or(f64::INFINITY, |rung| rung.rmse_n);
     let bent = bent_rungs(analysis, found.shown_stage(), &averaged_data.averaged.groups, above_n)?;
     let mut diagnosis = document(analysis.muscle, &found, answer, &bent);
     diagnosis.geometry = geometry(analysis, found.regardless());
     Ok(diagnosis)
-}
-
-/// The comparison with the base alone.
-fn compared_as_stated(
-    data: &Data,
-    muscle: &Muscle,
-    options: &DiagnoseOptions,
-) -> Result<(Comparison, Rows), InferenceError> {
-    compare_with_rows(data, muscle, &Options { rivals: false, held_out: false, ..options.base.clone() })
 }
 
 /// Each named effect with its rivals, and how often such a claim is right.

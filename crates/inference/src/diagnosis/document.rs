@@ -12,7 +12,7 @@ use crate::diagnosis::decision_rule::RULE;
 use crate::diagnosis::geometry::Geometry;
 use crate::diagnosis::not_looked_for::NotLookedFor;
 use crate::diagnosis::rungs::TOGETHER;
-use crate::noise::law::NoiseLaw;
+use crate::noise::law::{NoiseLaw, NoiseSource};
 use crate::protocol::bench::Protocol;
 
 /// The effects that are missing in the model of a muscle, according to the data.
@@ -120,6 +120,26 @@ pub struct DiagnosedData {
     pub quality: Vec<Finding>,
 }
 
+impl DiagnosedData {
+    /// The data of a comparison.
+    #[must_use]
+    pub fn of(comparison: &Comparison, effective_rows: f64) -> Self {
+        let data = &comparison.data;
+        Self {
+            rows: data.rows,
+            used: data.used,
+            effective_rows,
+            reading: data.reading.clone(),
+            sha256: data.sha256.clone(),
+            sweeps: data.sweeps,
+            specimens: data.specimens.len(),
+            left_out: data.left_out.clone(),
+            findings: data.findings.clone(),
+            quality: comparison.quality.clone(),
+        }
+    }
+}
+
 /// The noise.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct DiagnosedNoise {
@@ -127,8 +147,8 @@ pub struct DiagnosedNoise {
     pub sd_n: f64,
     /// Whether the rows of a sweep are correlated.
     pub correlated: bool,
-    /// Origin: `repeats`, `saturated` or `instruments`.
-    pub source: String,
+    /// Origin.
+    pub source: NoiseSource,
     /// The law.
     pub law: NoiseLaw,
 }
@@ -246,15 +266,23 @@ pub struct FormErrorAt {
     pub sd_n: f64,
 }
 
-/// An effect over contraction, at one pressure and in one direction.
+/// Place of a curve over contraction.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct BentCurve {
+pub struct CurveAt {
     /// Mean pressure of the level \[Pa\].
     pub pressure_pa: f64,
     /// +1 shortening, -1 lengthening, 0 at rest.
     pub direction: f64,
     /// Bin centres.
     pub contraction: Vec<f64>,
+}
+
+/// An effect over contraction, at one pressure and in one direction.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct BentCurve {
+    /// Where it lies.
+    #[serde(flatten)]
+    pub at: CurveAt,
     /// Change of the force by the effect's formula \[N\].
     pub formula_n: Vec<f64>,
     /// Change of the force with the form error \[N\].
@@ -347,7 +375,7 @@ pub struct Located {
 }
 
 /// The remaining misfit.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct Remaining {
     /// Whether there is structure beyond chance.
     pub structured: bool,
@@ -379,12 +407,9 @@ pub struct ExplainedStep {
 /// Misfit over contraction, at one pressure and in one direction.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ExplainedCurve {
-    /// Mean pressure of the level \[Pa\].
-    pub pressure_pa: f64,
-    /// +1 shortening, -1 lengthening, 0 at rest.
-    pub direction: f64,
-    /// Bin centres.
-    pub contraction: Vec<f64>,
+    /// Where it lies.
+    #[serde(flatten)]
+    pub at: CurveAt,
     /// Mean misfit of the model before the effect was added, measured - model \[N\].
     pub before_n: Vec<f64>,
     /// Change by the effect and by refitting all parameters \[N\].
@@ -394,12 +419,9 @@ pub struct ExplainedCurve {
 /// Systematic misfit over contraction, at one pressure and in one direction.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SurfaceCurve {
-    /// Mean pressure of the level \[Pa\].
-    pub pressure_pa: f64,
-    /// +1 shortening, -1 lengthening, 0 at rest.
-    pub direction: f64,
-    /// Bin centres.
-    pub contraction: Vec<f64>,
+    /// Where it lies.
+    #[serde(flatten)]
+    pub at: CurveAt,
     /// Misfit, smoothed \[N\].
     pub misfit_n: Vec<f64>,
     /// Its standard deviation \[N\].

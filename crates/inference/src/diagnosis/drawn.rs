@@ -22,8 +22,8 @@ use crate::diagnosis::document::FormErrorResult;
 use crate::diagnosis::form_error::Bent;
 use crate::diagnosis::linearised_model::Context;
 use crate::diagnosis::setpoints::setpoints;
-use crate::dot::dot;
 use crate::error::InferenceError;
+use crate::vector::{add, minus, range, rms};
 
 /// Highest total degree in contraction and pressure, and highest degree in the pressure. The form errors have
 /// 4 and 2, on top of those of a formula.
@@ -78,11 +78,9 @@ pub fn drawn_forms(data: &Data, muscle: &Muscle, options: &Options) -> Result<Dr
     rayon::scope(|_| {
         let options = DiagnoseOptions::new(options.clone());
         let mut analysis = Analysis::new(data, muscle, &options.base)?;
-        analysis.ask()?;
-        let first = analysis.climb(0, None)?;
-        analysis.measure_noise(&first);
-        let mut base = analysis.climb(options.base.effects.len(), Some(&first))?;
-        let model = analysis.base_with_effects().map_err(|error| analysis.about(error))?;
+        let first = analysis.begin()?;
+        let mut base = analysis.climb(options.base.effects.len(), Some(&first.climbed))?;
+        let model = analysis.base_with_effects()?;
         let found = where_it_has_a_state(&analysis, &mut base, |base, used| {
             let averaged_data = averaged_data(&analysis, base, used, &options)?;
             let Some(law) = &averaged_data.law else {
@@ -131,12 +129,10 @@ fn without_columns(effect: &Arc<dyn Effect>) -> &'static str {
 impl Context<'_> {
     fn drawn(&self, force: &[f64], bent: &[Bent], asked: &[Arc<dyn Effect>]) -> DrawnForms {
         let record = self.record;
-        let residual: Vec<f64> = record.force().iter().zip(force).map(|(y, f)| y - f).collect();
+        let residual = minus(record.force(), force);
         let mut left = residual.clone();
         for effect in bent.iter().filter(|bent| bent.may_bend()) {
-            for (left, bending) in left.iter_mut().zip(&effect.bending) {
-                *left -= bending;
-            }
+            add(&mut left, -1.0, &effect.bending);
         }
         let state = State::of(&setpoints(record));
         let form = |effect: &Arc<dyn Effect>| {
@@ -201,10 +197,6 @@ impl Context<'_> {
     }
 }
 
-fn rms(values: &[f64]) -> f64 {
-    (dot(values, values) / values.len().max(1) as f64).sqrt()
-}
-
 /// Scaled contraction and pressure and the direction of each row.
 struct State {
     /// Ends of contraction and pressure, in SI.
@@ -220,10 +212,7 @@ impl State {
             moments.iter().map(|m| m.contraction).collect::<Vec<_>>(),
             moments.iter().map(|m| m.pressure).collect(),
         ];
-        let ends = values.each_ref().map(|values| {
-            let of = |pick: fn(f64, f64) -> f64, first| values.iter().copied().fold(first, pick);
-            [of(f64::min, f64::INFINITY), of(f64::max, f64::NEG_INFINITY)]
-        });
+        let ends = values.each_ref().map(|values| range(values.iter().copied()));
         let scaled = [0, 1].map(|axis: usize| {
             let [low, high] = ends[axis];
             let half = 0.5 * (high - low);
@@ -367,12 +356,13 @@ fn file(
         "# pressure [bar]  direction  contraction [%]  by its formula [N]  as the data want it [N]  95 % interval [N]".to_owned(),
     ];
     for curve in &drawn.curves {
-        let points = curve.contraction.iter().zip(&curve.formula_n).zip(curve.bent_n.iter().zip(&curve.sd_n));
+        let points =
+            curve.at.contraction.iter().zip(&curve.formula_n).zip(curve.bent_n.iter().zip(&curve.sd_n));
         lines.extend(points.map(|((contraction, formula), (bent, sd))| {
             format!(
                 "# {:14.4}  {:9}  {:15.3}  {formula:18.3}  {bent:23.3}  {:.3} to {:.3}",
-                1e-5 * curve.pressure_pa,
-                curve.direction,
+                1e-5 * curve.at.pressure_pa,
+                curve.at.direction,
                 100.0 * contraction,
                 bent - SURE * sd,
                 bent + SURE * sd,

@@ -252,7 +252,7 @@ mod tests {
         let record = record(&base, hidden);
         let law = NoiseLaw::white(1.0, NoiseSource::Saturated, 1e6, String::new());
         let whitening = Whitening::new(&law, &record, &vec![true; record.len()], &[]).unwrap();
-        let context = Context::plain(&catalogue, &record, &whitening, &law);
+        let context = Context::new(&catalogue, &record, &whitening, &law);
         let stage = |names: &[&str]| {
             let effects: Vec<_> =
                 names.iter().map(|name| Arc::clone(catalogue.find(name).unwrap())).collect();

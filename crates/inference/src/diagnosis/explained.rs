@@ -5,10 +5,10 @@ use bulge_model::Record;
 
 use crate::comparison::levels::Levels;
 use crate::comparison::residuals::bin;
-use crate::diagnosis::document::{BentCurve, ExplainedCurve, ExplainedStep, SurfaceCurve};
+use crate::diagnosis::document::{BentCurve, CurveAt, ExplainedCurve, ExplainedStep, SurfaceCurve};
 use crate::diagnosis::form_error::Bent;
 use crate::diagnosis::linearised_model::LinearisedModel;
-use crate::dot::dot;
+use crate::vector::{dot, range};
 
 /// Bins of the contraction.
 const BINS: usize = 24;
@@ -24,9 +24,7 @@ struct Cell {
 /// All cells with rows, by level and direction.
 fn cells(record: &Record, levels: &Levels) -> Vec<Cell> {
     let moments = record.moments();
-    let [low, high] = moments
-        .iter()
-        .fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], m| [l.min(m.contraction), h.max(m.contraction)]);
+    let [low, high] = range(moments.iter().map(|m| m.contraction));
     let mut found = Vec::new();
     for level in 0..levels.len() {
         for direction in [1.0, 0.0, -1.0] {
@@ -49,62 +47,53 @@ fn mean(rows: &[usize], value: impl Fn(usize) -> f64) -> f64 {
     rows.iter().map(|row| value(*row)).sum::<f64>() / rows.len() as f64
 }
 
-/// The cells of each curve.
-fn curves(cells: &[Cell]) -> impl Iterator<Item = &[Cell]> {
-    cells.chunk_by(|a, b| a.level == b.level && a.direction.total_cmp(&b.direction).is_eq())
+/// A curve for each level and direction, from its place and its cells.
+fn curves<T>(record: &Record, curve: impl Fn(CurveAt, &[Cell]) -> T) -> Vec<T> {
+    let levels = Levels::of(record, &vec![true; record.len()]);
+    let of = |cells: &[Cell]| {
+        let [pressure_pa, direction] = [levels.mean[cells[0].level], cells[0].direction];
+        let contraction = cells.iter().map(|cell| cell.contraction).collect();
+        curve(CurveAt { pressure_pa, direction, contraction }, cells)
+    };
+    let is_same = |a: &Cell, b: &Cell| a.level == b.level && a.direction.total_cmp(&b.direction).is_eq();
+    cells(record, &levels).chunk_by(is_same).map(of).collect()
+}
+
+/// The mean of a value in each cell.
+fn means(cells: &[Cell], value: impl Fn(usize) -> f64) -> Vec<f64> {
+    cells.iter().map(|cell| mean(&cell.rows, &value)).collect()
 }
 
 /// The part of the misfit that a step from one model to the next explains.
 pub(crate) fn explained(effect: &str, record: &Record, before: &[f64], after: &[f64]) -> ExplainedStep {
-    let levels = Levels::of(record, &vec![true; record.len()]);
-    let cells = cells(record, &levels);
-    let curve = |cells: &[Cell]| ExplainedCurve {
-        pressure_pa: levels.mean[cells[0].level],
-        direction: cells[0].direction,
-        contraction: cells.iter().map(|cell| cell.contraction).collect(),
-        before_n: cells.iter().map(|c| mean(&c.rows, |row| record.force()[row] - before[row])).collect(),
-        explained_n: cells.iter().map(|c| mean(&c.rows, |row| after[row] - before[row])).collect(),
+    let curve = |at, cells: &[Cell]| ExplainedCurve {
+        at,
+        before_n: means(cells, |row| record.force()[row] - before[row]),
+        explained_n: means(cells, |row| after[row] - before[row]),
     };
-    ExplainedStep { effect: effect.to_owned(), curves: curves(&cells).map(curve).collect() }
+    ExplainedStep { effect: effect.to_owned(), curves: curves(record, curve) }
 }
 
 /// An effect by its formula, and with its fitted form error.
 pub(crate) fn bent_curves(record: &Record, bent: &Bent) -> Vec<BentCurve> {
-    let levels = Levels::of(record, &vec![true; record.len()]);
-    let cells = cells(record, &levels);
-    let curve = |cells: &[Cell]| {
-        let of = |value: &dyn Fn(usize) -> f64| cells.iter().map(|cell| mean(&cell.rows, value)).collect();
-        BentCurve {
-            pressure_pa: levels.mean[cells[0].level],
-            direction: cells[0].direction,
-            contraction: cells.iter().map(|cell| cell.contraction).collect(),
-            formula_n: of(&|row| bent.change[row]),
-            bent_n: of(&|row| bent.drawn[row]),
-            sd_n: of(&|row| bent.drawn_sd[row]),
-        }
-    };
-    curves(&cells).map(curve).collect()
+    curves(record, |at, cells| BentCurve {
+        at,
+        formula_n: means(cells, |row| bent.change[row]),
+        bent_n: means(cells, |row| bent.drawn[row]),
+        sd_n: means(cells, |row| bent.drawn_sd[row]),
+    })
 }
 
 /// The systematic misfit of a model: the smooth functions that it can't follow, with their standard
 /// deviation.
 pub(crate) fn surface(record: &Record, linear: &LinearisedModel) -> Vec<SurfaceCurve> {
-    let levels = Levels::of(record, &vec![true; record.len()]);
-    let cells = cells(record, &levels);
     let parts: Vec<f64> = linear.smooth.iter().map(|d| dot(&d.unit, &linear.z)).collect();
-    let at = |cell: &Cell| {
+    let misfit = |cell: &Cell| {
         let means = linear.smooth.iter().map(|d| mean(&cell.rows, |row| d.values[row]));
         means.zip(&parts).fold((0.0, 0.0), |(sum, square), (f, part)| (sum + f * part, square + f * f))
     };
-    let curve = |cells: &[Cell]| {
-        let found: Vec<(f64, f64)> = cells.iter().map(at).collect();
-        SurfaceCurve {
-            pressure_pa: levels.mean[cells[0].level],
-            direction: cells[0].direction,
-            contraction: cells.iter().map(|cell| cell.contraction).collect(),
-            misfit_n: found.iter().map(|f| f.0).collect(),
-            sd_n: found.iter().map(|f| f.1.sqrt()).collect(),
-        }
-    };
-    curves(&cells).map(curve).collect()
+    curves(record, |at, cells| {
+        let (misfit_n, variance): (Vec<f64>, Vec<f64>) = cells.iter().map(misfit).unzip();
+        SurfaceCurve { at, misfit_n, sd_n: variance.into_iter().map(f64::sqrt).collect() }
+    })
 }

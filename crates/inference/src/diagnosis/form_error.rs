@@ -14,8 +14,8 @@ use std::sync::Arc;
 
 use crate::diagnosis::bending::{Bending, Kin, Kind};
 use crate::diagnosis::decision_rule::RULE;
-use crate::diagnosis::space::{Space, norm, orthogonal};
-use crate::dot::dot;
+use crate::diagnosis::space::{Space, orthogonal};
+use crate::vector::{add, dot, norm};
 
 /// Passes of the coordinate ascent.
 const ROUNDS: usize = 2;
@@ -377,12 +377,6 @@ impl Columns {
     }
 }
 
-fn add(sum: &mut [f64], part: f64, column: &[f64]) {
-    for (total, value) in sum.iter_mut().zip(column) {
-        *total += part * value;
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -472,9 +466,7 @@ mod tests {
         let (found, directions) = FormError::of(std::slice::from_ref(&loose), &space, &noise, &same, false);
         assert!(found.log_evidence.abs() < 1e-12 && found.fall.abs() < 1e-12 && directions.is_empty());
         let mut misfit = noise;
-        for (value, c) in misfit.iter_mut().zip(&loose.columns[0].1) {
-            *value += 0.3 * c;
-        }
+        add(&mut misfit, 0.3, &loose.columns[0].1);
         let exact = Bending { effect: Arc::clone(Catalogue::builtin().find("force-gain").unwrap()), ..loose };
         let (found, directions) = FormError::of(&[exact], &space, &misfit, &same, false);
         assert!(found.log_evidence.abs() < 1e-12 && directions.is_empty());
@@ -486,9 +478,7 @@ mod tests {
         let same = |column: &[f64]| column.to_vec();
         let loose = bending("coulomb-friction", &[Kind::State], 5, 30.0);
         let mut misfit = columns(9, 1).remove(0);
-        for (value, c) in misfit.iter_mut().zip(&loose.columns[0].1) {
-            *value += 2.0 * c;
-        }
+        add(&mut misfit, 2.0, &loose.columns[0].1);
         let (found, _) = FormError::of(&[loose], &space, &misfit, &same, false);
         assert!(found.effects[0].part <= RULE.most_bent && !found.effects[0].may_bend());
     }

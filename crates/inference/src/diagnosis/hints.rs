@@ -7,6 +7,7 @@ use crate::comparison::levels::Levels;
 use crate::diagnosis::candidates::Candidate;
 use crate::diagnosis::document::Located;
 use crate::diagnosis::linearised_model::LinearisedModel;
+use crate::vector::{add, range};
 use bulge_muscles::units::significant;
 
 /// Bins of the contraction in which levels are compared.
@@ -72,9 +73,7 @@ fn exponent(record: &Record, misfit: &[f64]) -> Option<String> {
         return None;
     }
     let moments = record.moments();
-    let [low, high] = moments
-        .iter()
-        .fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], m| [l.min(m.contraction), h.max(m.contraction)]);
+    let [low, high] = range(moments.iter().map(|m| m.contraction));
     let mut cells = vec![vec![(0.0, 0.0); BINS]; levels.len()];
     for (row, moment) in moments.iter().enumerate() {
         let cell = &mut cells[levels.at(row)]
@@ -137,9 +136,7 @@ fn nearest(record: &Record, linear: &LinearisedModel) -> Option<String> {
     }
     let mut left = linear.z.clone();
     for (column, size) in best.columns.iter().zip(&explained.sizes) {
-        for (value, c) in left.iter_mut().zip(column) {
-            *value -= size * c;
-        }
+        add(&mut left, -size, column);
     }
     let sum = linear.systematic(&left);
     let row = (0..sum.len()).max_by(|a, b| sum[*a].abs().total_cmp(&sum[*b].abs()))?;

@@ -21,7 +21,7 @@ use std::collections::BTreeMap;
 
 use crate::diagnosis::setpoints::setpoints;
 use crate::diagnosis::strokes::{Point, Stroke, strokes};
-use crate::dot::dot;
+use crate::vector::dot;
 
 /// Numbers of cells over the range.
 const CELLS: [f64; 3] = [5.0, 16.0, 50.0];
@@ -192,6 +192,7 @@ fn combined(chances: &[f64]) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::vector::{add, norm};
     use bulge_effects::Moment;
     use bulge_numerics::Random;
 
@@ -220,7 +221,7 @@ mod tests {
             let of = |m: &Moment| (m.contraction - 0.1).powi(k % 3) * (m.pressure / 1e5).powi(k / 3);
             let mut column: Vec<f64> = record.moments().iter().map(of).collect();
             without(&mut column, &units);
-            let length = dot(&column, &column).sqrt();
+            let length = norm(&column);
             units.push(column.iter().map(|v| v / length).collect());
         }
         units
@@ -230,7 +231,7 @@ mod tests {
         for _ in 0..2 {
             for unit in units {
                 let part = dot(unit, column);
-                column.iter_mut().zip(unit).for_each(|(v, u)| *v -= part * u);
+                add(column, -part, unit);
             }
         }
     }

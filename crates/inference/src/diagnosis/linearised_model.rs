@@ -16,12 +16,12 @@ use crate::diagnosis::sensitivity::Sensitivities;
 use crate::diagnosis::smooth::{Variable, smooth};
 use crate::diagnosis::space::{Space, orthogonal};
 use crate::diagnosis::tangents::Tangents;
-use crate::dot::dot;
 use crate::fit::nuisance::Prepared;
 use crate::median::median;
 use crate::noise::law::NoiseLaw;
 use crate::noise::whitening::Whitening;
-use crate::progress::Progress;
+use crate::progress::{NOBODY, Progress};
+use crate::vector::{add, dot};
 
 /// Rows whose stated standard deviation exceeds the usual one by this factor count as uncertain.
 const DOUBTFUL: f64 = 2.0;
@@ -97,28 +97,25 @@ pub(crate) struct LinearisedModel {
     pub(crate) force: Vec<f64>,
 }
 
-#[cfg(test)]
 impl<'a> Context<'a> {
     /// A context with white noise as in the law, seed 1 and the whole catalogue.
-    pub(crate) fn plain(
+    pub(crate) fn new(
         catalogue: &'a Catalogue,
         record: &'a Record,
         whitening: &'a Whitening,
         law: &'a NoiseLaw,
     ) -> Self {
-        let progress = &crate::progress::NOBODY;
-        let row_n = law.white_n;
         Self {
             catalogue,
             record,
             whitening,
             law,
-            row_n,
+            row_n: law.white_n,
             seed: 1,
             only: None,
             is_planned: false,
             to_draw: false,
-            progress,
+            progress: &NOBODY,
             kin: None,
             fits: None,
         }
@@ -306,9 +303,7 @@ impl LinearisedModel {
         let mut sum = vec![0.0; self.force.len()];
         for direction in &self.smooth {
             let part = dot(&direction.unit, z);
-            for (total, value) in sum.iter_mut().zip(&direction.values) {
-                *total += part * value;
-            }
+            add(&mut sum, part, &direction.values);
         }
         sum
     }

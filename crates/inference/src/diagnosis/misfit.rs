@@ -5,7 +5,7 @@ use statrs::distribution::{ChiSquared, ContinuousCDF};
 use crate::diagnosis::document::Located;
 use crate::diagnosis::linearised_model::{Direction, LinearisedModel};
 use crate::diagnosis::smooth::Variable;
-use crate::dot::dot;
+use crate::vector::{add, dot};
 use bulge_numerics::Random;
 
 /// Draws for the interval of the misfit.
@@ -38,9 +38,7 @@ pub(crate) fn misfit(linear: &LinearisedModel, seed: u64) -> (f64, [f64; 2]) {
             let mut sum = vec![0.0; thin.first().map_or(0, |d| d.values.len())];
             for (direction, part) in thin.iter().zip(&coordinates) {
                 let part = part + random.normal();
-                for (total, value) in sum.iter_mut().zip(&direction.values) {
-                    *total += part * value;
-                }
+                add(&mut sum, part, &direction.values);
             }
             (dot(&sum, &sum) / rows - 2.0 * excess).max(0.0).sqrt()
         })
@@ -53,8 +51,8 @@ pub(crate) fn misfit(linear: &LinearisedModel, seed: u64) -> (f64, [f64; 2]) {
 /// Variables on which the misfit depends: share of the excess over chance, and p-value (Holm 1979), the
 /// largest share first.
 pub(crate) fn located(linear: &LinearisedModel) -> Vec<Located> {
-    let mut found: Vec<(Variable, f64, f64, f64)> = Vec::new();
-    for variable in Variable::ALL {
+    let mut found: Vec<((&str, &str), f64, f64, f64)> = Vec::new();
+    for (variable, name, says) in Variable::ALL {
         let squares: Vec<f64> = linear
             .smooth
             .iter()
@@ -66,7 +64,7 @@ pub(crate) fn located(linear: &LinearisedModel) -> Vec<Located> {
         }
         let (sum, count) = (squares.iter().sum::<f64>(), squares.len() as f64);
         let p = ChiSquared::new(count).map_or(1.0, |chi| chi.sf(sum));
-        found.push((variable, (sum - count).max(0.0), p, 1.0));
+        found.push(((name, says), (sum - count).max(0.0), p, 1.0));
     }
     let whole: f64 = found.iter().map(|f| f.1).sum();
     let mut order: Vec<usize> = (0..found.len()).collect();
@@ -80,25 +78,11 @@ pub(crate) fn located(linear: &LinearisedModel) -> Vec<Located> {
     found
         .into_iter()
         .filter(|f| f.1 > 0.0)
-        .map(|(variable, excess, _, p)| Located {
-            variable: variable.name().to_owned(),
+        .map(|((name, says), excess, _, p)| Located {
+            variable: name.to_owned(),
             share: if whole > 0.0 { excess / whole } else { 0.0 },
             p,
-            says: says(variable).to_owned(),
+            says: says.to_owned(),
         })
         .collect()
-}
-
-const fn says(variable: Variable) -> &'static str {
-    match variable {
-        Variable::Mean => "is alike in all rows",
-        Variable::Contraction => "changes along the contraction, alike at all pressures",
-        Variable::Pressure => "changes with the pressure",
-        Variable::Direction => "flips sign with the direction",
-        Variable::Time => "changes with time",
-        Variable::Rate => "changes with the speed",
-        Variable::Temperature => "changes with the temperature",
-        Variable::Cycle => "changes from cycle to cycle",
-        Variable::Specimen => "differs from specimen to specimen",
-    }
 }

@@ -21,6 +21,7 @@ use crate::fit::weights::Noise;
 use crate::noise::law::{CorrelationTime, NoiseLaw};
 use crate::noise::whitening::Whitening;
 use crate::protocol::bench::{Block, Path, Protocol, ReadingNoise};
+use crate::vector::range;
 
 /// Most repeats of a proposal.
 const MOST_REPEATS: usize = 20;
@@ -93,15 +94,9 @@ pub(crate) struct Limits {
 impl Limits {
     /// The stated limits, completed by the ranges of a record.
     pub(crate) fn of(record: &Record, stated: NextLimits) -> Self {
-        let range = |of: &dyn Fn(&bulge_effects::Moment) -> f64| {
-            record
-                .moments()
-                .iter()
-                .map(of)
-                .fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], v| [l.min(v), h.max(v)])
-        };
+        let range = |of: fn(&bulge_effects::Moment) -> f64| range(record.moments().iter().map(of));
         let levels = Levels::of(record, &vec![true; record.len()]);
-        let [low, high] = range(&|m| m.pressure);
+        let [low, high] = range(|m| m.pressure);
         let kept = [levels.mean.first().copied().unwrap_or(low), levels.mean.last().copied().unwrap_or(high)];
         // The cycle number continues from sweep to sweep.
         let mut periods: Vec<f64> = record
@@ -119,7 +114,7 @@ impl Limits {
         let period = periods.get(periods.len() / 2).map_or(60.0, |period| period.clamp(1.0, 1e4));
         Self {
             pressure_pa: stated.pressure_pa.unwrap_or(kept),
-            contraction: stated.contraction.unwrap_or_else(|| range(&|m| m.contraction)),
+            contraction: stated.contraction.unwrap_or_else(|| range(|m| m.contraction)),
             period_s: if record.has_time() { period } else { 60.0 },
         }
     }

@@ -11,12 +11,13 @@ use crate::diagnosis::pure_error::BetweenCycles;
 use crate::diagnosis::sensitivity::Sensitivities;
 use crate::diagnosis::setpoints::setpoints;
 use crate::diagnosis::smooth::smooth;
-use crate::diagnosis::space::{Space, norm};
+use crate::diagnosis::space::Space;
 use crate::diagnosis::tangents::Tangents;
 use crate::fit::nuisance::Prepared;
 use crate::median::median;
 use crate::noise::inputs::{Scatter, input_noise};
 use crate::noise::law::{NoiseLaw, NoiseSource};
+use crate::vector::norm;
 
 /// Most independent columns of the saturated model relative to the rows: for effects here, for all columns in
 /// the next constant. Fewer along a path, because a model with many parameters follows correlated noise and

@@ -12,8 +12,8 @@
 use rayon::prelude::*;
 
 use crate::diagnosis::candidates::Candidate;
-use crate::dot::dot;
 use crate::noise::offset_belief::OffsetBelief;
+use crate::vector::{add, dot};
 use bulge_numerics::Random;
 
 /// Number of draws.
@@ -65,9 +65,7 @@ impl Chance<'_> {
         let excess = (ratio * ratio - 1.0).max(0.0).sqrt();
         for offset in self.offsets {
             let size = excess * random.normal();
-            for (value, o) in z.iter_mut().zip(offset) {
-                *value += size * o;
-            }
+            add(&mut z, size, offset);
         }
         z
     }

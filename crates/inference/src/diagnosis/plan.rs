@@ -15,15 +15,13 @@ use crate::diagnosis::candidates::Candidate;
 use crate::diagnosis::decision_rule::RULE;
 use crate::diagnosis::linearised_model::{Context, LinearisedModel};
 use crate::diagnosis::sensitivity::Sign;
-use crate::diagnosis::space::norm;
-use crate::dot::dot;
 use crate::error::InferenceError;
-use crate::fit::nuisance::with_nuisances;
+use crate::fit::nuisance::{known_model, with_nuisances};
 use crate::fit::weights::Noise;
 use crate::noise::law::{CorrelationTime, NoiseLaw, NoiseSource};
 use crate::noise::whitening::Whitening;
-use crate::progress::NOBODY;
 use crate::protocol::bench::Protocol;
+use crate::vector::{dot, norm, range, rms};
 use bulge_model::Wanted;
 
 /// Sigmas at which an effect is detected: one error in a thousand.
@@ -126,9 +124,6 @@ pub fn plan(
     let context = planned.context(catalogue);
     let linear = context.linearised(&prepared, &theta)?;
     let moments = planned.record.moments();
-    let range = |of: &dyn Fn(&bulge_effects::Moment) -> f64| {
-        moments.iter().map(of).fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], v| [l.min(v), h.max(v)])
-    };
     let mut warnings = Vec::new();
     if planned.law.source == NoiseSource::Instruments && planned.law.degrees_of_freedom == 0.0 {
         warnings.push(
@@ -142,33 +137,20 @@ pub fn plan(
             names.join(", ")
         ));
     }
-    let mut effects = effects(&linear, planned.record.len(), muscle);
+    let mut effects = effects(&linear, muscle);
     effects.sort_by(|a, b| b.usual_sigma.total_cmp(&a.usual_sigma).then(a.effect.cmp(&b.effect)));
     Ok(Plan {
         schema: "bulge.plan/1",
         muscle: muscle.name().to_owned(),
         rows: planned.record.len(),
         sweeps: planned.record.sweeps().len(),
-        pressure_pa: range(&|m| m.pressure),
-        contraction: range(&|m| m.contraction),
+        pressure_pa: range(moments.iter().map(|m| m.pressure)),
+        contraction: range(moments.iter().map(|m| m.contraction)),
         noise: planned.law.clone(),
         effects,
         confused: confused(&linear),
         warnings,
     })
-}
-
-/// A muscle with its known effects, for some specimens.
-pub(crate) fn known_model(
-    muscle: &Muscle,
-    known: &[(Arc<dyn Effect>, Vec<f64>)],
-    specimens: &[String],
-) -> Result<Model, InferenceError> {
-    let mut model = Model::new(muscle).for_specimens(specimens)?;
-    for (effect, values) in known {
-        model = model.with(effect, Some(values))?;
-    }
-    Ok(model)
 }
 
 impl Planned {
@@ -196,20 +178,7 @@ impl Planned {
     }
 
     pub(crate) fn context<'a>(&'a self, catalogue: &'a Catalogue) -> Context<'a> {
-        Context {
-            catalogue,
-            record: &self.record,
-            whitening: &self.whitening,
-            law: &self.law,
-            seed: 1,
-            row_n: self.law.white_n,
-            only: None,
-            is_planned: false,
-            to_draw: false,
-            progress: &NOBODY,
-            kin: None,
-            fits: None,
-        }
+        Context::new(catalogue, &self.record, &self.whitening, &self.law)
     }
 }
 
@@ -243,7 +212,7 @@ fn usual(linear: &LinearisedModel, effect: usize) -> Option<&Candidate> {
     forms.get(forms.len() / 2).copied()
 }
 
-fn effects(linear: &LinearisedModel, rows: usize, muscle: &Muscle) -> Vec<PlannedEffect> {
+fn effects(linear: &LinearisedModel, muscle: &Muscle) -> Vec<PlannedEffect> {
     let of = |(place, screened): (usize, &crate::diagnosis::sensitivity::Screened)| {
         let card = screened.effect.card();
         let cards = screened.effect.parameters();
@@ -257,7 +226,7 @@ fn effects(linear: &LinearisedModel, rows: usize, muscle: &Muscle) -> Vec<Planne
         let limit = (per_size > 0.0).then(|| SEEN / per_size).filter(|limit| *limit <= range);
         let column =
             candidate.and_then(|c| linear.sensitivities.sensitivities[c.sensitivity].columns.first());
-        let rms = column.map_or(0.0, |c| (dot(c, c) / rows.max(1) as f64).sqrt());
+        let rms = column.map_or(0.0, |c| rms(c));
         PlannedEffect {
             effect: card.name.to_owned(),
             family: card.family.to_owned(),

@@ -6,6 +6,7 @@ use crate::comparison::document::Rung;
 use crate::diagnosis::form_error::Bent;
 use crate::diagnosis::stage::Stage;
 use crate::error::InferenceError;
+use crate::vector::add;
 
 /// Separator between the names of effects that were added together.
 pub(crate) const TOGETHER: &str = " + ";
@@ -93,9 +94,7 @@ fn lowered(
     let mut found: Vec<BentRung> = Vec::new();
     let mut waiting = Vec::new();
     for (name, bending) in bending {
-        for (sum, bending) in sum.iter_mut().zip(*bending) {
-            *sum += bending;
-        }
+        add(&mut sum, 1.0, bending);
         waiting.push((*name).to_owned());
         let rmse_n = (less(&sum) + beyond).max(0.0).sqrt();
         let above_n = found.last().map_or(above_n, |rung| rung.rmse_n);

@@ -10,6 +10,7 @@ use crate::comparison::requirements::check_needs;
 use crate::diagnosis::tangents::Tangents;
 use crate::error::InferenceError;
 use crate::fit::nuisance::Prepared;
+use crate::vector::minus;
 
 /// Number of values of each parameter that is not a size (a distance, a time) at which an effect is
 /// evaluated.
@@ -335,8 +336,7 @@ impl ExpansionPoint<'_> {
             // Without an equilibrium everywhere, the effect can't have produced these data.
             return None;
         };
-        let change: Vec<f64> =
-            with.force.iter().zip(self.force).map(|(with, without)| with - without).collect();
+        let change = minus(&with.force, self.force);
         let size = Size {
             place: 0,
             copy: 0,

@@ -10,6 +10,7 @@ use bulge_model::Record;
 
 use crate::chebyshev::chebyshev;
 use crate::diagnosis::setpoints::setpoints;
+use crate::vector::range;
 
 /// Highest degree in the contraction.
 const CONTRACTION: usize = 12;
@@ -44,33 +45,18 @@ pub(crate) enum Variable {
 }
 
 impl Variable {
-    /// All variables.
-    pub(crate) const ALL: [Self; 9] = [
-        Self::Mean,
-        Self::Contraction,
-        Self::Pressure,
-        Self::Direction,
-        Self::Time,
-        Self::Rate,
-        Self::Temperature,
-        Self::Cycle,
-        Self::Specimen,
+    /// All variables, each with its name in results and with how a misfit behaves that depends on it.
+    pub(crate) const ALL: [(Self, &str, &str); 9] = [
+        (Self::Mean, "mean", "is alike in all rows"),
+        (Self::Contraction, "contraction", "changes along the contraction, alike at all pressures"),
+        (Self::Pressure, "pressure", "changes with the pressure"),
+        (Self::Direction, "direction", "flips sign with the direction"),
+        (Self::Time, "time", "changes with time"),
+        (Self::Rate, "rate", "changes with the speed"),
+        (Self::Temperature, "temperature", "changes with the temperature"),
+        (Self::Cycle, "cycle", "changes from cycle to cycle"),
+        (Self::Specimen, "specimen", "differs from specimen to specimen"),
     ];
-
-    /// Its name in results.
-    pub(crate) const fn name(self) -> &'static str {
-        match self {
-            Self::Mean => "mean",
-            Self::Contraction => "contraction",
-            Self::Pressure => "pressure",
-            Self::Direction => "direction",
-            Self::Time => "time",
-            Self::Rate => "rate",
-            Self::Temperature => "temperature",
-            Self::Cycle => "cycle",
-            Self::Specimen => "specimen",
-        }
-    }
 }
 
 /// One function, row by row.
@@ -293,10 +279,6 @@ fn others(record: &Record) -> Vec<Smooth> {
 
 fn product(a: &[f64], b: &[f64]) -> Vec<f64> {
     a.iter().zip(b).map(|(a, b)| a * b).collect()
-}
-
-fn range(values: impl Iterator<Item = f64>) -> [f64; 2] {
-    values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)])
 }
 
 /// A quantity scaled to -1 ..= 1.

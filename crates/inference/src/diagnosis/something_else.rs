@@ -7,7 +7,7 @@
 //! standard deviation, F the largest force.
 
 use crate::diagnosis::linearised_model::LinearisedModel;
-use crate::dot::dot;
+use crate::vector::{dot, rms};
 
 /// Sizes A of a smooth misfit as fractions of the largest force.
 const SIZES: [f64; 6] = [3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 1e-1];
@@ -17,12 +17,8 @@ const FADES: [f64; 3] = [4.0, 12.0, 36.0];
 /// Log evidence of an unknown smooth misfit of a model, relative to none.
 pub(crate) fn smooth_evidence(linear: &LinearisedModel) -> f64 {
     let largest = linear.force.iter().fold(0.0_f64, |most, force| most.max(force.abs()));
-    let rows = linear.force.len().max(1) as f64;
-    let found: Vec<(f64, f64)> = linear
-        .smooth
-        .iter()
-        .map(|d| (dot(&d.unit, &linear.z), (dot(&d.values, &d.values) / rows).sqrt()))
-        .collect();
+    let found: Vec<(f64, f64)> =
+        linear.smooth.iter().map(|d| (dot(&d.unit, &linear.z), rms(&d.values))).collect();
     evidence_of(&found, largest)
 }
 

@@ -10,7 +10,7 @@
 
 use nalgebra::DMatrix;
 
-use crate::dot::dot;
+use crate::vector::{add, dot, norm};
 
 /// A column lies within the frame if less than this fraction of it is outside.
 const WITHIN: f64 = 1e-7;
@@ -83,12 +83,12 @@ impl Space {
             // A rounding error is no direction.
             return coordinates;
         }
-        add(&mut coordinates, &subtract(&mut left, &self.frame));
+        add(&mut coordinates, 1.0, &subtract(&mut left, &self.frame));
         let mut length = norm(&left);
         if length < ENOUGH * norm(column) {
             // A second pass removes what rounding left of them (Kahan, Parlett).
             subtract(&mut left, &self.tangents);
-            add(&mut coordinates, &subtract(&mut left, &self.frame));
+            add(&mut coordinates, 1.0, &subtract(&mut left, &self.frame));
             length = norm(&left);
         }
         if length > WITHIN * size {
@@ -133,7 +133,7 @@ impl Space {
                 coordinates.extend(subtract(&mut own, &self.frame[known..]));
                 if norm(&own) < ENOUGH * whole {
                     let again = subtract(&mut own, &self.frame[known..]);
-                    add(&mut coordinates[known..], &again);
+                    add(&mut coordinates[known..], 1.0, &again);
                 }
                 let length = norm(&own);
                 if length > WITHIN * size {
@@ -184,18 +184,10 @@ impl Space {
 fn subtract(column: &mut [f64], units: &[Vec<f64>]) -> Vec<f64> {
     let without = |unit: &Vec<f64>| {
         let part = dot(unit, column);
-        for (value, u) in column.iter_mut().zip(unit) {
-            *value -= part * u;
-        }
+        add(column, -part, unit);
         part
     };
     units.iter().map(without).collect()
-}
-
-fn add(sum: &mut [f64], parts: &[f64]) {
-    for (sum, part) in sum.iter_mut().zip(parts) {
-        *sum += part;
-    }
 }
 
 fn scaled(mut column: Vec<f64>, factor: f64) -> Vec<f64> {
@@ -203,10 +195,6 @@ fn scaled(mut column: Vec<f64>, factor: f64) -> Vec<f64> {
         *value *= factor;
     }
     column
-}
-
-pub(crate) fn norm(a: &[f64]) -> f64 {
-    dot(a, a).sqrt()
 }
 
 /// A function orthogonalised against others so that its white column has norm 1; none if it contains nothing
@@ -222,12 +210,8 @@ pub(crate) fn orthogonal(
         let before = left;
         for (other, unit) in known {
             let part = dot(&white, unit);
-            for (value, u) in white.iter_mut().zip(unit) {
-                *value -= part * u;
-            }
-            for (value, o) in raw.iter_mut().zip(other) {
-                *value -= part * o;
-            }
+            add(&mut white, -part, unit);
+            add(&mut raw, -part, other);
         }
         left = norm(&white);
         if left > ENOUGH * before {

@@ -5,6 +5,7 @@ use bulge_effects::Moment;
 use bulge_model::Record;
 
 use crate::comparison::levels::Levels;
+use crate::vector::range;
 
 /// Contractions that differ by less count as the same held length.
 const HELD: f64 = 2e-3;
@@ -41,8 +42,7 @@ pub(crate) struct Stroke {
 pub(crate) fn strokes(record: &Record) -> Vec<Stroke> {
     let levels = Levels::of(record, &vec![true; record.len()]);
     let width = |of: &dyn Fn(&Moment) -> f64| {
-        let ends = record.moments().iter().map(of);
-        let [low, high] = ends.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], v| [l.min(v), h.max(v)]);
+        let [low, high] = range(record.moments().iter().map(of));
         (high - low).max(f64::MIN_POSITIVE)
     };
     let [contractions, pressures] = [width(&|m| m.contraction), width(&|m| m.pressure)];

@@ -6,6 +6,7 @@ use bulge_model::{ModelError, Record, Wanted, Warm};
 use crate::diagnosis::setpoints::setpoints;
 use crate::fit::nuisance::Prepared;
 use crate::fit::problem::free;
+use crate::vector::minus;
 
 /// Force and derivatives of a model.
 pub(crate) struct Tangents {
@@ -35,7 +36,7 @@ impl Tangents {
         warm.hold();
         let at_set = model.evaluate_warm(&set, theta, &wanted, &warm)?;
         let force = model.evaluate_warm(record, theta, &Wanted::default(), &warm.shared())?.force;
-        let residual = record.force().iter().zip(&force).map(|(measured, force)| measured - force).collect();
+        let residual = minus(record.force(), &force);
         let k = wanted.parameters.len();
         let columns = (0..k).map(|j| at_set.jacobian.iter().skip(j).step_by(k).copied().collect()).collect();
         Ok(Self { set, force, force_as_set: at_set.force, residual, free: wanted.parameters, columns, warm })

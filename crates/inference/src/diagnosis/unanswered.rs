@@ -9,29 +9,19 @@ use crate::comparison::loops::branches;
 use crate::comparison::rows::full_scale;
 use crate::diagnosis::document::{DiagnosedData, DiagnosedNoise, Diagnosis, Remaining, Verdict};
 use crate::diagnosis::geometry::Geometry;
-use crate::diagnosis::write::source;
 use crate::noise::law::{NoiseLaw, NoiseSource};
+use crate::vector::range;
 
 /// The data have too few rows for any statement.
 pub(crate) fn cannot_tell(data: &Data, muscle: &Muscle, reason: &str) -> Diagnosis {
     let stated = muscle.instruments().force.map_or(0.0, |force| force.noise());
     let law = NoiseLaw::white(stated, NoiseSource::Instruments, 0.0, "not known from these rows".to_owned());
+    let comparison = nothing_compared(data, muscle);
     Diagnosis {
         schema: "bulge.diagnosis/1",
         muscle: muscle.name().to_owned(),
-        data: DiagnosedData {
-            rows: data.len(),
-            used: data.len(),
-            effective_rows: data.len() as f64,
-            reading: data.reading().clone(),
-            sha256: data.sha256(),
-            sweeps: data.sweeps().len(),
-            specimens: data.specimens().len(),
-            left_out: Vec::new(),
-            findings: Vec::new(),
-            quality: quality(data, muscle),
-        },
-        noise: DiagnosedNoise { sd_n: stated, correlated: false, source: source(law.source).to_owned(), law },
+        data: DiagnosedData::of(&comparison, data.len() as f64),
+        noise: DiagnosedNoise { sd_n: stated, correlated: false, source: law.source, law },
         verdict: Verdict::CannotTell,
         says: format!(
             "these data can't tell: {reason}. Measure at least three pressures with 20 rows each, shortening and lengthening, with a column `time`"
@@ -43,20 +33,12 @@ pub(crate) fn cannot_tell(data: &Data, muscle: &Muscle, reason: &str) -> Diagnos
         noise_floor_n: stated,
         r#where: Vec::new(),
         explained: Vec::new(),
-        remaining: Remaining {
-            structured: false,
-            misfit_n: 0.0,
-            misfit_interval_n: [0.0, 0.0],
-            by_formulas: None,
-            unseen_below_n: None,
-            hints: Vec::new(),
-            surface: Vec::new(),
-        },
+        remaining: Remaining::default(),
         geometry: Geometry::default(),
         not_looked_for: Vec::new(),
         next_experiment: None,
         warnings: Vec::new(),
-        comparison: nothing_compared(data, muscle),
+        comparison,
         rows: None,
     }
 }
@@ -86,14 +68,10 @@ pub(crate) fn unanswered(data: &Data, muscle: &Muscle, comparison: Comparison) -
 
 /// A summary of the data without any model.
 fn nothing_compared(data: &Data, muscle: &Muscle) -> Comparison {
-    let range = |values: &[f64]| {
-        values.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(*v), high.max(*v)])
-    };
+    let range = |values: &[f64]| range(values.iter().copied());
     let summary = DataSummary {
         rows: data.len(),
         used: data.len(),
-        left_out: Vec::new(),
-        findings: Vec::new(),
         reading: data.reading().clone(),
         sha256: data.sha256(),
         files: data.files().iter().map(|file| file.name.clone()).collect(),
@@ -106,6 +84,7 @@ fn nothing_compared(data: &Data, muscle: &Muscle) -> Comparison {
         contraction: range(&data.contraction(muscle.length().si())),
         force_n: range(data.force()),
         full_scale_n: full_scale(data.force(), 0..data.len()),
+        ..DataSummary::default()
     };
     Comparison {
         schema: "bulge.comparison/1",
@@ -113,16 +92,6 @@ fn nothing_compared(data: &Data, muscle: &Muscle) -> Comparison {
         base: "equilibrium".to_owned(),
         data: summary,
         quality: quality(data, muscle),
-        noise_floor: None,
-        ladder: Vec::new(),
-        by: Vec::new(),
-        loops: Vec::new(),
-        isotonic: Vec::new(),
-        maps: Vec::new(),
-        curves: Vec::new(),
-        contributions: Vec::new(),
-        scatter: Vec::new(),
-        rivals: Vec::new(),
-        warnings: Vec::new(),
+        ..Comparison::default()
     }
 }

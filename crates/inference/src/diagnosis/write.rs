@@ -27,10 +27,9 @@ use crate::diagnosis::rungs::{BentRung, TOGETHER, join_useless};
 use crate::diagnosis::search::Search;
 use crate::diagnosis::stage::Stage;
 use crate::diagnosis::verdict::furthest;
-use crate::dot::dot;
 use crate::fit::interval;
 use crate::fit::problem::{FitProblem, free};
-use crate::noise::law::NoiseSource;
+use crate::vector::{range, rms};
 use bulge_numerics::least_squares::Side;
 
 /// The family of hysteresis with a transition after each reversal; the next constant is the effect without
@@ -80,22 +79,11 @@ pub(crate) fn document(
     Diagnosis {
         schema: "bulge.diagnosis/1",
         muscle: muscle.name().to_owned(),
-        data: DiagnosedData {
-            rows: comparison.data.rows,
-            used: comparison.data.used,
-            effective_rows: found.effective_rows,
-            reading: comparison.data.reading.clone(),
-            sha256: comparison.data.sha256.clone(),
-            sweeps: comparison.data.sweeps,
-            specimens: comparison.data.specimens.len(),
-            left_out: comparison.data.left_out.clone(),
-            findings: comparison.data.findings.clone(),
-            quality: comparison.quality.clone(),
-        },
+        data: DiagnosedData::of(&comparison, found.effective_rows),
         noise: DiagnosedNoise {
             sd_n,
             correlated: !context.law.is_white(),
-            source: source(context.law.source).to_owned(),
+            source: context.law.source,
             law: context.law.clone(),
         },
         verdict,
@@ -122,14 +110,6 @@ pub(crate) fn document(
         warnings: comparison.warnings.clone(),
         comparison,
         rows: Some(rows),
-    }
-}
-
-pub(crate) const fn source(source: NoiseSource) -> &'static str {
-    match source {
-        NoiseSource::Repeats => "repeats",
-        NoiseSource::Saturated => "saturated",
-        NoiseSource::Instruments => "instruments",
     }
 }
 
@@ -206,9 +186,8 @@ impl Findings<'_> {
             .find(|(p, _)| p.effect == card.name && p.name == "distance")
             .map(|(_, value)| *value);
         let stroke = |rows: &std::ops::Range<usize>| {
-            let contractions = self.context.record.moments()[rows.clone()].iter().map(|m| m.contraction);
-            let [low, high] =
-                contractions.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], e| [l.min(e), h.max(e)]);
+            let moments = &self.context.record.moments()[rows.clone()];
+            let [low, high] = range(moments.iter().map(|m| m.contraction));
             high - low
         };
         let stroke = self.context.record.sweeps().iter().map(stroke).fold(0.0, f64::max);
@@ -297,13 +276,7 @@ impl Findings<'_> {
         let last = self.last();
         let confirmed = &last.confirmed;
         let model = &confirmed.prepared.model;
-        let priors: Vec<Option<(f64, f64)>> = confirmed
-            .prepared
-            .priors
-            .iter()
-            .zip(&confirmed.prepared.nuisance)
-            .map(|(prior, nuisance)| prior.filter(|_| *nuisance))
-            .collect();
+        let priors = confirmed.prepared.nuisance_priors();
         let problem = FitProblem::whitened(
             model,
             self.context.record,
@@ -370,7 +343,6 @@ fn rival_result(rival: &Rival, class: &Class) -> RivalResult {
 impl Findings<'_> {
     /// Every effect of the catalogue, tested on the base.
     fn candidates(&self, classes: &[(Class, Confidence)], claimed: &[Missing]) -> Vec<CandidateResult> {
-        let context = self.context;
         let stage = &self.search.stages[0];
         let linear = &stage.linear;
         let alone = singles(linear, &stage.confirmed.prepared.model);
@@ -406,7 +378,7 @@ impl Findings<'_> {
                 .filter(|l| number.is_none_or(|n| *l <= n.of(given_muscle).high - n.of(given_muscle).low));
             let column =
                 candidate.and_then(|c| linear.sensitivities.sensitivities[c.sensitivity].columns.first());
-            let rms = column.map(|c| (dot(c, c) / context.record.len().max(1) as f64).sqrt());
+            let rms = column.map(|c| rms(c));
             let fitted = tried.map(|t| t.log_evidence).filter(|evidence| evidence.is_finite());
             found.push(CandidateResult {
                 effect: name.to_owned(),

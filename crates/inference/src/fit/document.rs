@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 /// A fit of some parameters of a model.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct Fit {
     /// The fitted parameters, in the order of the model.
     pub parameters: Vec<Fitted>,
@@ -64,7 +64,7 @@ pub struct Fitted {
 }
 
 /// How a search ended.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct Convergence {
     /// Whether the best point is a minimum within the bounds.
     pub converged: bool,

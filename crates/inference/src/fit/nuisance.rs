@@ -1,7 +1,7 @@
 //! Nuisance parameters: rig errors within the data sheets and stated widths of the muscle, fitted along as
 //! noise.
 
-use bulge_effects::{Catalogue, Effect};
+use bulge_effects::{Catalogue, Effect, Known};
 use bulge_model::{Model, ModelError};
 use bulge_muscles::{Instrument, Muscle, Parameter, Quantity};
 use std::sync::Arc;
@@ -29,8 +29,7 @@ impl Prepared {
     /// The start of a fit: nuisance parameters start at their stated values.
     pub(crate) fn start(&self) -> Vec<f64> {
         let mut start = self.model.start();
-        let stated =
-            self.priors.iter().zip(&self.nuisance).map(|(prior, nuisance)| prior.filter(|_| *nuisance));
+        let stated = self.nuisance_priors();
         for ((value, p), prior) in start.iter_mut().zip(self.model.parameters()).zip(stated) {
             if let Some((mean, _)) = prior.filter(|_| !p.fixed) {
                 // Bounds stated by the user may be narrower than the data sheet.
@@ -38,6 +37,13 @@ impl Prepared {
             }
         }
         self.model.with_ties(&start).into_owned()
+    }
+
+    /// The priors of data sheets and widths. Sizes of effects are free in the fit of a diagnosis; their priors
+    /// enter the evidence.
+    pub(crate) fn nuisance_priors(&self) -> Vec<Option<(f64, f64)>> {
+        let both = self.priors.iter().zip(&self.nuisance);
+        both.map(|(prior, nuisance)| prior.filter(|_| *nuisance)).collect()
     }
 }
 
@@ -79,6 +85,16 @@ pub(crate) fn with_nuisances(model: &Model, catalogue: &Catalogue) -> Result<Pre
         }
     }
     Ok(prepared)
+}
+
+/// A muscle with its known effects, for some specimens.
+pub(crate) fn known_model(
+    muscle: &Muscle,
+    known: &[Known],
+    specimens: &[String],
+) -> Result<Model, ModelError> {
+    let model = Model::new(muscle).for_specimens(specimens)?;
+    known.iter().try_fold(model, |model, (effect, values)| model.with(effect, Some(values)))
 }
 
 /// Geometrical parameters for which a stated width adds a nuisance parameter.

@@ -383,7 +383,6 @@ fn report(
     let square: f64 = residuals.iter().zip(problem.sd()).map(|(r, sd)| (r * sd) * (r * sd)).sum();
     let effective = if task.quick { n as f64 } else { effective_rows(task.record, &residuals, task.used) };
     let mut fit = Fit {
-        parameters: Vec::new(),
         theta,
         rmse_n: (square / n.max(1) as f64).sqrt(),
         cost: minimum.cost,
@@ -391,7 +390,7 @@ fn report(
         effective_rows: effective,
         correlations: minimum.correlation(),
         convergence,
-        warnings: Vec::new(),
+        ..Fit::default()
     };
     if task.quick {
         return fit;

@@ -72,6 +72,18 @@ pub enum NoiseSource {
     Instruments,
 }
 
+impl NoiseSource {
+    /// Its name in documents.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Repeats => "repeats",
+            Self::Saturated => "saturated",
+            Self::Instruments => "instruments",
+        }
+    }
+}
+
 impl NoiseLaw {
     /// Independent noise of standard deviation `white_n` \[N\].
     #[must_use]

@@ -1,7 +1,7 @@
 //! Orthonormal basis of the column space of a matrix at its numerical rank: pivoted Gram-Schmidt, twice, then
 //! one-sided Jacobi (Golub and Van Loan 2013, 5.2, 8.6).
 
-use crate::dot::dot;
+use crate::vector::{add, dot, norm};
 
 /// Singular values below this fraction of the largest one count as 0; the columns are scaled to norm 1.
 const RANK: f64 = 1e-6;
@@ -27,7 +27,7 @@ impl Basis {
                 let column: Vec<f64> = values.iter().skip(j).step_by(m).copied().collect();
                 let largest = column.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
                 let column: Vec<f64> = column.iter().map(|x| x / largest).collect();
-                let length = dot(&column, &column).sqrt();
+                let length = norm(&column);
                 (largest > 0.0).then(|| column.iter().map(|x| x / length).collect())
             })
             .collect();
@@ -71,7 +71,7 @@ fn gram_schmidt(mut columns: Vec<Vec<f64>>) -> (Vec<Vec<f64>>, Vec<Vec<f64>>) {
     while let Some((place, rest)) = left
         .iter()
         .enumerate()
-        .map(|(place, j)| (place, dot(&columns[*j], &columns[*j]).sqrt()))
+        .map(|(place, j)| (place, norm(&columns[*j])))
         .max_by(|a, b| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0)))
         && rest > ROUNDING
     {
@@ -83,7 +83,7 @@ fn gram_schmidt(mut columns: Vec<Vec<f64>>) -> (Vec<Vec<f64>>, Vec<Vec<f64>>) {
             triangle[pivot][i] += part;
             add(&mut q, -part, before);
         }
-        let length = dot(&q, &q).sqrt();
+        let length = norm(&q);
         if length <= ROUNDING {
             left.remove(place);
             continue;
@@ -122,7 +122,7 @@ fn left_directions(mut columns: Vec<Vec<f64>>, rows: usize) -> Vec<Vec<f64>> {
             break;
         }
     }
-    let lengths: Vec<f64> = columns.iter().map(|column| dot(column, column).sqrt()).collect();
+    let lengths: Vec<f64> = columns.iter().map(|column| norm(column)).collect();
     let largest = lengths.iter().copied().fold(0.0, f64::max);
     let mut kept: Vec<(f64, Vec<f64>)> =
         lengths.into_iter().zip(columns).filter(|(length, _)| *length > RANK * largest).collect();
@@ -145,12 +145,6 @@ fn rotate(first: &mut [f64], second: &mut [f64]) -> bool {
         (*x, *y) = (cosine * *x - sine * *y, sine * *x + cosine * *y);
     }
     true
-}
-
-fn add(to: &mut [f64], factor: f64, vector: &[f64]) {
-    for (x, y) in to.iter_mut().zip(vector) {
-        *x += factor * y;
-    }
 }
 
 #[cfg(test)]
@@ -186,6 +180,6 @@ mod tests {
         }
         let mut column: Vec<f64> = values.iter().skip(5).step_by(7).copied().collect();
         basis.remove_from(&mut column);
-        assert!(dot(&column, &column).sqrt() < 1e-9);
+        assert!(norm(&column) < 1e-9);
     }
 }

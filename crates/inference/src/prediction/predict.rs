@@ -22,6 +22,7 @@ use crate::error::InferenceError;
 use crate::fit::interval::quantile;
 use crate::prediction::document::{Against, Predicted, PredictedColumns, UncertainNumber};
 use crate::prediction::uncertain::Uncertain;
+use crate::vector::minus;
 
 /// The force of a muscle, with the effects that its file states, at rows that it wasn't fitted to.
 ///
@@ -131,7 +132,6 @@ fn columns(
         .map(|row| if force[row].is_finite() { doubt(row) } else { [f64::NAN; 2] })
         .collect();
     let measured_n = data.has_force().then(|| record.force().to_vec());
-    let residual = |measured: &Vec<f64>| measured.iter().zip(force).map(|(m, f)| m - f).collect();
     PredictedColumns {
         specimens: record.specimens().to_vec(),
         sweeps: data.is_path().then(|| data.sweeps().iter().map(|sweep| sweep.name.clone()).collect()),
@@ -145,7 +145,7 @@ fn columns(
         sd_n: doubts.iter().map(|[sd, _]| *sd).collect(),
         low_n: force.iter().zip(&doubts).map(|(force, [_, half])| force - half).collect(),
         high_n: force.iter().zip(&doubts).map(|(force, [_, half])| force + half).collect(),
-        residual_n: measured_n.as_ref().map(residual),
+        residual_n: measured_n.as_ref().map(|measured| minus(measured, force)),
         measured_n,
         force_n: force.to_vec(),
     }

@@ -6,7 +6,7 @@ use bulge_model::{Model, ModelParameter};
 use bulge_muscles::{FittedNumber, FittedNumbers, Muscle, Parameter};
 
 use crate::error::InferenceError;
-use crate::fit::nuisance::with_nuisances;
+use crate::fit::nuisance::{known_model, with_nuisances};
 
 /// Relative difference allowed between a fitted value and that of its effect: the digits of a file.
 const SAME: f64 = 1e-9;
@@ -34,10 +34,7 @@ impl Uncertain {
         catalogue: &Catalogue,
         specimens: &[String],
     ) -> Result<Self, InferenceError> {
-        let mut model = Model::new(muscle).for_specimens(specimens)?;
-        for (effect, values) in known {
-            model = model.with(effect, Some(values))?;
-        }
+        let mut model = known_model(muscle, known, specimens)?;
         let mut warnings = Vec::new();
         let fitted = muscle.fitted().cloned().unwrap_or_default();
         for name in shapes(&fitted) {

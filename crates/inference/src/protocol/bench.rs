@@ -7,6 +7,7 @@ use std::ops::RangeInclusive;
 use bulge_muscles::Muscle;
 
 use crate::error::InferenceError;
+use crate::vector::range;
 
 /// Most rows of a protocol.
 pub const MOST_ROWS: usize = 1_000_000;
@@ -180,9 +181,7 @@ impl Block {
     /// in `period_s` \[s\].
     #[must_use]
     pub fn isometric(pressure_pa: [f64; 2], held: Vec<f64>, period_s: f64) -> Self {
-        let ends = held
-            .iter()
-            .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], e| [low.min(*e), high.max(*e)]);
+        let ends = range(held.iter().copied());
         Self { held, ..Self::loops(pressure_pa.to_vec(), ends, period_s) }
     }
 
@@ -196,9 +195,7 @@ impl Block {
     }
 
     pub(crate) fn pressure_range(&self) -> [f64; 2] {
-        self.pressures_pa
-            .iter()
-            .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], p| [low.min(*p), high.max(*p)])
+        range(self.pressures_pa.iter().copied())
     }
 
     /// Rows of one sweep.
@@ -222,37 +219,36 @@ impl Block {
     }
 
     pub(crate) fn check(&self) -> Result<(), Wrong> {
-        let count = |key, value: u32, least: u32, example: &str| {
-            let what = format!("`{key}` is {value}, but must be a whole number from {least} to {MOST_COUNT}");
-            let instead = format!("write such as `{example}`");
-            if (least..=MOST_COUNT).contains(&value) { Ok(()) } else { Err(Wrong { key, what, instead }) }
-        };
-        if self.pressures_pa.is_empty() || self.pressures_pa.len() > MOST_COUNT as usize {
-            let what = format!(
-                "there are {} pressures, but 1 to {MOST_COUNT} are possible",
-                self.pressures_pa.len()
-            );
-            let instead = "write such as `pressures = [\"2 bar\", \"3 bar\"]`".to_owned();
-            return Err(Wrong { key: "pressures", what, instead });
-        }
-        if let Some(pressure) = self.pressures_pa.iter().find(|p| !(**p > 0.0 && **p <= MOST_PRESSURE)) {
-            let what = format!(
-                "a pressure of {pressure} Pa is not possible: gauge pressures lie above 0 and up to 1000 bar"
-            );
-            return Err(Wrong { key: "pressures", what, instead: "write such as \"2 bar\"".to_owned() });
+        let pressures = self.pressures_pa.len();
+        Wrong::unless(
+            (1..=MOST_COUNT as usize).contains(&pressures),
+            "pressures",
+            format_args!("there are {pressures} pressures, but 1 to {MOST_COUNT} are possible"),
+            "write such as `pressures = [\"2 bar\", \"3 bar\"]`",
+        )?;
+        for pressure in &self.pressures_pa {
+            Wrong::unless(
+                *pressure > 0.0 && *pressure <= MOST_PRESSURE,
+                "pressures",
+                format_args!(
+                    "a pressure of {pressure} Pa is not possible: gauge pressures lie above 0 and up to 1000 bar"
+                ),
+                "write such as \"2 bar\"",
+            )?;
         }
         self.check_held()?;
         let [low, high] = self.contraction;
         let rises = low < high || !self.held.is_empty();
-        if !(CONTRACTIONS.contains(&low) && CONTRACTIONS.contains(&high) && rises) {
-            let what = format!(
+        Wrong::unless(
+            CONTRACTIONS.contains(&low) && CONTRACTIONS.contains(&high) && rises,
+            "contraction",
+            format_args!(
                 "a contraction from {:.4} % to {:.4} % is not possible: it must rise, within -100 % and 60 %",
                 100.0 * low,
                 100.0 * high
-            );
-            let instead = "write such as `contraction = \"1 %..20 %\"`".to_owned();
-            return Err(Wrong { key: "contraction", what, instead });
-        }
+            ),
+            "write such as `contraction = \"1 %..20 %\"`",
+        )?;
         count("rows", self.rows, 2, "rows = 50")?;
         count("repeats", self.repeats, 1, "repeats = 2")?;
         count("specimens", self.specimens, 1, "specimens = 3")?;
@@ -261,68 +257,69 @@ impl Block {
         }
         count("rows", self.rows, 4, "rows = 50")?;
         count("cycles", self.cycles, 1, "cycles = 3")?;
-        if !(self.period_s > 0.0 && self.period_s <= MOST_TIME) {
-            let what = format!(
+        Wrong::unless(
+            self.period_s > 0.0 && self.period_s <= MOST_TIME,
+            "period",
+            format_args!(
                 "a period of {} s is not possible: it must be > 0 s and at most 1e7 s",
                 self.period_s
-            );
-            return Err(Wrong {
-                key: "period",
-                what,
-                instead: "write such as `period = \"50 s\"`".to_owned(),
-            });
-        }
-        self.check_stairs(count)
+            ),
+            "write such as `period = \"50 s\"`",
+        )?;
+        self.check_stairs()
     }
 
     fn check_held(&self) -> Result<(), Wrong> {
         if self.held.is_empty() {
             return Ok(());
         }
-        if self.held.len() > MOST_COUNT as usize || self.held.iter().any(|e| !CONTRACTIONS.contains(e)) {
-            let what = format!(
-                "{} contractions are held, and 1 to {MOST_COUNT} within -100 % and 60 % are possible",
-                self.held.len()
-            );
-            let instead = "write such as `contractions = [\"2 %\", \"10 %\"]`".to_owned();
-            return Err(Wrong { key: "contractions", what, instead });
-        }
+        let held = self.held.len();
+        Wrong::unless(
+            held <= MOST_COUNT as usize && self.held.iter().all(|e| CONTRACTIONS.contains(e)),
+            "contractions",
+            format_args!(
+                "{held} contractions are held, and 1 to {MOST_COUNT} within -100 % and 60 % are possible"
+            ),
+            "write such as `contractions = [\"2 %\", \"10 %\"]`",
+        )?;
         let [low, high] = self.pressure_range();
-        if low >= high {
-            let what = format!("the pressure goes from {low} to {high} Pa, but must change at held length");
-            let instead = "write such as `pressure = \"1 bar..6 bar\"`".to_owned();
-            return Err(Wrong { key: "pressure", what, instead });
-        }
-        Ok(())
+        Wrong::unless(
+            low < high,
+            "pressure",
+            format_args!("the pressure goes from {low} to {high} Pa, but must change at held length"),
+            "write such as `pressure = \"1 bar..6 bar\"`",
+        )
     }
 
-    fn check_stairs(
-        &self,
-        count: impl Fn(&'static str, u32, u32, &str) -> Result<(), Wrong>,
-    ) -> Result<(), Wrong> {
+    fn check_stairs(&self) -> Result<(), Wrong> {
         let Path::Stairs { steps, hold_s } = self.path else { return Ok(()) };
         count("steps", steps, 1, "steps = 8")?;
-        let stage = self.period_s / f64::from(2 * steps);
-        if !(hold_s >= 0.0 && hold_s < stage) {
-            let what = format!(
-                "a hold of {hold_s} s is not possible: a period of {} s leaves {stage} s for each of {} steps, and the way takes some of it",
-                self.period_s,
-                2 * steps
-            );
-            let instead = "write a shorter `hold`, or a longer `period`".to_owned();
-            return Err(Wrong { key: "hold", what, instead });
-        }
-        if u64::from(self.rows) < 4 * u64::from(steps) {
-            let what =
-                format!("{} rows are too few for {} steps: each needs two or more", self.rows, 2 * steps);
-            return Err(Wrong {
-                key: "rows",
-                what,
-                instead: format!("write `rows = {}` or more", 4 * steps),
-            });
-        }
-        Ok(())
+        let (all, period_s) = (2 * steps, self.period_s);
+        let stage = period_s / f64::from(all);
+        Wrong::unless(
+            hold_s >= 0.0 && hold_s < stage,
+            "hold",
+            format_args!(
+                "a hold of {hold_s} s is not possible: a period of {period_s} s leaves {stage} s for each of {all} steps, and the way takes some of it"
+            ),
+            "write a shorter `hold`, or a longer `period`",
+        )?;
+        Wrong::unless(
+            u64::from(self.rows) >= 4 * u64::from(steps),
+            "rows",
+            format_args!("{} rows are too few for {all} steps: each needs two or more", self.rows),
+            &format!("write `rows = {}` or more", 4 * steps),
+        )
     }
+}
+
+fn count(key: &'static str, value: u32, least: u32, example: &str) -> Result<(), Wrong> {
+    Wrong::unless(
+        (least..=MOST_COUNT).contains(&value),
+        key,
+        format_args!("`{key}` is {value}, but must be a whole number from {least} to {MOST_COUNT}"),
+        &format!("write such as `{example}`"),
+    )
 }
 
 impl ReadingNoise {
@@ -337,27 +334,30 @@ impl ReadingNoise {
         for (key, value, example) in sizes {
             size(key, value, "a standard deviation", example)?;
         }
-        if let Some(tails) = self.tails.filter(|tails| !(LEAST_TAILS..=1e6).contains(tails)) {
-            let what = format!(
+        let tails = self.tails.unwrap_or(LEAST_TAILS);
+        Wrong::unless(
+            (LEAST_TAILS..=1e6).contains(&tails),
+            "tails",
+            format_args!(
                 "`tails` is {tails}, but must be from {LEAST_TAILS} to 1e6: the degrees of freedom of Student's t"
-            );
-            let instead = "write such as `tails = 4`, or leave it out for normal noise".to_owned();
-            return Err(Wrong { key: "tails", what, instead });
-        }
-        if self.correlated_n > 0.0 && is_static {
-            let what = "`correlated` noise needs time, and a static map has none".to_owned();
-            return Err(Wrong { key: "correlated", what, instead: "leave it out".to_owned() });
-        }
-        if self.correlated_n > 0.0 && !(self.correlation_time_s > 0.0 && self.correlation_time_s <= MOST_TIME)
-        {
-            let what = format!(
-                "a correlation time of {} s is not possible: `correlated` noise needs one > 0 s",
-                self.correlation_time_s
-            );
-            let instead = "write such as `correlation_time = \"5 s\"`".to_owned();
-            return Err(Wrong { key: "correlation_time", what, instead });
-        }
-        Ok(())
+            ),
+            "write such as `tails = 4`, or leave it out for normal noise",
+        )?;
+        let (is_correlated, time) = (self.correlated_n > 0.0, self.correlation_time_s);
+        Wrong::unless(
+            !(is_correlated && is_static),
+            "correlated",
+            format_args!("`correlated` noise needs time, and a static map has none"),
+            "leave it out",
+        )?;
+        Wrong::unless(
+            !is_correlated || time > 0.0 && time <= MOST_TIME,
+            "correlation_time",
+            format_args!(
+                "a correlation time of {time} s is not possible: `correlated` noise needs one > 0 s"
+            ),
+            "write such as `correlation_time = \"5 s\"`",
+        )
     }
 }
 
@@ -370,11 +370,12 @@ impl ReadingSteps {
 }
 
 fn size(key: &'static str, value: f64, name: &str, example: &str) -> Result<(), Wrong> {
-    if (0.0..=MOST_NOISE).contains(&value) {
-        return Ok(());
-    }
-    let what = format!("`{key}` is {value} in SI units: {name} lies between 0 and 1e7");
-    Err(Wrong { key, what, instead: format!("write such as `{key} = \"{example}\"`, or leave it out") })
+    Wrong::unless(
+        (0.0..=MOST_NOISE).contains(&value),
+        key,
+        format_args!("`{key}` is {value} in SI units: {name} lies between 0 and 1e7"),
+        &format!("write such as `{key} = \"{example}\"`, or leave it out"),
+    )
 }
 
 impl Protocol {
@@ -448,40 +449,49 @@ impl Protocol {
 
     /// Checks what concerns no single table.
     pub(crate) fn check_whole(&self) -> Result<(), Wrong> {
-        if self.blocks.is_empty() {
-            let what = "a protocol needs a block".to_owned();
-            return Err(Wrong { key: "block", what, instead: "write such as `[[block]]`".to_owned() });
-        }
-        if self.blocks.iter().any(|block| (block.path == Path::Static) != self.is_static()) {
-            let what =
-                "a static map has no time, the other blocks have: they don't fit into one file".to_owned();
-            return Err(Wrong { key: "block", what, instead: "write two protocols".to_owned() });
-        }
-        if self.len() > MOST_ROWS as u64 {
-            let what = format!("the protocol has {} rows, and {MOST_ROWS} are the most", self.len());
-            let instead =
-                "take fewer `rows`, `cycles`, `repeats` or `specimens`, or a longer `interval`".to_owned();
-            return Err(Wrong { key: "block", what, instead });
-        }
-        if !(0.0..=MOST_TIME).contains(&self.pause_s) {
-            let what =
-                format!("a pause of {} s is not possible: it lies between 0 s and 1e7 s", self.pause_s);
-            return Err(Wrong { key: "pause", what, instead: "write such as `pause = \"10 s\"`".to_owned() });
-        }
-        if self.warming_k.abs() > MOST_WARMING || !self.warming_k.is_finite() {
-            let what =
-                format!("a warming by {} K is not possible: at most {MOST_WARMING} K are", self.warming_k);
-            return Err(Wrong {
-                key: "warming",
-                what,
-                instead: "write such as `warming = \"10 K\"`".to_owned(),
-            });
-        }
-        Ok(())
+        Wrong::unless(
+            !self.blocks.is_empty(),
+            "block",
+            format_args!("a protocol needs a block"),
+            "write such as `[[block]]`",
+        )?;
+        Wrong::unless(
+            self.blocks.iter().all(|block| (block.path == Path::Static) == self.is_static()),
+            "block",
+            format_args!("a static map has no time, the other blocks have: they don't fit into one file"),
+            "write two protocols",
+        )?;
+        Wrong::unless(
+            self.len() <= MOST_ROWS as u64,
+            "block",
+            format_args!("the protocol has {} rows, and {MOST_ROWS} are the most", self.len()),
+            "take fewer `rows`, `cycles`, `repeats` or `specimens`, or a longer `interval`",
+        )?;
+        Wrong::unless(
+            (0.0..=MOST_TIME).contains(&self.pause_s),
+            "pause",
+            format_args!("a pause of {} s is not possible: it lies between 0 s and 1e7 s", self.pause_s),
+            "write such as `pause = \"10 s\"`",
+        )?;
+        Wrong::unless(
+            self.warming_k.abs() <= MOST_WARMING,
+            "warming",
+            format_args!("a warming by {} K is not possible: at most {MOST_WARMING} K are", self.warming_k),
+            "write such as `warming = \"10 K\"`",
+        )
     }
 }
 
 impl Wrong {
+    fn unless(
+        is_fine: bool,
+        key: &'static str,
+        what: std::fmt::Arguments<'_>,
+        instead: &str,
+    ) -> Result<(), Self> {
+        if is_fine { Ok(()) } else { Err(Self { key, what: what.to_string(), instead: instead.to_owned() }) }
+    }
+
     fn of(self, place: &str) -> InferenceError {
         InferenceError::Protocol { what: format!("{place}: {}", self.what), instead: self.instead }
     }

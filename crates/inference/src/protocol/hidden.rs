@@ -7,6 +7,7 @@ use bulge_numerics::Random;
 use std::sync::Arc;
 
 use crate::error::InferenceError;
+use crate::fit::nuisance::known_model;
 use crate::protocol::bench::Protocol;
 use crate::protocol::simulation::{Simulation, simulate};
 
@@ -62,13 +63,8 @@ pub fn simulate_with(
     let find = |name: &str| Ok(Arc::clone(catalogue.find(name)?));
     let stated = stated(with, find, muscle)?;
     let (muscle, specimens) = &protocol.specimens_of(muscle)?;
-    let mut model = Model::new(muscle).for_specimens(specimens)?;
-    for (effect, numbers) in known(muscle, catalogue)? {
-        model = model.with(&effect, Some(&numbers))?;
-    }
-    for one in &stated {
-        model = model.with(&one.effect, None)?;
-    }
+    let known = known_model(muscle, &known(muscle, catalogue)?, specimens)?;
+    let model = stated.iter().try_fold(known, |model, one| model.with(&one.effect, None))?;
     let theta = numbers(&model, &stated, muscle, seed)?;
     Ok(simulate(&model, &theta, protocol, seed)?)
 }

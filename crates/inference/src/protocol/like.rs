@@ -7,6 +7,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 use crate::protocol::bench::{Block, Path, Protocol};
+use crate::vector::range;
 
 /// Most levels of a block; if more were measured, some are chosen that are spread over their range.
 const MOST_LEVELS: usize = 8;
@@ -32,12 +33,8 @@ struct Moved {
     evenness: Option<f64>,
 }
 
-fn ends(values: impl Iterator<Item = f64>) -> [f64; 2] {
-    values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| [low.min(value), high.max(value)])
-}
-
 fn ends_of(ranges: impl Iterator<Item = [f64; 2]> + Clone) -> [f64; 2] {
-    [ends(ranges.clone().map(|range| range[0]))[0], ends(ranges.map(|range| range[1]))[1]]
+    [range(ranges.clone().map(|range| range[0]))[0], range(ranges.map(|range| range[1]))[1]]
 }
 
 fn width([low, high]: [f64; 2]) -> f64 {
@@ -57,7 +54,7 @@ fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
 impl Moved {
     fn of(sweep: &Sweep, (pressure, contraction): (&[f64], &[f64]), history: &History) -> Self {
         let rows = sweep.rows.clone();
-        let of = |values: &[f64]| ends(values[rows.clone()].iter().copied());
+        let of = |values: &[f64]| range(values[rows.clone()].iter().copied());
         let ways = rows.clone().map(|row| history.approach[row]).filter(|way| *way != 0.0);
         let turns = ways.clone().zip(ways.skip(1)).filter(|(a, b)| a * b < 0.0).count();
         let mut rates: Vec<f64> = rows.clone().map(|row| history.rate[row].abs()).collect();
@@ -147,7 +144,7 @@ impl Protocol {
         if !data.is_path() {
             let at = levels(pressure.iter().copied().filter(|p| *p > 0.0));
             let each = data.len() as f64 / (at.len().max(1) * specimens) as f64;
-            let range = contractions(ends(contraction.iter().copied()));
+            let range = contractions(range(contraction.iter().copied()));
             let map = Block::map(at, range, count(each, 2.0..ROWS.end));
             return Self::new(vec![map]);
         }

@@ -3,7 +3,7 @@
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
-use bulge_effects::Catalogue;
+use crate::support::{diagnosing, effects, names, noisy, options, truth};
 use bulge_inference::{
     BentCurve, Block, DiagnoseOptions, Diagnosis, Options, Path, Protocol, ReadingNoise, Verdict, diagnose,
     simulate,
@@ -45,23 +45,12 @@ fn protocol(force_n: f64, correlated_n: f64) -> Protocol {
 }
 
 fn measured(effects: &[(&str, &[f64])], protocol: &Protocol, seed: u64) -> Data {
-    let catalogue = Catalogue::builtin();
-    let mut model = Model::new(&muscle());
-    let mut theta = Vec::new();
-    for (name, values) in effects {
-        model = model.with(catalogue.find(name).unwrap(), None).unwrap();
-        theta.extend_from_slice(values);
-    }
+    let (model, theta) = truth(&muscle(), effects);
     simulate(&model, &theta, protocol, seed).unwrap().data
 }
 
 fn diagnosed(data: &Data) -> Diagnosis {
-    let base = Options::new(Catalogue::builtin(), Vec::new());
-    diagnose(data, &muscle(), &DiagnoseOptions::new(base)).unwrap()
-}
-
-fn names(diagnosis: &Diagnosis) -> Vec<&str> {
-    diagnosis.missing.iter().map(|missing| missing.effect.as_str()).collect()
+    diagnose(data, &muscle(), &diagnosing(&[])).unwrap()
 }
 
 #[test]
@@ -121,12 +110,8 @@ fn two_effects_are_both_named() {
         assert!(is_in, "{effect}: {:?}", names(&found));
     }
     // With them the model is adequate: the next diagnosis starts from there.
-    let catalogue = Catalogue::builtin();
-    let effects =
-        names(&found).iter().map(|name| std::sync::Arc::clone(catalogue.find(name).unwrap())).collect();
     let data = measured(&hidden, &protocol(2.0, 0.0), 5);
-    let options = DiagnoseOptions::new(Options::new(catalogue, effects));
-    let again = diagnose(&data, &muscle(), &options).unwrap();
+    let again = diagnose(&data, &muscle(), &diagnosing(&names(&found))).unwrap();
     assert_eq!(again.verdict, Verdict::Adequate, "{}", again.says);
 }
 
@@ -144,8 +129,7 @@ fn among_some_effects_the_right_one_is_named_and_a_wrong_one_is_not() {
     let data = measured(&[("coulomb-friction", &[6.0])], &protocol(2.0, 0.0), 3);
     let among = |names: &[&str]| {
         let among = Some(names.iter().map(|name| (*name).to_owned()).collect());
-        let base = Options::new(Catalogue::builtin(), Vec::new());
-        diagnose(&data, &muscle(), &DiagnoseOptions { among, ..DiagnoseOptions::new(base) }).unwrap()
+        diagnose(&data, &muscle(), &DiagnoseOptions { among, ..diagnosing(&[]) }).unwrap()
     };
     let right = among(&["coulomb-friction", "creep"]);
     assert_eq!(names(&right), ["coulomb-friction"], "{}", right.says);
@@ -197,8 +181,7 @@ fn the_same_bytes_on_one_thread_and_on_many() {
 fn a_tolerance_is_what_matters() {
     let data = measured(&[("coulomb-friction", &[3.0])], &protocol(2.0, 0.0), 3);
     let with = |tolerance_n: Option<f64>| {
-        let base = Options::new(Catalogue::builtin(), Vec::new());
-        diagnose(&data, &muscle(), &DiagnoseOptions { tolerance_n, ..DiagnoseOptions::new(base) }).unwrap()
+        diagnose(&data, &muscle(), &DiagnoseOptions { tolerance_n, ..diagnosing(&[]) }).unwrap()
     };
     assert_eq!(with(None).verdict, Verdict::Missing);
     assert_eq!(with(Some(1.0)).verdict, Verdict::Missing);
@@ -228,8 +211,7 @@ fn a_wrong_unit_is_no_physics() {
     std::fs::write(&path, text).unwrap();
     let data = Data::read(&[&path]).unwrap();
     std::fs::remove_dir_all(&folder).unwrap();
-    let options = DiagnoseOptions::new(Options::new(Catalogue::builtin(), Vec::new()));
-    let found = diagnose(&data, &muscle(), &options).unwrap();
+    let found = diagnosed(&data);
     assert_eq!((found.verdict, found.data.findings[0].kind), (Verdict::CannotTell, "pressure-unit"));
     assert!(found.says.contains("14.50") && found.says.contains("psi"), "{}", found.says);
 }
@@ -271,8 +253,7 @@ fn recorded(friction: impl Fn(f64, f64) -> f64, other: bool, seed: u64) -> Colum
 
 fn found(columns: Columns) -> Diagnosis {
     let muscle = from_toml(CYLINDER, "c.toml").unwrap();
-    let base = Options::new(Catalogue::builtin(), Vec::new());
-    diagnose(&Data::from_columns(columns).unwrap(), &muscle, &DiagnoseOptions::new(base)).unwrap()
+    diagnose(&Data::from_columns(columns).unwrap(), &muscle, &diagnosing(&[])).unwrap()
 }
 
 /// One loop of 21 contractions at each of four pressures, so that each point of a drawn curve is one row.
@@ -313,12 +294,12 @@ fn a_bent_effect_has_two_rungs_and_the_second_is_what_its_form_leaves() {
     let bending = |row: usize| -> f64 {
         let moment = &record.moments()[row];
         let at = |c: &&BentCurve| {
-            (c.pressure_pa - moment.pressure).abs() < 1.0 && (c.direction - moment.branch()).abs() < 0.5
+            (c.at.pressure_pa - moment.pressure).abs() < 1.0 && (c.at.direction - moment.branch()).abs() < 0.5
         };
         let curve = curves.iter().find(at).unwrap();
         let is_here = |e: &f64| (e - contraction[row]).abs() < 1e-9;
-        let place = curve.contraction.iter().position(is_here);
-        let place = place.unwrap_or_else(|| panic!("{row} {moment:?} {:?}", curve.contraction));
+        let place = curve.at.contraction.iter().position(is_here);
+        let place = place.unwrap_or_else(|| panic!("{row} {moment:?} {:?}", curve.at));
         curve.bent_n[place] - curve.formula_n[place]
     };
     let left = |row: usize| {
@@ -459,8 +440,7 @@ fn more_rows_and_cycles_never_hurt_the_law_of_the_noise() {
     let rubber: (&str, &[f64]) = ("bladder-elasticity", &[2e5]);
     for (rows, cycles, hidden) in [(30, 1, vec![]), (200, 1, vec![rubber]), (120, 8, vec![rubber])] {
         let block = Block { cycles, rows, ..Block::loops(vec![2e5, 3e5, 4e5, 5e5], [0.01, 0.18], 40.0) };
-        let noise = ReadingNoise { force_n: 2.0, ..ReadingNoise::default() };
-        let data = measured(&hidden, &Protocol { noise, ..Protocol::new(vec![block]) }, 4);
+        let data = measured(&hidden, &noisy(block, 2.0), 4);
         let found = diagnosed(&data);
         let ratio = found.noise.sd_n / 2.0;
         assert!((0.8..1.2).contains(&ratio), "{rows} rows, {cycles} cycles: {:?}", found.noise);
@@ -470,18 +450,14 @@ fn more_rows_and_cycles_never_hurt_the_law_of_the_noise() {
 
 /// Clamped braids of some lengths \[mm\], diagnosed as cylinders.
 fn end_taper_of(lengths: &[u32]) -> Diagnosis {
-    let catalogue = Catalogue::builtin();
     let file = |length: u32| BRAID.replace("250 mm", &format!("{length} mm"));
     let mut text = String::new();
     let mut tables = file(lengths[0]).replace("clamped", "cylinder");
     let loops =
         Block { path: Path::Triangle, rows: 24, ..Block::loops(vec![2e5, 3e5, 4e5], [0.02, 0.14], 40.0) };
     for (i, length) in lengths.iter().enumerate() {
-        let model = Model::new(&from_toml(&file(*length), "b").unwrap());
-        let model = model.with(catalogue.find("coulomb-friction").unwrap(), None).unwrap();
-        let noise = ReadingNoise { force_n: 2.0, ..ReadingNoise::default() };
-        let found =
-            simulate(&model, &[3.0], &Protocol { noise, ..Protocol::new(vec![loops.clone()]) }, 5).unwrap();
+        let (model, theta) = truth(&from_toml(&file(*length), "b").unwrap(), &[("coulomb-friction", &[3.0])]);
+        let found = simulate(&model, &theta, &noisy(loops.clone(), 2.0), 5).unwrap();
         for (row, line) in found.csv.lines().filter(|line| !line.starts_with('#')).enumerate() {
             let mut fields: Vec<String> = line.split(',').map(str::to_owned).collect();
             match row {
@@ -498,8 +474,8 @@ fn end_taper_of(lengths: &[u32]) -> Diagnosis {
     }
     let data = Data::from_csv(&text, "lengths.csv").unwrap();
     let muscle = from_toml(&tables, "braids.toml").unwrap();
-    let known = vec![(std::sync::Arc::clone(catalogue.find("coulomb-friction").unwrap()), vec![3.0])];
-    let base = Options { known, ..Options::new(catalogue, Vec::new()) };
+    let known = vec![(effects(&["coulomb-friction"]).remove(0), vec![3.0])];
+    let base = Options { known, ..options(&[]) };
     diagnose(&data, &muscle, &DiagnoseOptions::new(base)).unwrap()
 }
 
@@ -570,8 +546,7 @@ fn more_rows_do_not_make_the_noise_larger() {
             rows,
             ..Block::loops(vec![2e5, 3e5, 4e5, 5e5], [0.01, 0.18], 20.0)
         };
-        let noise = ReadingNoise { force_n: 1.2, ..ReadingNoise::default() };
-        let found = diagnosed(&measured(&effects, &Protocol { noise, ..Protocol::new(vec![block]) }, 7));
+        let found = diagnosed(&measured(&effects, &noisy(block, 1.2), 7));
         let ratio = found.noise.sd_n / 1.2;
         assert!(
             (ratio - 1.0).abs() < 0.2,
@@ -616,18 +591,11 @@ fn held_lengths() -> Columns {
 
 /// Loops of the braid with other numbers than its file states, and the file as a catalogue gives it: without
 /// widths, with changes.
-fn of_catalogue(truth: &str, effects: &[(&str, &[f64])], changes: &[(&str, &str)]) -> Diagnosis {
-    let catalogue = Catalogue::builtin();
-    let mut model = Model::new(&from_toml(truth, "truth.toml").unwrap());
-    let mut theta = Vec::new();
-    for (name, values) in effects {
-        model = model.with(catalogue.find(name).unwrap(), None).unwrap();
-        theta.extend_from_slice(values);
-    }
+fn of_catalogue(muscle: &str, effects: &[(&str, &[f64])], changes: &[(&str, &str)]) -> Diagnosis {
+    let (model, theta) = truth(&from_toml(muscle, "truth.toml").unwrap(), effects);
     let data = simulate(&model, &theta, &protocol(2.0, 0.0), 11).unwrap().data;
     let file = changes.iter().fold(BRAID.replace(" +- 0", ""), |file, (from, to)| file.replace(from, to));
-    let base = Options::new(catalogue, Vec::new());
-    diagnose(&data, &from_toml(&file, "catalogue.toml").unwrap(), &DiagnoseOptions::new(base)).unwrap()
+    diagnose(&data, &from_toml(&file, "catalogue.toml").unwrap(), &diagnosing(&[])).unwrap()
 }
 
 #[test]
@@ -703,10 +671,8 @@ fn what_is_named_at_held_length_can_be_accepted() {
     // A transition that is short for the strands is no friction of the length, which doesn't change.
     assert!(missing.class.iter().all(|name| name != "coulomb-friction"), "{missing:?}");
     assert_eq!(missing.fitted, missing.effect);
-    let catalogue = Catalogue::builtin();
-    let effect = std::sync::Arc::clone(catalogue.find(&missing.fitted).unwrap());
     let muscle = from_toml(CYLINDER, "c.toml").unwrap();
-    let accepted = DiagnoseOptions::new(Options::new(catalogue, vec![effect]));
+    let accepted = diagnosing(&[&missing.fitted]);
     let again = diagnose(&Data::from_columns(held_lengths()).unwrap(), &muscle, &accepted).unwrap();
     assert_eq!(again.verdict, Verdict::Adequate, "{}", again.says);
 }

@@ -3,7 +3,8 @@
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
-use bulge_effects::{Catalogue, Effect, Moment, known};
+use crate::support::{effects, options};
+use bulge_effects::{Catalogue, Moment, known};
 use bulge_inference::{
     Fit, Fitting, Options, PredictedColumns, check_restrictions, compare, extended, fit_effects, predict,
 };
@@ -11,7 +12,6 @@ use bulge_measurements::{Data, ReadOptions};
 use bulge_model::{Model, Record, Wanted};
 use bulge_muscles::{Muscle, from_toml, to_toml};
 use std::fmt::Write;
-use std::sync::Arc;
 
 /// Reproducible normal numbers (Knuth's MMIX sequence, Box and Muller).
 struct Noise(u64);
@@ -35,15 +35,6 @@ const BRAIDED: &str = "name = \"trial\"\nkind = \"braided\"\nlength = \"250 mm\"
 
 fn muscle(text: &str) -> Muscle {
     from_toml(text, "muscle.toml").unwrap()
-}
-
-fn effects(names: &[&str]) -> Vec<Arc<dyn Effect>> {
-    let catalogue = Catalogue::builtin();
-    names.iter().map(|name| Arc::clone(catalogue.find(name).unwrap())).collect()
-}
-
-fn options(names: &[&str]) -> Options {
-    Options::new(Catalogue::builtin(), effects(names))
 }
 
 /// Loops at five pressures, one sweep each, of a muscle with effects, with white noise of `sd` newtons.

@@ -10,8 +10,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use bulge_effects::Catalogue;
-use bulge_inference::{DiagnoseOptions, Diagnosis, Options, Verdict, diagnose};
+use crate::support::diagnosing;
+use bulge_inference::{Diagnosis, Verdict, diagnose};
 use bulge_measurements::Data;
 use bulge_muscles::from_toml;
 use rayon::prelude::*;
@@ -55,12 +55,11 @@ impl Answer {
         let muscle =
             from_toml(&fs::read_to_string(folder.join("muscle.toml")).unwrap(), "muscle.toml").unwrap();
         let data = Data::read(&[folder.join("data.csv")]).unwrap();
-        let base = Options::new(Catalogue::builtin(), Vec::new());
         Self {
             case: word(&truth["case"]),
             kind: word(&truth["kind"]),
             hidden: hidden.collect(),
-            diagnosis: diagnose(&data, &muscle, &DiagnoseOptions::new(base)).unwrap(),
+            diagnosis: diagnose(&data, &muscle, &diagnosing(&[])).unwrap(),
         }
     }
 

@@ -3,6 +3,7 @@
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
+use crate::support::{diagnosing, effects, names, noisy, options, truth};
 use bulge_effects::{Catalogue, Moment};
 use bulge_inference::{
     Block, Comparing, Comparison, DiagnoseOptions, Noise, Options, Protocol, ReadingNoise, Rows, compare,
@@ -36,9 +37,7 @@ fn loops(more: impl Fn(usize, f64) -> f64) -> Data {
 }
 
 fn climbed(data: &Data, muscle: &Muscle, with: &[&str]) -> Comparison {
-    let catalogue = Catalogue::builtin();
-    let effects = with.iter().map(|name| Arc::clone(catalogue.find(name).unwrap())).collect();
-    compare(data, muscle, &Options::new(catalogue, effects)).unwrap()
+    compare(data, muscle, &options(with)).unwrap()
 }
 
 /// A disturbed reading is left out and doesn't set the full scale.
@@ -82,9 +81,8 @@ fn the_error_of_rows_whose_direction_is_known_is_told() {
 fn asked_again_with_other_effects_the_answer_is_the_same() {
     let data = loops(|row, direction| 5.0 - 7.0 * direction + alternating(row));
     let muscle = muscle("[instruments]\nforce = { noise = \"2 N\", zero = \"1 N\" }");
-    let catalogue = Catalogue::builtin();
-    let options = Options::new(catalogue.clone(), Vec::new());
-    let comparing = Comparing::new(&data, &muscle, &options).unwrap();
+    let base = options(&[]);
+    let comparing = Comparing::new(&data, &muscle, &base).unwrap();
     let json = |comparison: &Comparison| serde_json::to_string(comparison).unwrap();
     for with in [
         &["coulomb-friction"][..],
@@ -93,19 +91,18 @@ fn asked_again_with_other_effects_the_answer_is_the_same() {
         &["coulomb-friction", "end-taper"],
         &["coulomb-friction"],
     ] {
-        let effects: Vec<_> = with.iter().map(|name| Arc::clone(catalogue.find(name).unwrap())).collect();
-        let found = comparing.with(&effects, &[]).unwrap();
+        let found = comparing.with(&effects(with), &[]).unwrap();
         assert_eq!(found.ladder.len(), 1 + with.len());
         assert_eq!(json(&found), json(&climbed(&data, &muscle, with)), "{with:?}");
     }
     // Held parameters: of an effect, at another value, free again; and of a rig error that the base fits
     // along.
     let names = ["end-taper", "coulomb-friction"];
-    let effects: Vec<_> = names.iter().map(|name| Arc::clone(catalogue.find(name).unwrap())).collect();
+    let effects = effects(&names);
     let values =
         ["coulomb-friction.force=3 N", "coulomb-friction.force=9 N", "", "force-offset.offset=0.5 N"];
     for held in values {
-        let mut options = Options::new(catalogue.clone(), effects.clone());
+        let mut options = options(&names);
         if !held.is_empty() {
             options = options.hold(held, &muscle).unwrap();
         }
@@ -130,9 +127,7 @@ fn asked_again_with_other_effects_the_answer_is_the_same() {
 fn a_number_that_is_held_amiss_is_named() {
     let data = loops(|row, direction| -7.0 * direction + alternating(row));
     let muscle = muscle("");
-    let catalogue = Catalogue::builtin();
-    let friction = Arc::clone(catalogue.find("coulomb-friction").unwrap());
-    let free = Options::new(catalogue, vec![friction]);
+    let free = options(&["coulomb-friction"]);
     let warned = |options: &Options| {
         let found = compare(&data, &muscle, options).unwrap();
         found.warnings.into_iter().find(|says| says.contains("on unseen data larger"))
@@ -147,9 +142,7 @@ fn a_number_that_is_held_amiss_is_named() {
 /// Data that an effect needs but doesn't have are reported by the names of the columns.
 #[test]
 fn what_data_lack_is_said_by_its_column() {
-    let (muscle, catalogue) = (muscle(""), Catalogue::builtin());
-    let friction = Arc::clone(catalogue.find("coulomb-friction").unwrap());
-    let options = Options::new(catalogue, vec![friction]);
+    let (muscle, options) = (muscle(""), options(&["coulomb-friction"]));
     let says = |heading: &str, label: &dyn Fn(i32) -> String| {
         let mut csv = format!("pressure [bar],contraction [%],force [N]{heading}\n");
         for i in 1..20 {
@@ -387,17 +380,13 @@ fn trial_numbers_without_an_equilibrium_end_no_comparison() {
     let text = "name = \"x\"\nkind = \"braided\"\nlength = \"250 mm\"\nradius = \"9.75 mm\"\nbraid_angle = \"25 deg\"\nends = \"clamped\"\n\
                 wall = \"2 mm\"\n[instruments]\npressure = { noise = \"100 Pa\", zero = \"200 Pa\", gain = \"0.1 %\" }\n";
     let muscle = from_toml(text, "m.toml").unwrap();
-    let catalogue = Catalogue::builtin();
-    let add = |model: Model, name: &str| model.with(catalogue.find(name).unwrap(), None).unwrap();
-    let truth = ["bladder-elasticity", "bladder-c01"].into_iter().fold(Model::new(&muscle), add);
-    let rubber = Arc::clone(catalogue.find("bladder-elasticity").unwrap());
+    let (model, theta) = truth(&muscle, &[("bladder-elasticity", &[1.2e5]), ("bladder-c01", &[3e4])]);
     for (seed, pressures) in [(1, vec![1e5, 3e5]), (2, vec![1e5]), (3, vec![1.1e5, 1.5e5])] {
         let noise = ReadingNoise { force_n: 2.0, pressure_pa: 100.0, ..ReadingNoise::default() };
         let block = Block { rows: 40, ..Block::loops(pressures, [0.01, 0.22], 50.0) };
         let protocol = Protocol { noise, ..Protocol::new(vec![block]) };
-        let data = simulate(&truth, &[1.2e5, 3e4], &protocol, seed).unwrap().data;
-        let options = Options::new(catalogue.clone(), vec![Arc::clone(&rubber)]);
-        let last = compare(&data, &muscle, &options).unwrap().ladder.pop().unwrap();
+        let data = simulate(&model, &theta, &protocol, seed).unwrap().data;
+        let last = climbed(&data, &muscle, &["bladder-elasticity"]).ladder.pop().unwrap();
         // One parameter takes the sum of both, and the error is nearly the noise.
         let modulus =
             last.fit.unwrap().parameters.iter().find(|p| p.effect == "bladder-elasticity").unwrap().value;
@@ -437,11 +426,9 @@ fn under_a_held_load_the_error_is_told_in_contraction() {
 /// Loops at six pressures with friction of 10 N and noise of 2 N. `changed` modifies the force of a row by
 /// its sweep and its number.
 fn measured(changed: impl Fn(&str, usize, f64) -> f64) -> Data {
-    let catalogue = Catalogue::builtin();
-    let model = Model::new(&muscle("")).with(catalogue.find("coulomb-friction").unwrap(), None).unwrap();
+    let (model, theta) = truth(&muscle(""), &[("coulomb-friction", &[10.0])]);
     let block = Block { rows: 60, ..Block::loops(vec![1.5e5, 2e5, 3e5, 4e5, 5e5, 6e5], [0.01, 0.18], 40.0) };
-    let noise = ReadingNoise { force_n: 2.0, ..ReadingNoise::default() };
-    let found = simulate(&model, &[10.0], &Protocol { noise, ..Protocol::new(vec![block]) }, 5).unwrap();
+    let found = simulate(&model, &theta, &noisy(block, 2.0), 5).unwrap();
     let mut csv = String::new();
     for (row, line) in found.csv.lines().enumerate() {
         let cells: Vec<&str> = line.split(',').collect();
@@ -460,8 +447,7 @@ fn a_sweep_that_is_off_as_a_whole_is_named_by_comparison_and_diagnosis_and_is_no
     let data = measured(|sweep, _, force| if sweep == "3" { force + 12.0 } else { force });
     let own = muscle("[instruments]\nforce = { noise = \"2 N\" }");
     let compared = climbed(&data, &own, &["coulomb-friction"]);
-    let found =
-        diagnose(&data, &own, &DiagnoseOptions::new(Options::new(Catalogue::builtin(), Vec::new()))).unwrap();
+    let found = diagnose(&data, &own, &diagnosing(&[])).unwrap();
     for left in [&compared.data.left_out, &found.data.left_out] {
         let says = &left[0];
         assert!(
@@ -470,8 +456,7 @@ fn a_sweep_that_is_off_as_a_whole_is_named_by_comparison_and_diagnosis_and_is_no
         );
         assert_eq!((left.len(), says.rows), (1, 60));
     }
-    let names: Vec<&str> = found.missing.iter().map(|missing| missing.effect.as_str()).collect();
-    assert_eq!(names, ["coulomb-friction"]);
+    assert_eq!(names(&found), ["coulomb-friction"]);
     assert!(measured(|_, _, force| force).len() == data.len() && compared.ladder[1].rmse_n < 2.2);
     let clean = climbed(&measured(|_, _, force| force), &own, &[]);
     assert!(clean.data.left_out.is_empty(), "{:?}", clean.data.left_out);
@@ -512,18 +497,18 @@ fn rows_are_those_of_the_ladder() {
     }
     let data = Data::from_csv(&csv, "loops.csv").unwrap();
     let muscle = muscle("[instruments]\nforce = { noise = \"2 N\" }");
-    let catalogue = Catalogue::builtin();
-    let options = Options::new(catalogue.clone(), Vec::new());
-    let comparing = Comparing::new(&data, &muscle, &options).unwrap();
-    let effects = [Arc::clone(catalogue.find("coulomb-friction").unwrap())];
+    let base = options(&[]);
+    let comparing = Comparing::new(&data, &muscle, &base).unwrap();
+    let effects = effects(&["coulomb-friction"]);
     let (comparison, rows) = (comparing.with(&effects, &[]).unwrap(), comparing.rows(&effects, &[]).unwrap());
     assert_eq!((rows.len(), rows.effects.as_slice()), (120, &["coulomb-friction".to_owned()][..]));
-    let rmse = |residuals: &[f64]| {
+    let rmse = |model_n: &[f64]| {
         let counted = || (0..rows.len()).filter(|row| rows.counts[*row]);
-        (counted().map(|row| residuals[row].powi(2)).sum::<f64>() / counted().count() as f64).sqrt()
+        let square = |row: usize| (rows.measured_n[row] - model_n[row]).powi(2);
+        (counted().map(square).sum::<f64>() / counted().count() as f64).sqrt()
     };
-    for (rung, residuals) in comparison.ladder.iter().zip([rows.base_residual_n(), rows.residual_n()]) {
-        let found = rmse(&residuals);
+    for (rung, model_n) in comparison.ladder.iter().zip([&rows.base_n, &rows.model_n]) {
+        let found = rmse(model_n);
         assert!((found / rung.rmse_n - 1.0).abs() < 1e-12, "{found} {}", rung.rmse_n);
     }
     let apart: Vec<usize> = (0..120).filter(|row| !rows.counts[*row]).collect();
@@ -549,9 +534,8 @@ fn rows_are_those_of_the_ladder() {
 fn rows_have_the_force_of_each_rung() {
     let data = loops(|row, direction| -7.0 * direction + alternating(row));
     let muscle = muscle("[instruments]\nforce = { noise = \"2 N\" }");
-    let catalogue = Catalogue::builtin();
-    let effects = ["end-taper", "coulomb-friction"].map(|name| Arc::clone(catalogue.find(name).unwrap()));
-    let options = Options { excluded: vec![3, 4], ..Options::new(catalogue, effects.to_vec()) };
+    let names = ["end-taper", "coulomb-friction"];
+    let (effects, options) = (effects(&names), Options { excluded: vec![3, 4], ..options(&names) });
     let (comparison, rows) = compare_with_rows(&data, &muscle, &options).unwrap();
     assert_eq!(comparison, compare(&data, &muscle, &options).unwrap());
     let comparing = Comparing::new(&data, &muscle, &options).unwrap();

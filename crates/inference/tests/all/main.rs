@@ -7,3 +7,4 @@ mod ladder;
 mod noise_law;
 mod papers;
 mod simulation;
+mod support;

@@ -3,16 +3,16 @@
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
+use crate::support::{diagnosing, names};
 use bulge_effects::Catalogue;
-use bulge_inference::{DiagnoseOptions, Diagnosis, Options, Verdict, diagnose};
+use bulge_inference::{Diagnosis, Verdict, diagnose};
 use bulge_measurements::Data;
 use bulge_muscles::{Muscle, from_toml, preset};
 use std::fmt::Write;
 
 fn diagnosed(csv: &str, muscle: &Muscle) -> Diagnosis {
     let data = Data::from_csv(csv, "paper.csv").unwrap();
-    let base = Options::new(Catalogue::builtin(), Vec::new());
-    diagnose(&data, muscle, &DiagnoseOptions::new(base)).unwrap()
+    diagnose(&data, muscle, &diagnosing(&[])).unwrap()
 }
 
 fn family(name: &str) -> String {
@@ -59,7 +59,7 @@ fn hysteresis_loops() -> String {
 #[test]
 fn cloth_that_stops_unfolding_is_among_what_the_pleated_muscle_lacks() {
     let found = diagnosed(&second_generation(), &preset("ppam-2-r16").unwrap());
-    let names: Vec<&str> = found.missing.iter().map(|missing| missing.effect.as_str()).collect();
+    let names = names(&found);
     // Gains of 9 and 8 %, which no rig has, lower the error most, but are not claimed.
     assert_eq!(names, ["limited-unfolding"], "{}", found.says);
     assert!(found.verdict == Verdict::Missing && found.remaining.structured);

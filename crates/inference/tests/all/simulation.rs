@@ -3,6 +3,7 @@
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
+use crate::support::truth;
 use bulge_effects::Catalogue;
 use bulge_inference::{
     Block, Path, Protocol, ReadingNoise, ReadingSteps, RigErrors, Simulation, simulate, simulate_with,
@@ -25,9 +26,7 @@ fn force(pressure: f64, e: f64) -> f64 {
 }
 
 fn friction(newton: f64) -> (Model, Vec<f64>) {
-    let model =
-        Model::new(&muscle("")).with(Catalogue::builtin().find("coulomb-friction").unwrap(), None).unwrap();
-    (model, vec![newton])
+    truth(&muscle(""), &[("coulomb-friction", &[newton])])
 }
 
 fn plain(protocol: &Protocol, seed: u64) -> Simulation {

@@ -9,7 +9,7 @@ use crate::comparison::panel::{BELOW, LEFT, Panel, columns};
 use crate::comparison::svg::{Anchor, Stroke, Style, Svg, TEXT, name_fitted};
 use crate::comparison::wording::{has_effects, named, names, negligible_n, pulls, sentence};
 use crate::comparison::{Plot, WIDTH};
-use crate::palette::{ALERT, FIRST, GRID, INK, LAST, Rgb};
+use crate::palette::{ALERT, FIRST, INK, LAST, Rgb};
 use bulge_inference::{Bin, Breakdown, Comparison};
 
 /// Most rows of a plot of named groups.
@@ -261,10 +261,7 @@ fn rows(comparison: &Comparison, variable: &Variable, by: &Breakdown) -> Result<
         let x = kind.axis(comparison, by)?;
         let left = name_room + place as f64 * each + 12.0;
         let panel = Panel { x, y: x, left, top: 36.0, width: each - 0.6 * LEFT, height };
-        let labels: Vec<_> = x.labels().into_iter().map(|(v, label)| (panel.across(v), label)).collect();
-        for (at, _) in &labels {
-            svg.line((*at, panel.top), (*at, panel.bottom()), Stroke::solid(GRID, 1.0));
-        }
+        let labels = panel.draw_grid(&mut svg);
         for (i, bin) in shown.iter().enumerate() {
             let middle = panel.top + (i as f64 + 0.5) * row;
             let start = middle - 0.35 * row;
@@ -279,11 +276,9 @@ fn rows(comparison: &Comparison, variable: &Variable, by: &Breakdown) -> Result<
                 svg.text((name_room - 4.0, middle), &name, Style::new(Anchor::End));
             }
         }
-        let zero = panel.across(0.0);
-        svg.line((zero, panel.top), (zero, panel.bottom()), Stroke::solid(INK, 1.0));
+        panel.draw_upright(&mut svg, panel.across(0.0), Stroke::solid(INK, 1.0));
         for floor in kind.floors(comparison) {
-            let x = panel.across(floor);
-            svg.line((x, panel.top), (x, panel.bottom()), Stroke::dashed(ALERT, 1.5));
+            panel.draw_upright(&mut svg, panel.across(floor), Stroke::dashed(ALERT, 1.5));
         }
         panel.draw_across(&mut svg, &labels, kind.quantity());
     }

@@ -54,9 +54,9 @@ fn numbers(comparison: &Comparison) -> Result<(), PlotError> {
 }
 
 fn series(comparison: &Comparison) -> Result<(), PlotError> {
-    for curve in &comparison.curves {
-        let values = curve.points.iter().flat_map(|p| [p.contraction, p.measured_n, p.first_n, p.last_n]);
-        finite("a force curve", values.chain([curve.pressure_pa]))?;
+    for force in &comparison.curves {
+        let values = force.points.iter().flat_map(|p| [p.contraction, p.measured_n, p.first_n, p.last_n]);
+        finite("a force curve", values.chain([force.pressure_pa]))?;
     }
     for gap in &comparison.loops {
         let lists = [
@@ -67,21 +67,17 @@ fn series(comparison: &Comparison) -> Result<(), PlotError> {
             &gap.half_gap_model_n[0],
             &gap.half_gap_model_n[1],
         ];
-        lengths("values of a loop", gap.contraction.len(), &lists.map(Vec::len))?;
-        let values = lists.into_iter().chain([&gap.contraction]).flatten().copied();
-        finite("a loop", values.chain([gap.pressure_pa]))?;
+        curve(["values of a loop", "a loop"], (&gap.contraction, gap.pressure_pa), &lists)?;
     }
     for held in &comparison.isotonic {
         let values = held.points.iter().flat_map(|p| [p.pressure_pa, p.contraction, p.first, p.last]);
         finite("a contraction under a held load", values.chain(held.rmse_contraction).chain([held.load_n]))?;
     }
     for stack in &comparison.contributions {
-        let lists =
-            || [&stack.measured_n, &stack.base_n].into_iter().chain(stack.parts.iter().map(|p| &p.force_n));
-        let found: Vec<usize> = lists().map(Vec::len).collect();
-        lengths("values of a contribution", stack.contraction.len(), &found)?;
-        let values = lists().chain([&stack.contraction]).flatten().copied();
-        finite("a contribution", values.chain([stack.pressure_pa]))?;
+        let mut lists = vec![&stack.measured_n, &stack.base_n];
+        lists.extend(stack.parts.iter().map(|part| &part.force_n));
+        let at = (&stack.contraction, stack.pressure_pa);
+        curve(["values of a contribution", "a contribution"], at, &lists)?;
     }
     finite("a predicted force", comparison.scatter.iter().flatten().copied())
 }
@@ -92,6 +88,18 @@ pub(crate) fn finite(what: &str, mut values: impl Iterator<Item = f64>) -> Resul
         Some(value) => Err(PlotError::Value { quantity: what.to_owned(), value }),
         None => Ok(()),
     }
+}
+
+/// Rejects a curve at one pressure \[Pa\] with lists of another length than its contractions, or with values
+/// that aren't finite. `names` are those of its values and of the curve.
+pub(crate) fn curve(
+    names: [&'static str; 2],
+    (contraction, pressure_pa): (&Vec<f64>, f64),
+    lists: &[&Vec<f64>],
+) -> Result<(), PlotError> {
+    lengths(names[0], contraction.len(), &lists.iter().map(|list| list.len()).collect::<Vec<_>>())?;
+    let values = lists.iter().copied().chain([contraction]).flatten().copied();
+    finite(names[1], values.chain([pressure_pa]))
 }
 
 /// Rejects lists of another length than expected.

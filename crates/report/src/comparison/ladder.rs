@@ -11,7 +11,7 @@ use crate::comparison::panel::Panel;
 use crate::comparison::svg::{Anchor, Stroke, Style, Svg, TEXT, fitted};
 use crate::comparison::wording::has_effects;
 use crate::comparison::{Plot, WIDTH};
-use crate::palette::{ALERT, FIRST, GRID, INK, LAST, SOFT_INK};
+use crate::palette::{ALERT, FIRST, INK, LAST, SOFT_INK};
 
 /// Width for the names of the rungs and the numbers.
 const NAMES: f64 = 310.0;
@@ -40,17 +40,13 @@ pub(crate) fn plot(comparison: &Comparison) -> Result<Option<Plot>, PlotError> {
     let panel = Panel { x, y: x, left: NAMES, top, width: WIDTH - NAMES - NUMBERS, height };
     let mut svg = Svg::new("ladder", WIDTH, top + height + 52.0);
     legend::draw(&mut svg, (6.0, 4.0), WIDTH - 20.0, &entries);
-    let labels: Vec<_> = x.labels().into_iter().map(|(v, label)| (panel.across(v), label)).collect();
-    for (x, _) in &labels {
-        svg.line((*x, top), (*x, panel.bottom()), Stroke::solid(GRID, 1.0));
-    }
+    let labels = panel.draw_grid(&mut svg);
     for (i, rung) in rungs.iter().enumerate() {
         let y = top + (i as f64 + 0.5) * row;
         draw_rung(&mut svg, &panel, rung, (y, row));
     }
     if let Some(floor) = floor {
-        let x = panel.across(floor);
-        svg.line((x, top), (x, panel.bottom()), Stroke::dashed(ALERT, 1.5));
+        panel.draw_upright(&mut svg, panel.across(floor), Stroke::dashed(ALERT, 1.5));
     }
     for (i, rung) in rungs.iter().enumerate() {
         if let Some(held_out) = rung.held_out_rmse_n {

@@ -68,62 +68,16 @@ pub struct Plot {
 /// # Examples
 /// A base without effects that is off by 41 N:
 /// ```
-/// # use bulge_inference::{Comparison, DataSummary, Rung};
+/// use bulge_inference::{Comparison, DataSummary, Rung};
 /// use bulge_report::comparison::html;
 ///
-/// # let rung = Rung {
-/// #     added: None,
-/// #     title: "Ideal braided cylinder".to_owned(),
-/// #     rmse_n: 41.0,
-/// #     rmse_percent: 5.1,
-/// #     bias_n: -38.0,
-/// #     largest_n: 90.0,
-/// #     held_out_rmse_n: None,
-/// #     held_out_by: None,
-/// #     r_squared: 0.96,
-/// #     fitted: 0,
-/// #     directed_rmse_n: None,
-/// #     half_gap_rmse_n: None,
-/// #     without_state: None,
-/// #     fit: None,
-/// #     held: Vec::new(),
-/// # };
-/// # let data = DataSummary {
-/// #     rows: 2,
-/// #     used: 2,
-/// #     left_out: Vec::new(),
-/// #     findings: Vec::new(),
-/// #     reading: bulge_measurements::Reading::default(),
-/// #     sha256: String::new(),
-/// #     files: vec!["isobars.csv".to_owned()],
-/// #     sweeps: 1,
-/// #     sweep_kinds: Vec::new(),
-/// #     branches: ["shortening", "lengthening"],
-/// #     specimens: vec!["A".to_owned()],
-/// #     is_path: false,
-/// #     pressure_pa: [1e5, 3e5],
-/// #     contraction: [0.0, 0.25],
-/// #     force_n: [0.0, 800.0],
-/// #     full_scale_n: 800.0,
-/// # };
-/// # let comparison = Comparison {
-/// #     schema: "bulge.comparison/1",
-/// #     muscle: "Braided muscle <20 mm>".to_owned(),
-/// #     base: "equilibrium".to_owned(),
-/// #     data,
-/// #     quality: Vec::new(),
-/// #     noise_floor: None,
-/// #     ladder: vec![rung],
-/// #     by: Vec::new(),
-/// #     loops: Vec::new(),
-/// #     isotonic: Vec::new(),
-/// #     maps: Vec::new(),
-/// #     curves: Vec::new(),
-/// #     contributions: Vec::new(),
-/// #     scatter: vec![[100.0, 130.0, 130.0], [800.0, 841.0, 841.0]],
-/// #     rivals: Vec::new(),
-/// #     warnings: Vec::new(),
-/// # };
+/// let comparison = Comparison {
+///     muscle: "Braided muscle <20 mm>".to_owned(),
+///     data: DataSummary { rows: 2, used: 2, force_n: [0.0, 800.0], full_scale_n: 800.0, ..DataSummary::default() },
+///     ladder: vec![Rung { rmse_n: 41.0, rmse_percent: 5.1, bias_n: -38.0, ..Rung::default() }],
+///     scatter: vec![[100.0, 130.0, 130.0], [800.0, 841.0, 841.0]],
+///     ..Comparison::default()
+/// };
 /// let page = html(&comparison, None)?;
 /// assert!(page.contains("The base alone misses the measured force by 41.0 N (5.10 % of full scale)."));
 /// // Names are text, whatever they look like.

@@ -56,11 +56,27 @@ impl Panel {
     pub(crate) fn draw(&self, svg: &mut Svg, heading: &str, x_name: &str, y_name: &str) {
         self.draw_heading(svg, heading);
         self.draw_upwards(svg, y_name);
-        let labels: Vec<_> = self.x.labels().into_iter().map(|(v, label)| (self.across(v), label)).collect();
-        for (x, _) in &labels {
-            svg.line((*x, self.top), (*x, self.bottom()), Stroke::solid(GRID, 1.0));
-        }
+        let labels = self.draw_grid(svg);
         self.draw_across(svg, &labels, x_name);
+    }
+
+    /// Labels of the horizontal axis with their positions.
+    pub(crate) fn labels(&self) -> Vec<(f64, String)> {
+        self.x.labels().into_iter().map(|(value, label)| (self.across(value), label)).collect()
+    }
+
+    /// Draws the vertical lines of the grid, and returns their positions and labels.
+    pub(crate) fn draw_grid(&self, svg: &mut Svg) -> Vec<(f64, String)> {
+        let labels = self.labels();
+        for (x, _) in &labels {
+            self.draw_upright(svg, *x, Stroke::solid(GRID, 1.0));
+        }
+        labels
+    }
+
+    /// Draws a vertical line at a position.
+    pub(crate) fn draw_upright(&self, svg: &mut Svg, x: f64, stroke: Stroke) {
+        svg.line((x, self.top), (x, self.bottom()), stroke);
     }
 
     /// Draws the heading, left-aligned with the panel.

@@ -1,14 +1,14 @@
 //! An effect by its formula, and with the form error that the data suggest: the starting point for a new
 //! formula.
 
-use bulge_inference::{BentCurve, Diagnosis, Missing};
+use bulge_inference::{BentCurve, CurveAt, Diagnosis, Missing};
 
 use crate::PlotError;
 use crate::comparison::Plot;
 use crate::comparison::legend::Mark;
 use crate::comparison::svg::{Stroke, Svg};
 use crate::diagnosis::headline::bending_says;
-use crate::diagnosis::multiples::{Frame, Piece, colour, directions, draw, stroke};
+use crate::diagnosis::multiples::{Frame, colour, directions, draw, points, stroke};
 use crate::palette::SOFT_INK;
 
 /// Names of the drawings; a search adds no more effects.
@@ -23,7 +23,7 @@ const SURE: f64 = 1.96;
 pub(super) fn with_sentences(diagnosis: &Diagnosis) -> Result<Vec<(Plot, String)>, PlotError> {
     let bent = diagnosis.added().filter_map(|missing| {
         let curves = &missing.form_error.as_ref()?.curves;
-        curves.iter().any(|curve| !curve.contraction.is_empty()).then_some((missing, &curves[..]))
+        curves.iter().any(|curve| !curve.at.contraction.is_empty()).then_some((missing, &curves[..]))
     });
     bent.zip(NAMES)
         .map(|((missing, curves), name)| {
@@ -39,10 +39,7 @@ fn plot(
     name: &'static str,
     branches: [&'static str; 2],
 ) -> Result<Plot, PlotError> {
-    let pieces: Vec<Piece<'_>> = curves
-        .iter()
-        .map(|c| Piece { pressure_pa: c.pressure_pa, direction: c.direction, contraction: &c.contraction })
-        .collect();
+    let pieces: Vec<&CurveAt> = curves.iter().map(|curve| &curve.at).collect();
     let title = format!("{} by its formula, and as the data want it", missing.effect);
     let mut entries = vec![
         (Mark::Line(Stroke::dashed(SOFT_INK, 1.5)), "by its formula".to_owned()),
@@ -59,12 +56,12 @@ fn plot(
         curves.iter().flat_map(|c| c.formula_n.iter().copied().chain(ends(c, -1.0)).chain(ends(c, 1.0)));
     let each = |svg: &mut Svg, panel: &_, place: usize| {
         let (piece, curve) = (&pieces[place], &curves[place]);
-        let mut band = piece.points(panel, ends(curve, -1.0));
-        band.extend(piece.points(panel, ends(curve, 1.0)).into_iter().rev());
+        let mut band = points(piece, panel, ends(curve, -1.0));
+        band.extend(points(piece, panel, ends(curve, 1.0)).into_iter().rev());
         svg.veil(&band, colour(piece.direction), 0.18);
-        let formula = piece.points(panel, curve.formula_n.iter().copied());
+        let formula = points(piece, panel, curve.formula_n.iter().copied());
         svg.polyline(&formula, Stroke::dashed(colour(piece.direction), 1.5));
-        svg.polyline(&piece.points(panel, curve.bent_n.iter().copied()), stroke(piece.direction));
+        svg.polyline(&points(piece, panel, curve.bent_n.iter().copied()), stroke(piece.direction));
     };
     let (svg, left_out) = draw(&frame, &pieces, values, each)?;
     let caption = format!(

@@ -8,7 +8,7 @@ use crate::comparison::panel::Panel;
 use crate::comparison::svg::{Anchor, Stroke, Style, Svg, TEXT, name_fitted};
 use crate::comparison::wording::sentence;
 use crate::comparison::{Plot, WIDTH};
-use crate::palette::{ALERT, FIRST, GRID, LAST, Rgb, SOFT_INK};
+use crate::palette::{ALERT, FIRST, LAST, Rgb, SOFT_INK};
 use bulge_inference::{CandidateResult, Diagnosis};
 
 /// Most bars.
@@ -45,15 +45,11 @@ pub(super) fn plot(diagnosis: &Diagnosis) -> Result<Option<Plot>, PlotError> {
     let panel = Panel { x, y: x, left: NAMES, top, width: WIDTH - NAMES - NUMBERS, height };
     let mut svg = Svg::new("candidates", WIDTH, top + height + 52.0);
     legend::draw(&mut svg, (6.0, 2.0), WIDTH - 20.0, &entries);
-    let labels: Vec<_> = x.labels().into_iter().map(|(v, label)| (panel.across(v), label)).collect();
-    for (x, _) in &labels {
-        svg.line((*x, top), (*x, panel.bottom()), Stroke::solid(GRID, 1.0));
-    }
+    let labels = panel.draw_grid(&mut svg);
     for (i, row) in rows.iter().enumerate() {
         draw(&mut svg, &panel, row, top + (i as f64 + 0.5) * ROW);
     }
-    let zero = panel.across(0.0);
-    svg.line((zero, top), (zero, panel.bottom()), Stroke::solid(SOFT_INK, 1.0));
+    panel.draw_upright(&mut svg, panel.across(0.0), Stroke::solid(SOFT_INK, 1.0));
     panel.draw_across(&mut svg, &labels, "log evidence over the base");
     let left_out = if rows.len() < all.len() {
         format!(

@@ -1,13 +1,13 @@
 //! What each added effect explains: the misfit before it as dots, its contribution as a line.
 
-use bulge_inference::{Diagnosis, ExplainedStep};
+use bulge_inference::{CurveAt, Diagnosis, ExplainedStep};
 
 use crate::PlotError;
 use crate::comparison::Plot;
 use crate::comparison::legend::Mark;
 use crate::comparison::number::newton;
 use crate::comparison::svg::{Stroke, Svg};
-use crate::diagnosis::multiples::{Frame, Piece, colour, directions, draw, stroke};
+use crate::diagnosis::multiples::{Frame, colour, directions, draw, points, stroke};
 use crate::palette::SOFT_INK;
 
 /// Names of the drawings; later steps have none.
@@ -28,7 +28,7 @@ pub(super) fn plots(diagnosis: &Diagnosis) -> Result<Vec<Plot>, PlotError> {
 /// As [`plots`].
 pub(super) fn with_sentences(diagnosis: &Diagnosis) -> Result<Vec<(Plot, String)>, PlotError> {
     let steps =
-        diagnosis.explained.iter().filter(|step| step.curves.iter().any(|c| !c.contraction.is_empty()));
+        diagnosis.explained.iter().filter(|step| step.curves.iter().any(|c| !c.at.contraction.is_empty()));
     steps
         .zip(NAMES)
         .map(|(step, name)| Ok((plot(step, name, diagnosis.comparison.data.branches)?, says(step))))
@@ -36,11 +36,7 @@ pub(super) fn with_sentences(diagnosis: &Diagnosis) -> Result<Vec<(Plot, String)
 }
 
 fn plot(step: &ExplainedStep, name: &'static str, branches: [&'static str; 2]) -> Result<Plot, PlotError> {
-    let pieces: Vec<Piece<'_>> = step
-        .curves
-        .iter()
-        .map(|c| Piece { pressure_pa: c.pressure_pa, direction: c.direction, contraction: &c.contraction })
-        .collect();
+    let pieces: Vec<&CurveAt> = step.curves.iter().map(|curve| &curve.at).collect();
     let title = format!("What {} explains", step.effect);
     let mut entries = vec![
         (Mark::Dot(SOFT_INK), "misfit before it was added".to_owned()),
@@ -53,8 +49,8 @@ fn plot(step: &ExplainedStep, name: &'static str, branches: [&'static str; 2]) -
     let values = step.curves.iter().flat_map(|c| c.before_n.iter().chain(&c.explained_n).copied());
     let each = |svg: &mut Svg, panel: &_, place: usize| {
         let (piece, curve) = (&pieces[place], &step.curves[place]);
-        svg.dots(&piece.points(panel, curve.before_n.iter().copied()), 2.6, colour(piece.direction), 0.65);
-        svg.polyline(&piece.points(panel, curve.explained_n.iter().copied()), stroke(piece.direction));
+        svg.dots(&points(piece, panel, curve.before_n.iter().copied()), 2.6, colour(piece.direction), 0.65);
+        svg.polyline(&points(piece, panel, curve.explained_n.iter().copied()), stroke(piece.direction));
     };
     let (svg, left_out) = draw(&frame, &pieces, values, each)?;
     Ok(Plot {

@@ -6,10 +6,10 @@ use crate::PlotError;
 use crate::axis::Axis;
 use crate::comparison::number::and;
 use crate::comparison::panel::Panel;
-use crate::comparison::svg::{Anchor, Stroke, Style, Svg, TEXT, fitted};
+use crate::comparison::svg::{Anchor, Style, Svg, TEXT, fitted};
 use crate::comparison::{Plot, WIDTH};
 use crate::diagnosis::words::{is_significant, once_in};
-use crate::palette::{FIRST, GRID, LAST, SOFT_INK};
+use crate::palette::{FIRST, LAST, SOFT_INK};
 
 const NAMES: f64 = 110.0;
 const NUMBERS: f64 = 510.0;
@@ -29,10 +29,7 @@ pub(super) fn plot(diagnosis: &Diagnosis) -> Result<Option<Plot>, PlotError> {
     let height = ROW * rows.len() as f64;
     let panel = Panel { x, y: x, left: NAMES, top: TOP, width: WIDTH - NAMES - NUMBERS, height };
     let mut svg = Svg::new("where", WIDTH, TOP + height + 52.0);
-    let labels: Vec<_> = x.labels().into_iter().map(|(v, label)| (panel.across(v), label)).collect();
-    for (x, _) in &labels {
-        svg.line((*x, TOP), (*x, panel.bottom()), Stroke::solid(GRID, 1.0));
-    }
+    let labels = panel.draw_grid(&mut svg);
     for (i, row) in rows.iter().enumerate() {
         draw(&mut svg, &panel, row, TOP + (i as f64 + 0.5) * ROW);
     }

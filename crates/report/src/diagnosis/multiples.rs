@@ -1,6 +1,8 @@
 //! Small panels over the contraction, one per pressure level, with a colour and a dash pattern for each
 //! direction of movement.
 
+use bulge_inference::CurveAt;
+
 use crate::PlotError;
 use crate::axis::Axis;
 use crate::comparison::WIDTH;
@@ -16,21 +18,9 @@ const LEVELS: usize = 6;
 const HEIGHT: f64 = 190.0;
 const HEAD: f64 = 34.0;
 
-/// A curve at one pressure and in one direction.
-pub(super) struct Piece<'a> {
-    /// Pressure \[Pa\].
-    pub(super) pressure_pa: f64,
-    /// Direction: +1 shortening, -1 lengthening, 0 at rest.
-    pub(super) direction: f64,
-    /// Contractions.
-    pub(super) contraction: &'a [f64],
-}
-
-impl Piece<'_> {
-    /// Positions of the values of a quantity on a panel.
-    pub(super) fn points(&self, panel: &Panel, values: impl IntoIterator<Item = f64>) -> Vec<(f64, f64)> {
-        self.contraction.iter().zip(values).map(|(c, value)| panel.at((100.0 * c, value))).collect()
-    }
+/// Positions of a curve's values on a panel.
+pub(super) fn points(at: &CurveAt, panel: &Panel, values: impl IntoIterator<Item = f64>) -> Vec<(f64, f64)> {
+    at.contraction.iter().zip(values).map(|(c, value)| panel.at((100.0 * c, value))).collect()
 }
 
 /// Colour of a direction.
@@ -54,7 +44,7 @@ pub(super) fn stroke(direction: f64) -> Stroke {
 }
 
 /// The directions that occur, with their names: the two branches of a loop, and rest.
-pub(super) fn directions(pieces: &[Piece<'_>], [there, back]: [&'static str; 2]) -> Vec<(f64, &'static str)> {
+pub(super) fn directions(pieces: &[&CurveAt], [there, back]: [&'static str; 2]) -> Vec<(f64, &'static str)> {
     let named = [(1.0, there), (-1.0, back), (0.0, "at rest")];
     named
         .into_iter()
@@ -80,7 +70,7 @@ pub(super) struct Frame<'a> {
 /// The range of the values overflows.
 pub(super) fn draw(
     frame: &Frame<'_>,
-    pieces: &[Piece<'_>],
+    pieces: &[&CurveAt],
     values: impl Iterator<Item = f64> + Clone,
     mut draw_piece: impl FnMut(&mut Svg, &Panel, usize),
 ) -> Result<(String, String), PlotError> {

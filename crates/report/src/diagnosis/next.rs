@@ -138,7 +138,12 @@ fn lower(diagnosis: &Diagnosis, catalogue: &Catalogue) -> Option<String> {
 /// Where to measure again if a misfit remains that no effect explains.
 fn again(diagnosis: &Diagnosis) -> String {
     let points = diagnosis.remaining.surface.iter().flat_map(|curve| {
-        curve.contraction.iter().zip(&curve.misfit_n).map(|(e, misfit)| (misfit.abs(), *e, curve.pressure_pa))
+        curve
+            .at
+            .contraction
+            .iter()
+            .zip(&curve.misfit_n)
+            .map(|(e, misfit)| (misfit.abs(), *e, curve.at.pressure_pa))
     });
     let largest = points.max_by(|a, b| a.0.total_cmp(&b.0));
     let place = largest.map_or_else(

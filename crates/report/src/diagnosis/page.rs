@@ -224,7 +224,7 @@ fn noise(diagnosis: &Diagnosis) -> Vec<(&'static str, String)> {
         ("independent part", newton(law.white_n)),
         ("correlated part", newton(law.correlated_n)),
         ("offsets of sweeps", newton(law.offset_n)),
-        ("source", words::found_by(&noise.source).to_owned()),
+        ("source", words::found_by(noise.source).to_owned()),
         ("rows that count as independent", three(diagnosis.data.effective_rows)),
     ];
     if !law.says.is_empty() {

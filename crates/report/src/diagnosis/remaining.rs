@@ -1,13 +1,13 @@
 //! The remaining systematic misfit, smoothed, with a band of one standard deviation.
 
-use bulge_inference::Diagnosis;
+use bulge_inference::{CurveAt, Diagnosis};
 
 use crate::PlotError;
 use crate::comparison::Plot;
 use crate::comparison::legend::Mark;
 use crate::comparison::panel::Panel;
 use crate::comparison::svg::Svg;
-use crate::diagnosis::multiples::{Frame, Piece, colour, directions, draw, stroke};
+use crate::diagnosis::multiples::{Frame, colour, directions, draw, points, stroke};
 
 /// The plot; `None` without a surface.
 ///
@@ -15,10 +15,7 @@ use crate::diagnosis::multiples::{Frame, Piece, colour, directions, draw, stroke
 /// The range of the forces overflows.
 pub(super) fn plot(diagnosis: &Diagnosis) -> Result<Option<Plot>, PlotError> {
     let curves = &diagnosis.remaining.surface;
-    let pieces: Vec<Piece<'_>> = curves
-        .iter()
-        .map(|c| Piece { pressure_pa: c.pressure_pa, direction: c.direction, contraction: &c.contraction })
-        .collect();
+    let pieces: Vec<&CurveAt> = curves.iter().map(|curve| &curve.at).collect();
     if pieces.iter().all(|piece| piece.contraction.is_empty()) {
         return Ok(None);
     }
@@ -34,12 +31,12 @@ pub(super) fn plot(diagnosis: &Diagnosis) -> Result<Option<Plot>, PlotError> {
     let each = |svg: &mut Svg, panel: &Panel, place: usize| {
         let (piece, curve) = (&pieces[place], &curves[place]);
         let side = |sign: f64| {
-            piece.points(panel, curve.misfit_n.iter().zip(&curve.sd_n).map(move |(m, sd)| m + sign * sd))
+            points(piece, panel, curve.misfit_n.iter().zip(&curve.sd_n).map(move |(m, sd)| m + sign * sd))
         };
         let mut band = side(1.0);
         band.extend(side(-1.0).into_iter().rev());
         svg.veil(&band, colour(piece.direction), 0.16);
-        svg.polyline(&piece.points(panel, curve.misfit_n.iter().copied()), stroke(piece.direction));
+        svg.polyline(&points(piece, panel, curve.misfit_n.iter().copied()), stroke(piece.direction));
     };
     let (svg, left_out) = draw(&frame, &pieces, ends(1.0).chain(ends(-1.0)), each)?;
     Ok(Some(Plot {

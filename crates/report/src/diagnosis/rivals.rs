@@ -56,7 +56,7 @@ pub(super) fn plot(diagnosis: &Diagnosis) -> Result<Option<Plot>, PlotError> {
     let panel = Panel { x, y: x, left: NAMES, top, width: WIDTH - NAMES - NUMBERS, height };
     let mut svg = Svg::new("rivals", WIDTH, top + height + 52.0);
     legend::draw(&mut svg, (6.0, 2.0), WIDTH - 20.0, &entries);
-    let labels: Vec<_> = x.labels().into_iter().map(|(v, label)| (panel.across(v), label)).collect();
+    let labels = panel.labels();
     let mut y = top;
     for (missing, rivals) in &groups {
         let heading = format!("beside {}", missing.effect);

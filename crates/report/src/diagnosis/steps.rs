@@ -1,6 +1,6 @@
 //! The ladder of a diagnosis: the error after each effect that was found, as bars and as rows of a table.
 
-use bulge_inference::{Comparison, Diagnosis, LadderStep, NoiseFloor, NoiseSource, Rung, Verdict};
+use bulge_inference::{Comparison, Diagnosis, LadderStep, NoiseFloor, Rung, Verdict};
 use serde::Serialize;
 
 use crate::PlotError;
@@ -44,12 +44,8 @@ pub(super) fn plot(diagnosis: &Diagnosis) -> Result<Option<Plot>, PlotError> {
 /// The comparison with the noise floor of the diagnosis, whose noise estimate uses more information.
 pub(super) fn with_noise(diagnosis: &Diagnosis) -> Comparison {
     let law = &diagnosis.noise.law;
-    let source = match law.source {
-        NoiseSource::Repeats => "repeats",
-        NoiseSource::Saturated => "saturated",
-        NoiseSource::Instruments => "instruments",
-    };
-    let floor = NoiseFloor { sd_n: diagnosis.noise_floor_n, source, says: law.says.clone() };
+    let floor =
+        NoiseFloor { sd_n: diagnosis.noise_floor_n, source: law.source.name(), says: law.says.clone() };
     Comparison { noise_floor: Some(floor), ..diagnosis.comparison.clone() }
 }
 

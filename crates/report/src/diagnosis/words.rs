@@ -1,6 +1,6 @@
 //! Sentences and numbers of a diagnosis shared by page and command line: plain text, no markup.
 
-use bulge_inference::{CorrelationTime, Diagnosis, LadderStep, Verdict};
+use bulge_inference::{CorrelationTime, Diagnosis, LadderStep, NoiseSource, Verdict};
 
 use crate::comparison::number::{count, newton, three};
 use crate::interval::with_interval;
@@ -29,12 +29,11 @@ pub fn is_significant(p: f64) -> bool {
 
 /// Source of the noise estimate.
 #[must_use]
-pub fn found_by(source: &str) -> &str {
+pub const fn found_by(source: NoiseSource) -> &'static str {
     match source {
-        "repeats" => "from repeated readings",
-        "saturated" => "from what a model that can follow everything smooth leaves",
-        "instruments" => "from the data sheets of the instruments",
-        other => other,
+        NoiseSource::Repeats => "from repeated readings",
+        NoiseSource::Saturated => "from what a model that can follow everything smooth leaves",
+        NoiseSource::Instruments => "from the data sheets of the instruments",
     }
 }
 
@@ -93,7 +92,7 @@ pub fn noise_says(diagnosis: &Diagnosis) -> String {
     } else {
         String::new()
     };
-    format!("{scatters}{correlated}{offsets}{independent}, {}{counted}", found_by(&noise.source))
+    format!("{scatters}{correlated}{offsets}{independent}, {}{counted}", found_by(noise.source))
 }
 
 /// The remaining misfit in a sentence: the systematic misfit with its interval, and whether it has structure.

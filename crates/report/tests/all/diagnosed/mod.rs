@@ -2,10 +2,10 @@
 
 use bulge_effects::Mechanism;
 use bulge_inference::{
-    BentCurve, CandidateResult, Comparison, Confidence, CorrelationTime, DiagnosedData, DiagnosedNoise,
-    Diagnosis, ExplainedCurve, ExplainedStep, FormErrorAt, FormErrorResult, Geometry, LadderStep, Level,
-    Located, Missing, NextExperiment, NoiseLaw, NoiseSource, ParameterResult, Remaining, RivalResult,
-    SurfaceCurve, Verdict,
+    BentCurve, CandidateResult, Comparison, Confidence, CorrelationTime, CurveAt, DiagnosedData,
+    DiagnosedNoise, Diagnosis, ExplainedCurve, ExplainedStep, FormErrorAt, FormErrorResult, Geometry,
+    LadderStep, Level, Located, Missing, NextExperiment, NoiseLaw, NoiseSource, ParameterResult, Remaining,
+    RivalResult, SurfaceCurve, Verdict,
 };
 
 /// Rubber and friction are missing, the second and third rungs of the comparison; rubber has another form
@@ -15,18 +15,7 @@ pub(crate) fn missing(mut comparison: Comparison) -> Diagnosis {
     Diagnosis {
         schema: "bulge.diagnosis/1",
         muscle: comparison.muscle.clone(),
-        data: DiagnosedData {
-            rows: comparison.data.rows,
-            used: comparison.data.used,
-            effective_rows: 0.2 * comparison.data.used as f64,
-            reading: comparison.data.reading.clone(),
-            sha256: comparison.data.sha256.clone(),
-            sweeps: comparison.data.sweeps,
-            specimens: comparison.data.specimens.len(),
-            left_out: comparison.data.left_out.clone(),
-            findings: comparison.data.findings.clone(),
-            quality: comparison.quality.clone(),
-        },
+        data: DiagnosedData::of(&comparison, 0.2 * comparison.data.used as f64),
         noise: noise(),
         verdict: Verdict::Missing,
         says: "Two things are missing.".to_owned(),
@@ -123,7 +112,7 @@ fn noise() -> DiagnosedNoise {
     let mut law = NoiseLaw::white(3.9, NoiseSource::Saturated, 500.0, says);
     law.correlated_n = 1.0;
     law.time = Some(CorrelationTime::Seconds(5.0));
-    DiagnosedNoise { sd_n: 4.1, correlated: true, source: "saturated".to_owned(), law }
+    DiagnosedNoise { sd_n: 4.1, correlated: true, source: law.source, law }
 }
 
 fn number(value: f64, unit: &str, low: f64, high: f64) -> ParameterResult {
@@ -167,9 +156,7 @@ fn bent() -> FormErrorResult {
         sd_n: 0.5,
     };
     let curve = BentCurve {
-        pressure_pa: 2e5,
-        direction: 1.0,
-        contraction: vec![0.1, 0.2],
+        at: CurveAt { pressure_pa: 2e5, direction: 1.0, contraction: vec![0.1, 0.2] },
         formula_n: vec![20.0, 40.0],
         bent_n: vec![20.5, 36.0],
         sd_n: vec![0.3, 0.5],
@@ -249,27 +236,25 @@ fn located(variable: &str, share: f64, p: f64, says: &str) -> Located {
 
 /// Half of a misfit of 2 N is explained at each of five pressures.
 fn explained(effect: &str) -> ExplainedStep {
-    let curve = |(pressure_pa, direction): (f64, f64)| ExplainedCurve {
-        pressure_pa,
-        direction,
-        contraction: vec![0.02, 0.1, 0.2],
-        before_n: vec![2.0 * direction; 3],
-        explained_n: vec![direction; 3],
+    let curve = |at: CurveAt| ExplainedCurve {
+        before_n: vec![2.0 * at.direction; 3],
+        explained_n: vec![at.direction; 3],
+        at,
     };
     ExplainedStep { effect: effect.to_owned(), curves: grid().map(curve).collect() }
 }
 
 fn surface() -> Vec<SurfaceCurve> {
-    let curve = |(pressure_pa, direction): (f64, f64)| SurfaceCurve {
-        pressure_pa,
-        direction,
-        contraction: vec![0.02, 0.1, 0.2],
-        misfit_n: vec![0.5, -0.5, 0.25 * direction],
-        sd_n: vec![0.4; 3],
-    };
+    let curve =
+        |at: CurveAt| SurfaceCurve { misfit_n: vec![0.5, -0.5, 0.25 * at.direction], sd_n: vec![0.4; 3], at };
     grid().map(curve).collect()
 }
 
-fn grid() -> impl Iterator<Item = (f64, f64)> {
-    (1..=5).flat_map(|bar| [1.0, -1.0].map(|direction| (1e5 * f64::from(bar), direction)))
+fn grid() -> impl Iterator<Item = CurveAt> {
+    let at = |bar: i32, direction| CurveAt {
+        pressure_pa: 1e5 * f64::from(bar),
+        direction,
+        contraction: vec![0.02, 0.1, 0.2],
+    };
+    (1..=5).flat_map(move |bar| [1.0, -1.0].map(|direction| at(bar, direction)))
 }

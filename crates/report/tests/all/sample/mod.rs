@@ -356,7 +356,6 @@ fn fit() -> Fit {
     }
     Fit {
         parameters,
-        theta: Vec::new(),
         rmse_n: 4.02,
         cost: 512.3,
         sd_n: 2.51,
@@ -376,6 +375,7 @@ fn fit() -> Fit {
             "pressure-gain.gain is -6.02 %, which no gauge has (plausible: -2 to 2 %): it stands in for something else"
                 .to_owned(),
         ],
+        ..Fit::default()
     }
 }
 
@@ -393,7 +393,6 @@ fn ladder(rows: &[Row]) -> Vec<Rung> {
             (Some(NAMES[i - 1].0.to_owned()), NAMES[i - 1].1.to_owned())
         };
         ladder.push(Rung {
-            without_state: None,
             added,
             title,
             rmse_n: rmse,
@@ -404,10 +403,9 @@ fn ladder(rows: &[Row]) -> Vec<Rung> {
             held_out_by: Some("pressure"),
             r_squared: 1.0 - 0.09 * (rmse / base).powi(2),
             fitted: 2 * i,
-            directed_rmse_n: None,
             half_gap_rmse_n: Some(if i < 2 { 12.4 } else { 0.84 }),
             fit: (i > 0).then(fit),
-            held: Vec::new(),
+            ..Rung::default()
         });
     }
     ladder
@@ -527,8 +525,6 @@ pub(crate) fn rich(recipe: &Recipe) -> Comparison {
             rows: rows.len() + 17,
             used: rows.len(),
             left_out: vec![LeftOut { why: "slack: no force at all".to_owned(), lines: "12, 33–48".to_owned(), rows: 17 }],
-            findings: Vec::new(),
-            reading: bulge_measurements::Reading::default(),
             sha256: "9f86d081884c7d659a2feaa0c55ad015a3bf4f1b2b0b822cd15d6c15b0f00a08".to_owned(),
             files: vec!["loops-a.csv".to_owned()],
             sweeps: rows.last().map_or(0, |row| row.sweep + 1),
@@ -540,6 +536,7 @@ pub(crate) fn rich(recipe: &Recipe) -> Comparison {
             contraction: [0.005, 0.255],
             force_n: [low, high],
             full_scale_n: high,
+            ..DataSummary::default()
         },
         quality: quality(),
         noise_floor: Some(NoiseFloor {

@@ -1,4 +1,4 @@
-//! Sums of products.
+//! Vectors of numbers: products, sums, ranges.
 
 /// Sum of the products of two series, over the length of the shorter one. Eight interleaved partial sums are
 /// added at once.
@@ -12,6 +12,33 @@ pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
         }
     }
     parts.iter().sum::<f64>() + a.remainder().iter().zip(b.remainder()).map(|(a, b)| a * b).sum::<f64>()
+}
+
+/// Length of a vector.
+pub(crate) fn norm(a: &[f64]) -> f64 {
+    dot(a, a).sqrt()
+}
+
+/// Root mean square; 0 of nothing.
+pub(crate) fn rms(values: &[f64]) -> f64 {
+    (dot(values, values) / values.len().max(1) as f64).sqrt()
+}
+
+/// Adds a multiple of another vector.
+pub(crate) fn add(sum: &mut [f64], factor: f64, vector: &[f64]) {
+    for (total, value) in sum.iter_mut().zip(vector) {
+        *total += factor * value;
+    }
+}
+
+/// Difference of two vectors, such as measured less modelled forces.
+pub(crate) fn minus(a: &[f64], b: &[f64]) -> Vec<f64> {
+    a.iter().zip(b).map(|(a, b)| a - b).collect()
+}
+
+/// Least and largest value; infinite with the signs turned over if there is none.
+pub(crate) fn range(values: impl Iterator<Item = f64>) -> [f64; 2] {
+    values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)])
 }
 
 #[cfg(test)]
