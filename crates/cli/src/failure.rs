@@ -5,7 +5,6 @@ use bulge_design::heat::HeatError;
 use bulge_design::sensing::SensingError;
 use bulge_design::size::SizeError;
 use bulge_effects::CatalogueError;
-use bulge_effects::user::EffectFileError;
 use bulge_fibre::FibreError;
 use bulge_inference::{HideError, InferenceError, Stated, StatementError};
 use bulge_measurements::{MeasurementError, WrittenError};
@@ -41,8 +40,6 @@ pub(crate) enum Failure {
     Plot(Box<PlotError>),
     #[error("{0}")]
     Effect(Box<CatalogueError>),
-    #[error("{0}")]
-    EffectFile(Box<EffectFileError>),
     #[error("{0}")]
     Measurement(Box<MeasurementError>),
     #[error("{0}")]
@@ -205,7 +202,6 @@ boxed!(
     Vtk(VtkError),
     Plot(PlotError),
     Effect(CatalogueError),
-    EffectFile(EffectFileError),
     Measurement(MeasurementError),
     Inference(InferenceError),
     Learning(LearningError),
