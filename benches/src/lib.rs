@@ -3,7 +3,7 @@
 use bulge_effects::{Effect, user};
 use bulge_fibre::{Approach, FibreError, Given, Problem, Response};
 use bulge_muscles::{
-    Angle, Bladder, Braided, Construction, Ends, Length, Muscle, MuscleError, Parameter, Pressure, preset,
+    Angle, Braided, Construction, Ends, Length, Muscle, MuscleError, Parameter, Pressure, preset,
 };
 use bulge_numerics::Random;
 use bulge_table::Lookup;
@@ -62,8 +62,8 @@ pub fn braid(length_over_radius: f64) -> Result<Problem, Failure> {
 /// # Errors
 /// Never: the numbers are valid.
 pub fn bladder() -> Result<Problem, Failure> {
-    let rubber = Bladder::new(Pressure::kpa(200.0), Pressure::kpa(50.0), Length::mm(1.5))?;
-    let muscle = braid_muscle(25.0, Ends::Clamped)?.with_bladder(rubber)?;
+    let rubber = [(Parameter::Wall, 0.0015), (Parameter::C10, 2e5), (Parameter::C01, 5e4)];
+    let muscle = braid_muscle(25.0, Ends::Clamped)?.with_all(&rubber)?;
     Ok(Problem::new(&muscle, Pressure::bar(3.0))?)
 }
 

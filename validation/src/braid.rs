@@ -1,7 +1,7 @@
 //! The clamped braid, with and without bladder, against an independent energy method.
 
 use bulge_fibre::{Approach, Problem, Response};
-use bulge_muscles::{Angle, Bladder, Braided, Construction, Ends, Length, Muscle, Parameter, Pressure};
+use bulge_muscles::{Angle, Braided, Construction, Ends, Length, Muscle, Parameter, Pressure};
 
 use crate::check::{Check, Claim};
 use crate::reference::{self, CLAMPED_NET, NET_BLADDER, NET_LIMITS, NET_TENSIONS};
@@ -111,9 +111,9 @@ pub(crate) fn bladder() -> Check {
         why: "beyond one unit of the last printed digit, of which there are 9 to 13",
     }
     .run(|tally| {
-        let rubber = Bladder::new(Pressure::mpa(0.2), Pressure::pa(0.0), Length::mm(1.0))?;
+        let rubber = [(Parameter::Wall, 0.001), (Parameter::C10, 2e5)];
         for [l0, contraction, force, mid, volume] in reference::rows(NET_BLADDER)? {
-            let muscle = braid_25(Length::mm(l0.value))?.with_bladder(rubber)?;
+            let muscle = braid_25(Length::mm(l0.value))?.with_all(&rubber)?;
             let found: Response = at(&muscle, PRESSURE, contraction.value)?;
             let case =
                 |what: &str| format!("{what} at l0 = {} mm, contraction {}", l0.value, contraction.value);

@@ -1,7 +1,7 @@
 //! The force as a derivative of energy. Every equilibrium obeys this, whatever carries the load.
 
 use bulge_fibre::{Approach, Given, MeridianPoint, Problem, Shape};
-use bulge_muscles::{Construction, Muscle, Pressure, Quantity};
+use bulge_muscles::{Construction, Muscle, Parameter, Pressure, Quantity};
 use std::f64::consts::PI;
 
 use crate::check::{Check, Claim, Trouble};
@@ -121,17 +121,20 @@ fn densities(muscle: &Muscle, point: &MeridianPoint) -> (f64, f64) {
         Construction::Pleated(_) => 1.0,
         Construction::Braided(braided) => braided.braid_angle().si().cos(),
     };
-    if let Some(bladder) = muscle.bladder() {
+    let get = |parameter| muscle.get(parameter);
+    if let (Some(wall), Some(c10), Some(c01)) =
+        (muscle.bladder_wall(), get(Parameter::C10), get(Parameter::C01))
+    {
         let (a, b) = ((sigma / rest).powi(2), (r / muscle.radius().si()).powi(2));
         let (i1, i2) = (a + b + 1.0 / (a * b), 1.0 / a + 1.0 / b + a * b);
-        let w = bladder.c10().si() * (i1 - 3.0) + bladder.c01().si() * (i2 - 3.0);
+        let w = c10 * (i1 - 3.0) + c01 * (i2 - 3.0);
         // Area of the section of the wall at rest, times the axial length at rest of this piece of fibre.
-        stored += 2.0 * PI * muscle.radius().si() * bladder.wall().si() * rest * w;
+        stored += 2.0 * PI * muscle.radius().si() * wall.si() * rest * w;
     }
-    if let Some(cloth) = muscle.unfolding() {
-        let taut = (r - cloth.unfolded_radius().si()).max(0.0);
-        let developed = 2.0 * PI * cloth.unfolded_radius().si();
-        stored += sigma * cloth.hoop_stiffness().si() * (2.0 * PI * taut).powi(2) / (2.0 * developed);
+    if let (Some(stiffness), Some(radius)) = (get(Parameter::HoopStiffness), get(Parameter::UnfoldedRadius)) {
+        let taut = (r - radius).max(0.0);
+        let developed = 2.0 * PI * radius;
+        stored += sigma * stiffness * (2.0 * PI * taut).powi(2) / (2.0 * developed);
     }
     (stored, area(muscle, r) * sigma * point.slope_rad.cos())
 }

@@ -2,7 +2,7 @@
 //! contribution of its rubber when it is stretched.
 
 use bulge_fibre::{Approach, Problem};
-use bulge_muscles::{Angle, Bladder, Braided, Construction, Ends, Length, Muscle, Pressure, preset};
+use bulge_muscles::{Angle, Braided, Construction, Ends, Length, Muscle, Parameter, Pressure, preset};
 use std::f64::consts::PI;
 
 use crate::check::{Check, Claim, Trouble};
@@ -65,7 +65,7 @@ pub(crate) fn shipped_muscle() -> Check {
     }
     .run(|tally| {
         let shipped = preset("dmsp-20-250")?;
-        let Construction::Braided(braided) = *shipped.construction() else {
+        let Construction::Braided(braided) = shipped.construction() else {
             return Err("the shipped DMSP-20-250 is no braid".into());
         };
         let bare =
@@ -87,11 +87,11 @@ pub(crate) fn drawn_out() -> Check {
         why: "half a unit of the last digit, 0.01 N, of 64 N",
     }
     .run(|tally| {
-        let bladder = Bladder::new(Pressure::kpa(290.0), Pressure::kpa(0.0), Length::mm(2.0))?;
+        let bladder = [(Parameter::Wall, 0.002), (Parameter::C10, 290e3)];
         // At the printed radius and angle; expected values from W at 10.725 mm and 25 deg.
         let braided = Braided::new(Length::mm(10.725), Angle::deg(25.0))?.with_ends(Ends::Cylinder);
         let bare = Muscle::new("bare", Length::m(LENGTH), Construction::Braided(braided))?;
-        let rubber = bare.clone().with_bladder(bladder)?.with_gas_wall(Some(Length::mm(0.0)))?;
+        let rubber = bare.with_all(&bladder)?.with_gas_wall(Some(Length::mm(0.0)))?;
         // At 1 bar and 20 % the rubber alone would carry the pressure, and the fibres nothing.
         for pressure in [Pressure::bar(3.0), Pressure::bar(6.0)] {
             for (contraction, expected) in [

@@ -2,7 +2,7 @@
 //! consistent.
 
 use bulge_fibre::{Approach, Given, MeridianPoint, Problem, Shape};
-use bulge_muscles::{Construction, Muscle, Parameter, Pressure, Quantity};
+use bulge_muscles::{Muscle, Parameter, Pressure, Quantity};
 use std::f64::consts::PI;
 
 use crate::check::{Check, Claim, Trouble};
@@ -164,16 +164,12 @@ pub(crate) fn consistency() -> Check {
                 tally.relative(first.r_m, muscle.end_radius().si(), || case("first point"));
                 tally.relative(last.r_m, muscle.end_radius().si(), || case("last point's radius"));
             }
-            let angle = match muscle.construction() {
-                Construction::Pleated(pleated) => pleated.misalignment(),
-                Construction::Braided(braided) => braided.braid_angle(),
-            };
-            let whole = muscle.length().si() / angle.si().cos();
+            let get = |parameter| muscle.get(parameter);
+            let angle = get(Parameter::Misalignment).or(get(Parameter::BraidAngle)).unwrap_or(0.0);
+            let whole = muscle.length().si() / angle.cos();
             tally.relative(last.fibre_length_m - first.fibre_length_m, whole, || case("fibre length"));
-            let depth = match muscle.construction() {
-                Construction::Pleated(pleated) => pleated.pleat_depth().si(),
-                Construction::Braided(_) => -muscle.gas_wall().map_or(0.0, Quantity::si),
-            };
+            let gas = get(Parameter::GasWall).map(|wall| -wall);
+            let depth = get(Parameter::PleatDepth).or(gas).unwrap_or(0.0);
             let lobed = muscle.get(Parameter::ClothCircumference).is_some();
             let round = |r: f64| if lobed { area(&muscle, r) } else { PI * (r + depth).powi(2) };
             let volume = simpson(points, fibre, |point| round(point.r_m) * dx(point));

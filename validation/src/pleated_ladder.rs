@@ -2,7 +2,7 @@
 //! are fitted one after the other.
 
 use bulge_fibre::{Approach, Parts, Problem};
-use bulge_muscles::{Fibre, Force, Length, LineStiffness, Muscle, Parameter, Pressure, Unfolding};
+use bulge_muscles::{Fibre, Force, Length, Muscle, Parameter, Pressure};
 use bulge_numerics::least_squares::{Bounds, Options, Residuals, minimise};
 use std::ops::Range;
 
@@ -142,8 +142,8 @@ pub(crate) fn fits() -> Check {
     }
     .run(|tally| {
         let elastic = ppam()?.with_fibre(Fibre::new(Force::n(START[1].1))?)?;
-        let cloth = Unfolding::new(LineStiffness::kn_per_m(60.0), Length::mm(52.0))?;
-        let muscles = [ppam()?, elastic.clone(), elastic.with_unfolding(cloth)];
+        let cloth = [(Parameter::HoopStiffness, 60e3), (Parameter::UnfoldedRadius, 0.052)];
+        let muscles = [ppam()?, elastic.clone(), elastic.with_all(&cloth)?];
         let options = Options { tolerance: 1e-8, check_curvature: false, ..Options::default() };
         for ((muscle, row), free) in muscles.into_iter().zip(values::<5>(FITS)?).zip([1, 2, 4]) {
             let misfit = Misfit::new(muscle, &START[..free]);

@@ -1,8 +1,8 @@
 //! Random muscles for properties that must hold for all muscles. They are the same in every run.
 
 use bulge_muscles::{
-    Angle, Bladder, Braided, Construction, Fibre, FibreCount, Force, Length, LineStiffness, Muscle,
-    MuscleError, Parameter, Pleated, Pressure, Unfolding,
+    Angle, Braided, Construction, Fibre, FibreCount, Force, Length, Muscle, MuscleError, Parameter, Pleated,
+    Pressure,
 };
 
 /// A deterministic source of muscles (splitmix64: G. Steele, D. Lea, C. Flood, OOPSLA 2014).
@@ -86,7 +86,7 @@ impl Sampler {
             muscle = muscle.with(Parameter::Misalignment, most * self.between(0.05, 1.0))?;
         }
         if self.chance(0.25) {
-            muscle = muscle.with_unfolding(self.cloth(radius, 0.1 * length)?);
+            muscle = muscle.with_all(&self.cloth(radius, 0.1 * length))?;
         }
         Ok(muscle)
     }
@@ -95,32 +95,32 @@ impl Sampler {
         let radius = self.log_between(0.002, 0.03);
         let length = radius * self.log_between(1.0, 100.0);
         let angle = self.between(5.0, 50.0);
-        let mut braided = Braided::new(Length::m(radius), Angle::deg(angle))?.with_fibres(60)?;
-        if self.chance(0.3) {
-            braided = braided.with_fitting_radius(Length::m(radius * self.between(0.7, 1.2)))?;
-        }
+        let braided = Braided::new(Length::m(radius), Angle::deg(angle))?.with_fibres(60)?;
         let mut muscle = Muscle::new("braid", Length::m(length), Construction::Braided(braided))?;
+        if self.chance(0.3) {
+            muscle = muscle.with(Parameter::FittingRadius, radius * self.between(0.7, 1.2))?;
+        }
         if self.chance(0.3) {
             let stiffness = 8e5 * radius * length / self.log_between(1e-5, 3e-2) / 60.0;
             muscle = muscle.with_fibre(Fibre::new(Force::n(stiffness))?)?;
         }
         if self.chance(0.4) {
-            let modulus = Pressure::mpa(self.log_between(0.02, 0.5));
-            let second = Pressure::mpa(self.between(0.0, 0.05));
-            let wall = Length::m(radius * self.between(0.01, 0.15));
-            muscle = muscle.with_bladder(Bladder::new(modulus, second, wall)?)?;
+            let modulus = Pressure::mpa(self.log_between(0.02, 0.5)).to_pa();
+            let second = Pressure::mpa(self.between(0.0, 0.05)).to_pa();
+            let wall = (Parameter::Wall, radius * self.between(0.01, 0.15));
+            muscle = muscle.with_all(&[wall, (Parameter::C10, modulus), (Parameter::C01, second)])?;
         }
         if self.chance(0.2) {
-            muscle = muscle.with_unfolding(self.cloth(1.2 * radius, 0.4 * radius)?);
+            muscle = muscle.with_all(&self.cloth(1.2 * radius, 0.4 * radius))?;
         }
         Ok(muscle)
     }
 
     /// Cloth that is slack at the fitting. Cloth that is taut there may prevent any bulging.
-    fn cloth(&mut self, radius: f64, bulge: f64) -> Result<Unfolding, MuscleError> {
+    fn cloth(&mut self, radius: f64, bulge: f64) -> [(Parameter, f64); 2] {
         let unfolded = radius + bulge * self.between(0.02, 2.0);
-        let stiffness = LineStiffness::n_per_m(unfolded * 1e5 * self.log_between(0.1, 30.0));
-        Unfolding::new(stiffness, Length::m(unfolded))
+        let stiffness = unfolded * 1e5 * self.log_between(0.1, 30.0);
+        [(Parameter::HoopStiffness, stiffness), (Parameter::UnfoldedRadius, unfolded)]
     }
 }
 
@@ -140,8 +140,8 @@ mod tests {
             for (seen, has) in kinds.iter_mut().zip([
                 muscle.is_pleated(),
                 muscle.fibre().is_some(),
-                muscle.bladder().is_some(),
-                muscle.unfolding().is_some(),
+                muscle.bladder_wall().is_some(),
+                muscle.get(Parameter::HoopStiffness).is_some(),
             ]) {
                 *seen += i32::from(has);
             }

@@ -1,20 +1,22 @@
 //! Area of a cross-section on which the pressure acts, from the geometry of each muscle alone.
 
-use bulge_muscles::{Construction, Muscle, Parameter, Quantity};
+use bulge_muscles::{Kind, Muscle, Parameter};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// A(r) \[m^2\] with the fibres at the radius r \[m\].
 pub(crate) fn area(muscle: &Muscle, r: f64) -> f64 {
-    match (muscle.construction(), muscle.fibres()) {
-        (Construction::Pleated(pleated), Some(n)) => {
-            let (n, crest) = (f64::from(n), r + pleated.pleat_depth().si());
+    let number = |parameter| muscle.get(parameter).unwrap_or(0.0);
+    let (depth, gas) = (number(Parameter::PleatDepth), number(Parameter::GasWall));
+    match (muscle.kind(), muscle.fibres()) {
+        (Kind::Pleated, Some(n)) => {
+            let (n, crest) = (f64::from(n), r + depth);
             let Some(cloth) = muscle.get(Parameter::ClothCircumference) else {
                 return 0.5 * n * (2.0 * PI / n).sin() * crest * crest;
             };
             n * panel(PI / n, cloth / n, crest)
         }
-        (Construction::Pleated(pleated), None) => PI * (r + pleated.pleat_depth().si()).powi(2),
-        (Construction::Braided(_), _) => PI * (r - muscle.gas_wall().map_or(0.0, Quantity::si)).powi(2),
+        (Kind::Pleated, None) => PI * (r + depth).powi(2),
+        (Kind::Braided, _) => PI * (r - gas).powi(2),
     }
 }
 

@@ -2,8 +2,8 @@
 
 use bulge_fibre::{Approach, Given, Problem, Response};
 use bulge_muscles::{
-    Angle, Bladder, Braided, Construction, Ends, Fibre, FibreCount, Force, Length, LineStiffness, Muscle,
-    Parameter, Pleated, Pressure, Unfolding,
+    Angle, Braided, Construction, Ends, Fibre, FibreCount, Force, Length, Muscle, Parameter, Pleated,
+    Pressure,
 };
 
 use crate::check::Trouble;
@@ -37,9 +37,9 @@ pub(crate) fn cylinder_25(length: Length) -> Result<Muscle, Trouble> {
 
 /// Braid of r0 = 10 mm and 25 degrees with 60 fibres, 250 mm or shorter, on fittings of another radius.
 fn counted(length: Length, fitting: Length) -> Result<Muscle, Trouble> {
-    let braided =
-        Braided::new(Length::mm(10.0), Angle::deg(25.0))?.with_fibres(60)?.with_fitting_radius(fitting)?;
-    Ok(Muscle::new("braid", length, Construction::Braided(braided))?)
+    let braided = Braided::new(Length::mm(10.0), Angle::deg(25.0))?.with_fibres(60)?;
+    let muscle = Muscle::new("braid", length, Construction::Braided(braided))?;
+    Ok(muscle.with(Parameter::FittingRadius, fitting.to_m())?)
 }
 
 /// Muscles of inextensible fibres loaded by pressure alone, each with a contraction within its range.
@@ -84,44 +84,42 @@ pub(crate) fn pressure_only() -> Result<Vec<(&'static str, Muscle, f64)>, Troubl
 
 /// Muscles in which fibres, bladder or cloth store energy, each with a contraction within its range.
 pub(crate) fn storing() -> Result<Vec<(&'static str, Muscle, f64)>, Trouble> {
-    let rubber = Bladder::new(Pressure::mpa(0.2), Pressure::mpa(0.05), Length::mm(1.5))?;
-    let cloth = |radius| Unfolding::new(LineStiffness::kn_per_m(8.0), Length::mm(radius));
+    let rubber = [(Parameter::Wall, 0.0015), (Parameter::C10, 2e5), (Parameter::C01, 5e4)];
+    let cloth =
+        |radius| [(Parameter::HoopStiffness, 8e3), (Parameter::UnfoldedRadius, Length::mm(radius).to_m())];
     let fibre = |stiffness| Fibre::new(Force::n(stiffness));
     let everything = ppam()?
         .with_fibre(fibre(4e3)?)?
-        .with_unfolding(cloth(34.0)?)
+        .with_all(&cloth(34.0))?
         .with(Parameter::Misalignment, 4.0_f64.to_radians())?
         .with(Parameter::PleatDepth, 0.002)?;
     let (length, fitting) = (Length::mm(120.0), Length::mm(9.0));
     Ok(vec![
         ("pleated, elastic", ppam()?.with_fibre(fibre(3e3)?)?, 0.1),
         ("pleated, elastic, stretched", ppam()?.with_fibre(fibre(3e3)?)?, -0.01),
-        ("pleated, taut cloth", ppam()?.with_unfolding(cloth(36.0)?), 0.2),
+        ("pleated, taut cloth", ppam()?.with_all(&cloth(36.0))?, 0.2),
         ("pleated, everything", everything, 0.15),
         (
             "lobes, elastic, taut cloth",
             ppam()?
                 .with(Parameter::ClothCircumference, 0.31)?
                 .with_fibre(fibre(6e3)?)?
-                .with_unfolding(cloth(38.0)?),
+                .with_all(&cloth(38.0))?,
             0.15,
         ),
-        ("cylinder, bladder", cylinder_25(Length::mm(250.0))?.with_bladder(rubber)?, 0.15),
+        ("cylinder, bladder", cylinder_25(Length::mm(250.0))?.with_all(&rubber)?, 0.15),
         (
             "braid, bladder, gas on its inner face",
-            braid_25(length)?.with_bladder(rubber)?.with_gas_wall(None)?,
+            braid_25(length)?.with_all(&rubber)?.with_gas_wall(None)?,
             0.12,
         ),
         ("braid, elastic", counted(length, fitting)?.with_fibre(fibre(200.0)?)?, 0.12),
-        ("braid, bladder", braid_25(Length::mm(250.0))?.with_bladder(rubber)?, 0.2),
-        ("braid, bladder, short", braid_25(Length::mm(50.0))?.with_bladder(rubber)?, 0.1),
-        ("braid, taut cloth", braid_25(length)?.with_unfolding(cloth(12.0)?), 0.1),
+        ("braid, bladder", braid_25(Length::mm(250.0))?.with_all(&rubber)?, 0.2),
+        ("braid, bladder, short", braid_25(Length::mm(50.0))?.with_all(&rubber)?, 0.1),
+        ("braid, taut cloth", braid_25(length)?.with_all(&cloth(12.0))?, 0.1),
         (
             "braid, everything",
-            counted(length, fitting)?
-                .with_fibre(fibre(300.0)?)?
-                .with_bladder(rubber)?
-                .with_unfolding(cloth(13.0)?),
+            counted(length, fitting)?.with_fibre(fibre(300.0)?)?.with_all(&rubber)?.with_all(&cloth(13.0))?,
             0.12,
         ),
     ])

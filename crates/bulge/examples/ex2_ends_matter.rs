@@ -3,7 +3,7 @@
 //! The textbook takes the muscle for a cylinder, `F = pi r0^2 p (3 (1 - eps)^2/tan^2(alpha0) - 1/sin^2(alpha0))`. A real braid is clamped to
 //! its fittings and tapers towards them. The shorter the muscle, the more that costs.
 //! Expect at 3 bar and 20 %: cylinder 304.5 N; clamped 265.7 N (250 mm), 159.3 N (60 mm), 60.7 N (30 mm).
-//! Try next: a bladder (`Muscle::with_bladder`).
+//! Try next: a bladder (`Parameter::C10`).
 
 use bulge::fibre::{Approach, Given, Problem};
 use bulge::muscles::{Angle, Braided, Construction, Ends, Length, Muscle, Pressure};

@@ -8,7 +8,7 @@ use bulge_effects::Catalogue;
 use bulge_fibre::{Approach, FibreError, Given, Problem, Response, isobars};
 use bulge_inference::{Comparison, Diagnosis, Options, Verdict, compare_with_rows};
 use bulge_measurements::Data;
-use bulge_muscles::{Bladder, Ends, Length, Muscle, MuscleError, Pressure, from_toml, preset};
+use bulge_muscles::{Ends, Muscle, MuscleError, Parameter, Pressure, from_toml, preset};
 use bulge_sweep::TableDescription;
 use bulge_vtk::{write_series, write_vtp};
 use clap::Args;
@@ -196,8 +196,8 @@ fn braid(out: &Path, text: &mut String, written: &mut Vec<PathBuf>) -> Result<Ve
     let about = about(&textbook, pressure);
     let given = Given::Contraction(0.2);
     // 0.3 MPa is typical of a neo-Hookean bladder fitted to the forces of Festo muscles (0.28 to 0.39 MPa).
-    let models = models(&textbook, Bladder::new(Pressure::mpa(0.3), Pressure::pa(0.0), Length::mm(2.0)));
-    let models = models.map_err(|error| Failure::Value { option: "demo", what: error.to_string() })?;
+    let models =
+        models(&textbook, 3e5).map_err(|error| Failure::Value { option: "demo", what: error.to_string() })?;
     let mut steps = Vec::new();
     for (model, muscle) in &models {
         let problem = Problem::new(muscle, pressure).map_err(&about)?;
@@ -259,15 +259,12 @@ fn measured(out: &Path, text: &mut String, written: &mut Vec<PathBuf>) -> Result
 }
 
 /// The same braid as a cylinder, with clamped ends, and with its bladder.
-fn models(
-    textbook: &Muscle,
-    bladder: Result<Bladder, MuscleError>,
-) -> Result<[(&'static str, Muscle); 3], MuscleError> {
+fn models(textbook: &Muscle, c10_pa: f64) -> Result<[(&'static str, Muscle); 3], MuscleError> {
     let clamped = textbook.clone().with_ends(Ends::Clamped);
     Ok([
         ("textbook cylinder", textbook.clone().with_ends(Ends::Cylinder)),
         ("exact clamped ends", clamped.clone()),
-        ("exact ends and rubber bladder", clamped.with_bladder(bladder?)?),
+        ("exact ends and rubber bladder", clamped.with(Parameter::C10, c10_pa)?),
     ])
 }
 

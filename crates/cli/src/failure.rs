@@ -5,7 +5,6 @@ use bulge_design::heat::HeatError;
 use bulge_design::sensing::SensingError;
 use bulge_design::size::SizeError;
 use bulge_effects::CatalogueError;
-use bulge_effects::user::EffectFileError;
 use bulge_fibre::FibreError;
 use bulge_inference::{HideError, InferenceError, Stated, StatementError};
 use bulge_measurements::{MeasurementError, WrittenError};
@@ -106,7 +105,6 @@ of_libraries!(
     PresetError: |_| 1,
     VtkError: |_| 1,
     CatalogueError: |_| 1,
-    EffectFileError: |_| 1,
     MeasurementError: |_| 1,
     WrittenError: |_| 1,
     SweepError: |_| 1,

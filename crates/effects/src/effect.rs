@@ -106,7 +106,7 @@ impl Setting {
             radius: muscle.radius().si(),
             braid_angle: muscle.get(Parameter::BraidAngle).unwrap_or(0.0),
             fibres: muscle.fibres(),
-            has_bladder: muscle.bladder().is_some(),
+            has_bladder: muscle.bladder_wall().is_some(),
         }
     }
 

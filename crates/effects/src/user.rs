@@ -6,22 +6,17 @@ mod act;
 mod quantity;
 mod reader;
 mod shape;
-mod value;
 
 pub use shape::{ShapeFormula, ShapeQuantity};
 
 use crate::expression::Expression;
 use crate::mechanism::{Form, Mechanism};
+use bulge_muscles::settings::{Document, FileKind};
 use bulge_muscles::{Dimension, FileError};
-use std::fs::File;
-use std::io::{ErrorKind, Read};
-use std::ops::Range;
 use std::path::Path;
-use thiserror::Error;
-use toml::de::DeTable;
 
-/// The largest size of a file of effects, in bytes.
-pub const MAX_BYTES: usize = 1 << 20;
+/// The file of effects in messages.
+pub const KIND: FileKind = FileKind { name: "effects", file: "effects.toml", line: "force = \"-k * eps\"" };
 /// The largest number of parameters of an effect.
 pub const MAX_PARAMETERS: usize = 12;
 
@@ -112,67 +107,14 @@ pub struct UserParameter {
     pub about: Option<String>,
 }
 
-/// An error in a file of effects. Its `Display` is the whole message, with the line and the cure.
-#[derive(Debug, Clone, PartialEq, Eq, Error)]
-#[error("{message}")]
-pub struct EffectFileError {
-    message: FileError,
-}
-
-impl From<EffectFileError> for FileError {
-    fn from(error: EffectFileError) -> Self {
-        error.message
-    }
-}
-
-impl EffectFileError {
-    /// The name of the file.
-    #[must_use]
-    pub fn origin(&self) -> &str {
-        self.message.origin()
-    }
-
-    /// The line, counted from 1; none if the file couldn't be read.
-    #[must_use]
-    pub fn line(&self) -> Option<usize> {
-        self.message.line()
-    }
-
-    /// The column in characters, counted from 1.
-    #[must_use]
-    pub fn column(&self) -> Option<usize> {
-        self.message.column()
-    }
-
-    /// The error in one sentence.
-    #[must_use]
-    pub fn what(&self) -> &str {
-        self.message.what()
-    }
-
-    /// The correction to make.
-    #[must_use]
-    pub fn instead(&self) -> &str {
-        self.message.instead()
-    }
-}
-
 /// Reads a file of effects.
 ///
 /// # Errors
-/// If the file can't be read, is larger than [`MAX_BYTES`], is not UTF-8, or contains an error.
-pub fn read(path: impl AsRef<Path>) -> Result<Vec<UserEffect>, EffectFileError> {
+/// If the file can't be read, is larger than 1 MiB, is not UTF-8, or contains an error. The message is
+/// complete.
+pub fn read(path: impl AsRef<Path>) -> Result<Vec<UserEffect>, FileError> {
     let path = path.as_ref();
-    let origin = path.display().to_string();
-    let bytes = read_bytes(path).map_err(|(what, instead)| whole(&origin, what, instead))?;
-    let text = String::from_utf8(bytes).map_err(|error| {
-        let at = error.utf8_error().valid_up_to();
-        // The bytes up to `at` are valid, so the replacement character stands exactly there.
-        let text = String::from_utf8_lossy(error.as_bytes());
-        let instead = "save the file as plain text with the encoding UTF-8";
-        located(&origin, &text, at..at + 1, format!("byte {at} is not UTF-8 text"), instead)
-    })?;
-    from_toml(&text, &origin)
+    from_toml(&KIND.read(path)?, &path.display().to_string())
 }
 
 /// Reads effects from TOML text. Messages call the text by the name `origin`, usually a file name.
@@ -186,70 +128,14 @@ pub fn read(path: impl AsRef<Path>) -> Result<Vec<UserEffect>, EffectFileError> 
 /// let error = user::from_toml(&user::EXAMPLE.replace("eps -", "p -"), "effects.toml").unwrap_err();
 /// assert_eq!((error.line(), error.column()), (Some(3), Some(16)));
 /// assert_eq!(error.what(), "`eps_free` (1) cannot be subtracted from `p` (Pa)");
-/// # Ok::<(), user::EffectFileError>(())
+/// # Ok::<(), bulge_muscles::FileError>(())
 /// ```
 ///
 /// # Errors
-/// With the place and the cure, if the text is larger than [`MAX_BYTES`], is not TOML, defines no effect, or
-/// defines one that is incomplete or inconsistent.
-pub fn from_toml(text: &str, origin: &str) -> Result<Vec<UserEffect>, EffectFileError> {
-    if text.len() > MAX_BYTES {
-        let (what, instead) = too_large();
-        return Err(whole(origin, what, instead));
-    }
-    let root = DeTable::parse(text).map_err(|error| syntax_error(text, origin, &error))?;
-    reader::effects(text, origin, root.get_ref())
-}
-
-fn whole(origin: &str, what: impl Into<String>, instead: impl Into<String>) -> EffectFileError {
-    EffectFileError { message: FileError::whole(origin, what, instead) }
-}
-
-fn located(
-    origin: &str,
-    text: &str,
-    span: Range<usize>,
-    what: impl Into<String>,
-    instead: impl Into<String>,
-) -> EffectFileError {
-    EffectFileError { message: FileError::at(origin, text, span, what, instead) }
-}
-
-type Complaint = (String, String);
-
-fn read_bytes(path: &Path) -> Result<Vec<u8>, Complaint> {
-    let name_one = || "name a file of effects, such as `effects.toml`".to_owned();
-    let failed = |error: std::io::Error| match error.kind() {
-        ErrorKind::NotFound => {
-            ("there is no such file".to_owned(), "check the path and the working directory".to_owned())
-        }
-        ErrorKind::PermissionDenied => {
-            ("the file may not be read".to_owned(), "check its permissions, or copy it".to_owned())
-        }
-        _ => (format!("the file cannot be read: {error}"), name_one()),
-    };
-    if path.is_dir() {
-        return Err(("this is a directory, not a file of effects".to_owned(), name_one()));
-    }
-    let limit = u64::try_from(MAX_BYTES).unwrap_or(u64::MAX).saturating_add(1);
-    let mut bytes = Vec::new();
-    File::open(path).map_err(failed)?.take(limit).read_to_end(&mut bytes).map_err(failed)?;
-    if bytes.len() > MAX_BYTES { Err(too_large()) } else { Ok(bytes) }
-}
-
-fn too_large() -> Complaint {
-    let what = format!("the file is larger than {} KiB, so it is no file of effects", MAX_BYTES >> 10);
-    (what, "name a file of effects: about ten lines of TOML for each effect".to_owned())
-}
-
-fn syntax_error(text: &str, origin: &str, error: &toml::de::Error) -> EffectFileError {
-    let message = error.message().lines().collect::<Vec<_>>().join(", ");
-    let instead = if message.contains("duplicate key") {
-        "state each effect and each key once: delete one of the two, or rename it"
-    } else {
-        "each line is `key = value`, a `[table]` or a `# comment`, such as `force = \"-k * eps\"`; text stands in quotes"
-    };
-    located(origin, text, error.span().unwrap_or(0..0), format!("this is not TOML: {message}"), instead)
+/// With the place and the cure, if the text is larger than 1 MiB, is not TOML, defines no effect, or defines
+/// one that is incomplete or inconsistent.
+pub fn from_toml(text: &str, origin: &str) -> Result<Vec<UserEffect>, FileError> {
+    reader::effects(&Document::parse(KIND, text, origin)?)
 }
 
 #[cfg(test)]

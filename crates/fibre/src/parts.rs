@@ -135,14 +135,12 @@ impl<D: Real> Parts<D> {
         };
         let wall = get(Parameter::Wall);
         // Gas on the inner face of the wall follows the wall.
-        let gas = own(Parameter::GasWall).or(wall.filter(|_| muscle.gas_wall().is_some()));
-        let rubber = muscle.bladder().map(|rubber| Rubber {
+        let gas = own(Parameter::GasWall).or(wall.filter(|_| muscle.get(Parameter::GasWall).is_some()));
+        let rubber = muscle.bladder_wall().map(|own_wall| Rubber {
             c10: or_0(get(Parameter::C10)),
             c01: or_0(get(Parameter::C01)),
             // A bladder whose thickness differs from that of the muscle's wall doesn't follow the wall.
-            wall: wall
-                .filter(|_| muscle.wall() == Some(rubber.wall()))
-                .unwrap_or(D::from(rubber.wall().si())),
+            wall: wall.filter(|_| muscle.wall() == Some(own_wall)).unwrap_or(D::from(own_wall.si())),
         });
         Self {
             kind: muscle.kind(),

@@ -1,6 +1,7 @@
 //! How a muscle is built: pleated (fibres along the meridians) or braided (fibres in a trellis).
 
 use crate::error::{MuscleError, check};
+use crate::parameter::Parameter;
 use crate::quantity::{Angle, Length};
 use crate::units::Quantity;
 use serde::Serialize;
@@ -67,89 +68,25 @@ pub enum FibreCount {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Pleated {
     pub(crate) radius: Length,
-    pub(crate) end_radius: Option<Length>,
     pub(crate) fibres: FibreCount,
-    pub(crate) pleat_depth: Length,
-    pub(crate) misalignment: Angle,
-    pub(crate) cloth_circumference: Option<Length>,
 }
 
 impl Pleated {
-    /// A pleated muscle with fibre radius R at the end fittings, straight fibres and no pleat depth.
+    /// A pleated muscle with fibre radius R at the end fittings.
     ///
     /// # Errors
     /// If the radius is not finite and > 0 or there are fewer than 3 fibres.
     pub fn new(radius: Length, fibres: FibreCount) -> Result<Self, MuscleError> {
-        check::positive("radius", radius)?;
+        Parameter::Radius.check(radius.si())?;
         if let FibreCount::Discrete(count) = fibres {
             check::count(count)?;
         }
-        Ok(Self {
-            radius,
-            end_radius: None,
-            fibres,
-            pleat_depth: Length::m(0.0),
-            misalignment: Angle::rad(0.0),
-            cloth_circumference: None,
-        })
+        Ok(Self { radius, fibres })
     }
 
-    /// The same muscle with the actual radius of the fibres at the fittings, if it differs from the stated
-    /// one.
-    ///
-    /// # Errors
-    /// If the radius is not finite and > 0.
-    pub fn with_end_radius(self, end_radius: Length) -> Result<Self, MuscleError> {
-        check::positive("effects.end-radius.radius", end_radius)?;
-        Ok(Self { end_radius: Some(end_radius), ..self })
-    }
-
-    /// The same muscle with pleats that stand this far outside the fibres under pressure.
-    ///
-    /// # Errors
-    /// If the depth is negative or not finite.
-    pub fn with_pleat_depth(self, pleat_depth: Length) -> Result<Self, MuscleError> {
-        check::not_negative("effects.pleat-depth.depth", pleat_depth)?;
-        Ok(Self { pleat_depth, ..self })
-    }
-
-    /// The same muscle with fibres that leave the end fittings at this angle to the meridian: a slight helix.
-    ///
-    /// # Errors
-    /// If the angle is not between -90 and 90 degrees, both excluded.
-    pub fn with_misalignment(self, misalignment: Angle) -> Result<Self, MuscleError> {
-        let is_forward = misalignment.to_rad().abs() < std::f64::consts::FRAC_PI_2;
-        if is_forward {
-            Ok(Self { misalignment, ..self })
-        } else {
-            Err(MuscleError::Misalignment { degrees: misalignment.to_deg() })
-        }
-    }
-
-    /// The same muscle with cloth of this circumference, inextensible around the muscle, that bulges in a
-    /// lobe between every two fibres.
-    ///
-    /// # Errors
-    /// If the circumference is not finite and > 0, or the fibres are continuous: there is nothing between
-    /// those.
-    pub fn with_cloth_circumference(self, circumference: Length) -> Result<Self, MuscleError> {
-        check::positive("effects.lobes.circumference", circumference)?;
-        match self.fibres {
-            FibreCount::Discrete(_) => Ok(Self { cloth_circumference: Some(circumference), ..self }),
-            FibreCount::Continuous => Err(MuscleError::LobesOfContinuous),
-        }
-    }
-
-    /// Fibre radius R that acts at the end fittings: the separate end radius if there is one, else the stated
-    /// radius.
+    /// Fibre radius R at the end fittings.
     #[must_use]
     pub fn radius(&self) -> Length {
-        self.end_radius.unwrap_or(self.radius)
-    }
-
-    /// The radius stated in the drawing, whatever the end radius is.
-    #[must_use]
-    pub fn stated_radius(&self) -> Length {
         self.radius
     }
 
@@ -157,24 +94,6 @@ impl Pleated {
     #[must_use]
     pub fn fibres(&self) -> FibreCount {
         self.fibres
-    }
-
-    /// Distance of the pleats outside the fibres under pressure; 0 if not stated.
-    #[must_use]
-    pub fn pleat_depth(&self) -> Length {
-        self.pleat_depth
-    }
-
-    /// Angle between fibre and meridian at the end fitting; 0 if not stated.
-    #[must_use]
-    pub fn misalignment(&self) -> Angle {
-        self.misalignment
-    }
-
-    /// Circumference of the cloth that bulges in lobes between the fibres, if there are lobes.
-    #[must_use]
-    pub fn cloth_circumference(&self) -> Option<Length> {
-        self.cloth_circumference
     }
 }
 
@@ -204,7 +123,6 @@ impl Ends {
 pub struct Braided {
     pub(crate) radius: Length,
     pub(crate) braid_angle: Angle,
-    pub(crate) fitting_radius: Option<Length>,
     pub(crate) fibres: Option<u32>,
     pub(crate) ends: Ends,
     pub(crate) wall: Option<Length>,
@@ -217,21 +135,9 @@ impl Braided {
     /// # Errors
     /// If the radius is not finite and > 0, or the angle is not between 0 and 90 degrees, both excluded.
     pub fn new(radius: Length, braid_angle: Angle) -> Result<Self, MuscleError> {
-        check::positive("radius", radius)?;
-        let angle = braid_angle.to_rad();
-        if !(angle > 0.0 && angle < std::f64::consts::FRAC_PI_2) {
-            return Err(MuscleError::BraidAngle { degrees: braid_angle.to_deg() });
-        }
-        Ok(Self { radius, braid_angle, fitting_radius: None, fibres: None, ends: Ends::Clamped, wall: None })
-    }
-
-    /// The same braid, clamped to fittings of another radius.
-    ///
-    /// # Errors
-    /// If the radius is not finite and > 0.
-    pub fn with_fitting_radius(self, fitting_radius: Length) -> Result<Self, MuscleError> {
-        check::positive("effects.end-radius.radius", fitting_radius)?;
-        Ok(Self { fitting_radius: Some(fitting_radius), ..self })
+        Parameter::Radius.check(radius.si())?;
+        Parameter::BraidAngle.check(braid_angle.si())?;
+        Ok(Self { radius, braid_angle, fibres: None, ends: Ends::Clamped, wall: None })
     }
 
     /// The same braid with a known number of fibres, both families together.
@@ -254,7 +160,7 @@ impl Braided {
     /// # Errors
     /// If the thickness is not finite and > 0.
     pub fn with_wall(self, wall: Length) -> Result<Self, MuscleError> {
-        check::positive("wall", wall)?;
+        Parameter::Wall.check(wall.si())?;
         Ok(Self { wall: Some(wall), ..self })
     }
 
@@ -268,12 +174,6 @@ impl Braided {
     #[must_use]
     pub fn braid_angle(&self) -> Angle {
         self.braid_angle
-    }
-
-    /// Radius to which the ends are clamped: r0 if not stated separately.
-    #[must_use]
-    pub fn fitting_radius(&self) -> Length {
-        self.fitting_radius.unwrap_or(self.radius)
     }
 
     /// Number of fibres, both families together, if known.
@@ -306,36 +206,16 @@ mod tests {
     use super::*;
 
     #[test]
-    fn radii_follow_unless_stated() {
-        let pleated = Pleated::new(Length::mm(11.5), FibreCount::Discrete(40)).unwrap();
-        assert_eq!(pleated.radius(), Length::mm(11.5));
-        let unfolded = pleated.with_end_radius(Length::mm(16.0)).unwrap();
-        assert_eq!((unfolded.radius(), unfolded.stated_radius()), (Length::mm(16.0), Length::mm(11.5)));
-        let braided = Braided::new(Length::mm(10.0), Angle::deg(25.0)).unwrap();
-        assert_eq!(braided.fitting_radius(), Length::mm(10.0));
-        assert_eq!(braided.with_fitting_radius(Length::mm(8.0)).unwrap().fitting_radius(), Length::mm(8.0));
-    }
-
-    #[test]
     fn nonsense_is_refused_with_its_number() {
-        let pleated = Pleated::new(Length::mm(16.0), FibreCount::Continuous).unwrap();
         let braided = Braided::new(Length::mm(10.0), Angle::deg(25.0)).unwrap();
         for (error, part) in [
             (Pleated::new(Length::mm(-16.0), FibreCount::Continuous).err(), "-0.016 m"),
             (Pleated::new(Length::m(f64::NAN), FibreCount::Continuous).err(), "NaN"),
             (Pleated::new(Length::mm(16.0), FibreCount::Discrete(2)).err(), "says 2"),
-            (pleated.with_end_radius(Length::m(0.0)).err(), "0 m"),
-            (pleated.with_pleat_depth(Length::mm(-1.0)).err(), "-0.001 m"),
-            (pleated.with_pleat_depth(Length::m(f64::INFINITY)).err(), "inf"),
-            (pleated.with_misalignment(Angle::deg(-90.0)).err(), "-90"),
-            (pleated.with_misalignment(Angle::rad(f64::NAN)).err(), "NaN"),
-            (pleated.with_cloth_circumference(Length::mm(-330.0)).err(), "-0.33 m"),
-            (pleated.with_cloth_circumference(Length::mm(330.0)).err(), "`fibres = 40`"),
             (Braided::new(Length::mm(10.0), Angle::deg(90.0)).err(), "90"),
             (Braided::new(Length::mm(10.0), Angle::deg(0.0)).err(), "0 deg"),
             (Braided::new(Length::mm(10.0), Angle::rad(f64::NAN)).err(), "NaN"),
             (Braided::new(Length::mm(0.0), Angle::deg(25.0)).err(), "`radius`"),
-            (braided.with_fitting_radius(Length::mm(0.0)).err(), "end-radius"),
             (braided.with_fibres(1).err(), "says 1"),
             (braided.with_wall(Length::mm(0.0)).err(), "`wall`"),
         ] {

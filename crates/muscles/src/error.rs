@@ -122,9 +122,6 @@ pub enum MuscleError {
         /// The quantity.
         what: &'static str,
     },
-    /// A bladder in a pleated muscle.
-    #[error("a pleated muscle has no bladder: `bladder-elasticity` belongs to a braided muscle")]
-    BladderInPleated,
     /// A width for a parameter that can't have one.
     #[error("`{}` has no stated value that could have a width", parameter.name())]
     NoWidth {
@@ -174,7 +171,7 @@ impl MuscleError {
             Self::NoElasticity { .. } => "effects.bladder-elasticity.c10",
             Self::NoName => "name",
             Self::NoFibreCount => "fibre",
-            Self::NoWall | Self::BladderInPleated => "effects.bladder-elasticity",
+            Self::NoWall => "effects.bladder-elasticity",
             Self::NoGasWall => "effects.wall-thickness",
             Self::LobesOfContinuous => "effects.lobes",
             Self::HalfUnfolding { .. } => "effects.limited-unfolding",

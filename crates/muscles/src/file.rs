@@ -6,10 +6,10 @@ use crate::file_error::FileError;
 use crate::fitted::fitted_in;
 use crate::instrument::{Instrument, Instruments};
 use crate::keys;
-use crate::material::{Bladder, Fibre, Unfolding};
+use crate::material::Fibre;
 use crate::muscle::Muscle;
 use crate::parameter::Parameter;
-use crate::quantity::{Angle, Area, Force, Length, LineStiffness, Pressure, Ratio};
+use crate::quantity::{Angle, Area, Force, Length, Pressure, Ratio};
 use crate::settings::{Document, FileKind, Settings, nearest};
 use crate::specimen::specimens_in;
 use crate::units::{self, Quantity, shortened};
@@ -93,20 +93,21 @@ impl<'a> Reader<'a> {
         }
         // Wrong values come before missing ones: a file is usually right except for one slip.
         let name = self.root.text("name")?;
-        let length = self.of_muscle::<Length>(Parameter::Length)?;
+        let length = self.of_muscle(Parameter::Length)?;
         let construction = match kind {
-            Kind::Pleated => Construction::Pleated(self.pleated(effects.as_ref())?),
-            Kind::Braided => Construction::Braided(self.braided(effects.as_ref())?),
+            Kind::Pleated => Construction::Pleated(self.pleated()?),
+            Kind::Braided => Construction::Braided(self.braided()?),
         };
+        let shape = effects.as_ref().map(|effects| self.shape(effects)).transpose()?.unwrap_or_default();
         let name = needed(&self.root, "name", name)?;
-        let length = needed(&self.root, "length", length)?;
+        let length = Length::m(needed(&self.root, "length", length)?);
         let mut muscle = Muscle::new(name, length, construction).map_err(|error| self.invalid(&error))?;
         if let Some(fibre) = fibre {
             let fibre = self.fibre(&fibre)?;
             muscle = muscle.with_fibre(fibre).map_err(|error| self.invalid(&error))?;
         }
+        muscle = shape.of(muscle).map_err(|error| self.invalid(&error))?;
         if let Some(effects) = &effects {
-            muscle = self.materials(muscle, effects)?;
             for effect in effects.learnt()? {
                 muscle = muscle.with_learnt(effect);
             }
@@ -153,36 +154,23 @@ impl<'a> Reader<'a> {
         table(&self.root, "", name)
     }
 
-    /// A quantity. Its width is recorded as that of a parameter.
-    fn wide<Q: Quantity>(
+    /// A number, in SI. Its width is recorded as that of the parameter.
+    fn wide(
         &mut self,
         table: &Settings<'_>,
         name: &str,
         parameter: Parameter,
-    ) -> Result<Option<Q>, FileError> {
-        let Some((value, width)) = table.parsed(name, units::parse_with_width::<Q>)? else { return Ok(None) };
-        self.widths.extend(width.map(|width| (parameter, width.si())));
+    ) -> Result<Option<f64>, FileError> {
+        let found = table.parsed(name, |text| parameter.parse_with_width(text))?;
+        let Some((value, width)) = found else { return Ok(None) };
+        self.widths.extend(width.map(|width| (parameter, width)));
         Ok(Some(value))
     }
 
     /// A parameter at the top of the file.
-    fn of_muscle<Q: Quantity>(&mut self, parameter: Parameter) -> Result<Option<Q>, FileError> {
+    fn of_muscle(&mut self, parameter: Parameter) -> Result<Option<f64>, FileError> {
         let root = self.root.clone();
         self.wide(&root, parameter.name(), parameter)
-    }
-
-    /// The number of an effect that has one, if the effect is stated.
-    fn of_effect<Q: Quantity>(
-        &mut self,
-        effects: Option<&Settings<'_>>,
-        parameter: Parameter,
-    ) -> Result<Option<Q>, FileError> {
-        let mut path = parameter.key().split('.').skip(1);
-        let (Some(effect), Some(key)) = (path.next(), path.next()) else { return Ok(None) };
-        let Some(effects) = effects else { return Ok(None) };
-        let Some(table) = table(effects, "effects", effect)? else { return Ok(None) };
-        let value = self.wide(&table, key, parameter)?;
-        needed(&table, key, value).map(Some)
     }
 
     fn kind(&self) -> Result<Kind, FileError> {
@@ -194,32 +182,18 @@ impl<'a> Reader<'a> {
         })
     }
 
-    fn pleated(&mut self, effects: Option<&Settings<'_>>) -> Result<Pleated, FileError> {
+    fn pleated(&mut self) -> Result<Pleated, FileError> {
         let (radius, fibres) = (self.of_muscle(Parameter::Radius)?, self.fibres(Kind::Pleated)?);
-        let radius = needed(&self.root, "radius", radius)?;
+        let radius = Length::m(needed(&self.root, "radius", radius)?);
         let fibres = needed(&self.root, "fibres", fibres)?;
-        let mut pleated = Pleated::new(radius, fibres).map_err(|error| self.invalid(&error))?;
-        if let Some(radius) = self.of_effect(effects, Parameter::FittingRadius)? {
-            pleated = pleated.with_end_radius(radius).map_err(|error| self.invalid(&error))?;
-        }
-        if let Some(depth) = self.of_effect(effects, Parameter::PleatDepth)? {
-            pleated = pleated.with_pleat_depth(depth).map_err(|error| self.invalid(&error))?;
-        }
-        if let Some(angle) = self.of_effect(effects, Parameter::Misalignment)? {
-            pleated = pleated.with_misalignment(angle).map_err(|error| self.invalid(&error))?;
-        }
-        if let Some(circumference) = self.of_effect(effects, Parameter::ClothCircumference)? {
-            pleated =
-                pleated.with_cloth_circumference(circumference).map_err(|error| self.invalid(&error))?;
-        }
-        Ok(pleated)
+        Pleated::new(radius, fibres).map_err(|error| self.invalid(&error))
     }
 
-    fn braided(&mut self, effects: Option<&Settings<'_>>) -> Result<Braided, FileError> {
+    fn braided(&mut self) -> Result<Braided, FileError> {
         let radius = self.of_muscle(Parameter::Radius)?;
-        let angle = self.of_muscle::<Angle>(Parameter::BraidAngle)?;
-        let radius = needed(&self.root, "radius", radius)?;
-        let angle = needed(&self.root, "braid_angle", angle)?;
+        let angle = self.of_muscle(Parameter::BraidAngle)?;
+        let radius = Length::m(needed(&self.root, "radius", radius)?);
+        let angle = Angle::rad(needed(&self.root, "braid_angle", angle)?);
         let mut braided = Braided::new(radius, angle).map_err(|error| self.invalid(&error))?;
         let known = [Ends::Clamped, Ends::Cylinder].map(|ends| (ends.name(), ends));
         let also = [("exact", known[0].0), ("free", known[1].0)];
@@ -230,10 +204,7 @@ impl<'a> Reader<'a> {
             braided = braided.with_fibres(count).map_err(|error| self.invalid(&error))?;
         }
         if let Some(wall) = self.of_muscle(Parameter::Wall)? {
-            braided = braided.with_wall(wall).map_err(|error| self.invalid(&error))?;
-        }
-        if let Some(radius) = self.of_effect(effects, Parameter::FittingRadius)? {
-            braided = braided.with_fitting_radius(radius).map_err(|error| self.invalid(&error))?;
+            braided = braided.with_wall(Length::m(wall)).map_err(|error| self.invalid(&error))?;
         }
         Ok(braided)
     }
@@ -272,41 +243,57 @@ impl<'a> Reader<'a> {
 
     fn fibre(&mut self, table: &Settings<'_>) -> Result<Fibre, FileError> {
         let section = table.parsed("section", units::parse::<Area>)?;
-        let stiffness = self.wide::<Force>(table, "stiffness", Parameter::FibreStiffness)?;
-        let fibre =
-            Fibre::new(needed(table, "stiffness", stiffness)?).map_err(|error| self.invalid(&error))?;
+        let stiffness = self.wide(table, "stiffness", Parameter::FibreStiffness)?;
+        let stiffness = Force::n(needed(table, "stiffness", stiffness)?);
+        let fibre = Fibre::new(stiffness).map_err(|error| self.invalid(&error))?;
         section.map_or(Ok(fibre), |section| fibre.with_section(section).map_err(|error| self.invalid(&error)))
     }
 
-    /// The effects that are materials.
-    fn materials(&mut self, mut muscle: Muscle, effects: &Settings<'a>) -> Result<Muscle, FileError> {
-        if let Some(table) = table(effects, "effects", "bladder-elasticity")? {
-            let own = muscle.own_wall();
-            let c01 = self.wide(&table, "c01", Parameter::C01)?.unwrap_or(Pressure::pa(0.0));
-            let c10 = self.wide(&table, "c10", Parameter::C10)?;
-            let c10 = needed(&table, "c10", c10)?;
-            // If the muscle has a wall of its own, there is no second one that could have a width.
-            let stated = match own {
-                Some(_) => table.parsed("wall", units::parse::<Length>)?,
-                None => self.wide(&table, "wall", Parameter::Wall)?,
-            };
-            let wall = stated.or(own).ok_or_else(|| self.invalid(&MuscleError::NoWall))?;
-            let bladder = Bladder::new(c10, c01, wall).map_err(|error| self.invalid(&error))?;
-            muscle = muscle.with_bladder(bladder).map_err(|error| self.invalid(&error))?;
+    /// The effects whose numbers are those of the muscle.
+    fn shape(&mut self, effects: &Settings<'a>) -> Result<Shape, FileError> {
+        let mut shape = Shape::default();
+        for effect in Parameter::effects() {
+            let Some(table) = table(effects, "effects", effect)? else { continue };
+            let mut absent = None;
+            for (parameter, key) in Parameter::in_effect(effect) {
+                match self.wide(&table, key, parameter)? {
+                    Some(value) => shape.numbers.push((parameter, value)),
+                    None if parameter == Parameter::GasWall => shape.has_inner_gas = true,
+                    None if parameter == Parameter::C01 => {}
+                    None => absent = absent.or(Some(key)),
+                }
+            }
+            if let Some(key) = absent {
+                return Err(table.missing(key));
+            }
+            if effect == "bladder-elasticity" {
+                // If the muscle has a wall of its own, there is no second one that could have a width.
+                let wall = match self.root.get("wall") {
+                    Some(_) => table.parsed("wall", |text| Parameter::Wall.parse(text))?,
+                    None => self.wide(&table, "wall", Parameter::Wall)?,
+                };
+                shape.bladder_wall = wall.map(Length::m);
+            }
         }
-        if let Some(table) = table(effects, "effects", "wall-thickness")? {
-            let thickness = self.wide(&table, "thickness", Parameter::GasWall)?;
-            muscle = muscle.with_gas_wall(thickness).map_err(|error| self.invalid(&error))?;
+        Ok(shape)
+    }
+}
+
+/// Effects whose numbers are those of the muscle.
+#[derive(Default)]
+struct Shape {
+    numbers: Vec<(Parameter, f64)>,
+    bladder_wall: Option<Length>,
+    has_inner_gas: bool,
+}
+
+impl Shape {
+    fn of(self, mut muscle: Muscle) -> Result<Muscle, MuscleError> {
+        if let Some(wall) = self.bladder_wall {
+            muscle = muscle.with_bladder_wall(wall)?;
         }
-        if let Some(table) = table(effects, "effects", "limited-unfolding")? {
-            let hoop = self.wide::<LineStiffness>(&table, "hoop_stiffness", Parameter::HoopStiffness)?;
-            let radius = self.wide(&table, "unfolded_radius", Parameter::UnfoldedRadius)?;
-            let hoop = needed(&table, "hoop_stiffness", hoop)?;
-            let radius = needed(&table, "unfolded_radius", radius)?;
-            muscle =
-                muscle.with_unfolding(Unfolding::new(hoop, radius).map_err(|error| self.invalid(&error))?);
-        }
-        Ok(muscle)
+        muscle = muscle.with_all(&self.numbers)?;
+        if self.has_inner_gas { muscle.with_gas_wall(None) } else { Ok(muscle) }
     }
 }
 

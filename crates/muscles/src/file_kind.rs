@@ -1,10 +1,12 @@
 //! The names of settings files, and their text, which must be small and UTF-8.
 
 use crate::file_error::FileError;
-use crate::settings::nearest;
+use crate::settings::{nearest, shortened};
 use std::fs::File;
 use std::io::{ErrorKind, Read};
 use std::path::Path;
+use toml::Spanned;
+use toml::de::DeTable;
 
 /// Most bytes of a settings file.
 pub(crate) const MOST_BYTES: usize = 1 << 20;
@@ -30,7 +32,7 @@ impl FileKind {
         let failed = |what: &str, instead: String| FileError::whole(&origin, what, instead);
         if path.is_dir() {
             let instead = format!("name a file in it, such as `{}`", path.join(self.file).display());
-            return Err(failed(&format!("this is a directory, not a {} file", self.name), instead));
+            return Err(failed(&format!("this is a directory, not {}", self.named()), instead));
         }
         let unreadable = |error: std::io::Error| match error.kind() {
             ErrorKind::NotFound => failed("there is no such file", similar_file(path)),
@@ -39,7 +41,7 @@ impl FileKind {
             }
             _ => failed(
                 &format!("the file cannot be read: {error}"),
-                format!("name a {} file, such as `{}`", self.name, self.file),
+                format!("name {}, such as `{}`", self.named(), self.file),
             ),
         };
         let mut bytes = Vec::new();
@@ -59,10 +61,38 @@ impl FileKind {
         })
     }
 
+    /// The tables of a text of at most 1 MiB.
+    pub(crate) fn parse<'t>(self, text: &'t str, origin: &str) -> Result<Spanned<DeTable<'t>>, FileError> {
+        if text.len() > MOST_BYTES {
+            return Err(self.too_large(origin));
+        }
+        DeTable::parse(text).map_err(|error| {
+            let message = error.message().lines().collect::<Vec<_>>().join(", ");
+            let span = error.span().unwrap_or(0..0);
+            let instead = if message.contains("duplicate key") {
+                "state each key once: delete one of the two, or put `#` before it".to_owned()
+            } else {
+                unquoted(text, span.start).unwrap_or_else(|| {
+                    format!(
+                        "each line is `key = value`, a `[table]` or a `# comment`; numbers with a unit stand in quotes: `{}`",
+                        self.line
+                    )
+                })
+            };
+            FileError::at(origin, text, span, format!("this is not TOML: {message}"), instead)
+        })
+    }
+
+    /// The kind with its article: "a muscle file".
+    fn named(self) -> String {
+        let article = if self.name.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" };
+        format!("{article} {} file", self.name)
+    }
+
     pub(crate) fn too_large(self, origin: &str) -> FileError {
         let what = format!("the file is larger than 1 MiB, so it is no {} file", self.name);
         let instead =
-            format!("name a {} file: some ten lines of TOML (measured data go into a CSV file)", self.name);
+            format!("name {}: some ten lines of TOML (measured data go into a CSV file)", self.named());
         FileError::whole(origin, what, instead)
     }
 }
@@ -79,4 +109,16 @@ fn similar_file(path: &Path) -> String {
         Some(name) => format!("did you mean `{}`?", directory.join(name).display()),
         None => "check the path and the working directory".to_owned(),
     }
+}
+
+/// The commonest slip: `length = 110 mm` without quotes.
+fn unquoted(text: &str, at: usize) -> Option<String> {
+    let start = text.floor_char_boundary(at.min(text.len()));
+    let line_start = text[..start].rfind('\n').map_or(0, |at| at + 1);
+    let (key, value) = text[line_start..].lines().next()?.split_once('=')?;
+    let (key, value) = (key.trim(), value.split('#').next()?.trim());
+    let is_bare = !value.is_empty() && !value.contains(['"', '\'', '{', '[', '=']);
+    let is_word = (1..=64).contains(&key.len())
+        && key.chars().all(|c| c.is_alphanumeric() || matches!(c, '_' | '-' | '.'));
+    (is_bare && is_word).then(|| format!("put text in quotes: `{key} = \"{}\"`", shortened(value)))
 }

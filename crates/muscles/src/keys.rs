@@ -1,6 +1,7 @@
 //! Every key of a muscle file, once: checks, suggestions and examples in messages come from this list.
 
 use crate::construction::Kind;
+use crate::parameter::Parameter;
 use crate::settings::Keys;
 
 /// The table of a specimen, and that of its fibres.
@@ -104,12 +105,6 @@ const PRESSURE: (&str, &str) = ("pressure", "pressure = { noise = \"30 Pa\" }");
 const LENGTH: (&str, &str) = ("length", "length = { noise = \"5 um\" }");
 const GAIN: (&str, &str) = ("gain", "gain = \"0.1 %\"");
 
-/// Keys and tables that only one family has.
-const OWNED: &[(Kind, &[&str])] = &[
-    (Kind::Braided, &["braid_angle", "ends", "wall", "effects.bladder-elasticity", "effects.wall-thickness"]),
-    (Kind::Pleated, &["effects.pleat-depth", "effects.fibre-misalignment", "effects.lobes"]),
-];
-
 /// Other words for a key. They are not accepted, but answered.
 const SYNONYMS: &[(&str, &str)] = &[
     ("l0", "length"),
@@ -151,7 +146,13 @@ pub(crate) fn of(path: &str) -> Keys {
 
 /// The family that alone has this key or this table, if there is one.
 pub(crate) fn owner(path: &str) -> Option<Kind> {
-    OWNED.iter().find(|(_, paths)| paths.contains(&path)).map(|(kind, _)| *kind)
+    let has = |parameter: &Parameter| {
+        parameter.key().strip_prefix(path).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
+    };
+    match path {
+        "ends" => Some(Kind::Braided),
+        _ => Parameter::ALL.iter().find(|parameter| has(parameter))?.kind(),
+    }
 }
 
 /// The path of a child.
@@ -195,7 +196,8 @@ mod tests {
                 assert!(line.starts_with(key) && line.parse::<toml::Table>().is_ok(), "{table}: {line}");
             }
         }
-        for path in OWNED.iter().flat_map(|(_, paths)| *paths).chain(SYNONYMS.iter().map(|(_, path)| path)) {
+        let numbers = Parameter::ALL.iter().map(|parameter| parameter.key());
+        for path in numbers.chain(SYNONYMS.iter().map(|(_, path)| *path)) {
             assert!(!example(path).starts_with("``"), "{path}");
         }
         assert_eq!(owner("effects.pleat-depth"), Some(Kind::Pleated));

@@ -31,11 +31,8 @@ impl Settings<'_> {
         file: &Arc<SourceFile>,
     ) -> Result<Learnt, FileError> {
         self.check_word(name, &span)?;
-        let table = self.table(name, name.to_owned(), &[]).ok().flatten().ok_or_else(|| {
-            let kind = self.get(name).map_or("nothing", Setting::type_name);
-            let what = format!("`{name}` is {kind}, but must be a table");
-            self.error(self.value_span(name), what, format!("write its values below `[effects.{name}]`"))
-        })?;
+        let instead = format!("write its values below `[effects.{name}]`");
+        let table = self.table_named(name, name.to_owned(), &[], instead)?;
         let (mut values, mut places) = (Vec::new(), Vec::new());
         for (key, key_span) in table.names() {
             self.check_word(key, &key_span)?;

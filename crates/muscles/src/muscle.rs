@@ -6,22 +6,12 @@ use crate::file_error::FileError;
 use crate::fitted::FittedNumbers;
 use crate::instrument::Instruments;
 use crate::learnt::Learnt;
-use crate::material::{Bladder, Fibre, Unfolding};
+use crate::material::Fibre;
 use crate::parameter::Parameter;
-use crate::quantity::{Angle, Force, Length, LineStiffness, Pressure};
+use crate::quantity::{Angle, Area, Force, Length};
 use crate::specimen::Specimen;
 use crate::units::Quantity;
-use serde::Serialize;
-
-/// Where the gas acts in the wall of a braid.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-enum GasWall {
-    /// At the wall's inner face. The thickness is that of the wall and follows it.
-    Inner,
-    /// At a depth of its own.
-    At(Length),
-}
+use std::collections::BTreeMap;
 
 /// A pneumatic artificial muscle.
 ///
@@ -34,22 +24,24 @@ enum GasWall {
 /// assert!(muscle.with(Parameter::Radius, -0.0115).is_err());
 /// # Ok::<(), bulge_muscles::MuscleError>(())
 /// ```
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Muscle {
     name: String,
-    length: Length,
-    construction: Construction,
-    fibre: Option<Fibre>,
-    bladder: Option<Bladder>,
-    unfolding: Option<Unfolding>,
-    gas_wall: Option<GasWall>,
+    kind: Kind,
+    ends: Ends,
+    /// The numbers in SI that have a place of their own in the file. Those of a bladder stand together, as do
+    /// those of a limit to the unfolding; a pleated muscle without fibres is continuous.
+    numbers: BTreeMap<Parameter, f64>,
+    fibre_section: Option<Area>,
+    /// Thickness of the bladder in SI if it is not that of the muscle's wall.
+    bladder_wall: Option<f64>,
+    /// Whether the gas acts on the inner face of the wall, however thick that is.
+    has_inner_gas: bool,
     pub(crate) learnt: Vec<Learnt>,
     pub(crate) instruments: Instruments,
     widths: Vec<(Parameter, f64)>,
-    #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(crate) specimens: Vec<Specimen>,
     pub(crate) data_columns: Vec<(String, String)>,
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) fitted: Option<FittedNumbers>,
 }
 
@@ -57,21 +49,38 @@ impl Muscle {
     /// A muscle of unpressurised length l0 between the end fittings, with inextensible fibres and no bladder.
     ///
     /// # Errors
-    /// If the name is blank or the length is not finite and > 0.
+    /// If the name is blank, the length is not finite and > 0, or the wall leaves no room for gas.
     pub fn new(
         name: impl Into<String>,
         length: Length,
         construction: Construction,
     ) -> Result<Self, MuscleError> {
-        check::positive("length", length)?;
+        Parameter::Length.check(length.si())?;
+        let mut numbers = BTreeMap::from([(Parameter::Length, length.si())]);
+        let mut ends = Ends::Clamped;
+        let fibres = match construction {
+            Construction::Pleated(pleated) => {
+                numbers.insert(Parameter::Radius, pleated.radius.si());
+                numbers.extend([Parameter::PleatDepth, Parameter::Misalignment].map(|none| (none, 0.0)));
+                if let FibreCount::Discrete(count) = pleated.fibres { Some(count) } else { None }
+            }
+            Construction::Braided(braided) => {
+                numbers.insert(Parameter::Radius, braided.radius.si());
+                numbers.insert(Parameter::BraidAngle, braided.braid_angle.si());
+                numbers.extend(braided.wall.map(|wall| (Parameter::Wall, wall.si())));
+                ends = braided.ends;
+                braided.fibres
+            }
+        };
+        numbers.extend(fibres.map(|count| (Parameter::Fibres, f64::from(count))));
         let muscle = Self {
             name: String::new(),
-            length,
-            construction,
-            fibre: None,
-            bladder: None,
-            unfolding: None,
-            gas_wall: None,
+            kind: construction.kind(),
+            ends,
+            numbers,
+            fibre_section: None,
+            bladder_wall: None,
+            has_inner_gas: false,
             learnt: Vec::new(),
             instruments: Instruments::default(),
             widths: Vec::new(),
@@ -79,7 +88,7 @@ impl Muscle {
             data_columns: Vec::new(),
             fitted: None,
         };
-        muscle.with_room()?.with_name(name)
+        muscle.checked()?.with_name(name)
     }
 
     /// The same muscle under another name.
@@ -96,45 +105,56 @@ impl Muscle {
     /// # Errors
     /// If a braid does not say how many fibres it has: the stiffness is per fibre.
     pub fn with_fibre(mut self, fibre: Fibre) -> Result<Self, MuscleError> {
-        if matches!(&self.construction, Construction::Braided(Braided { fibres: None, .. })) {
-            return Err(MuscleError::NoFibreCount);
-        }
-        self.fibre = Some(fibre);
-        Ok(self)
+        self.fibre_section = fibre.section();
+        self.with(Parameter::FibreStiffness, fibre.stiffness().si())
     }
 
-    /// The same muscle with a rubber bladder in the braid. The bladder is the wall if there is no other.
-    ///
-    /// # Errors
-    /// If the muscle is pleated, or the wall leaves no room for gas.
-    pub fn with_bladder(mut self, bladder: Bladder) -> Result<Self, MuscleError> {
-        if self.is_pleated() {
-            return Err(MuscleError::BladderInPleated);
+    /// The same muscle, if its numbers agree: those that need another one have it, and the walls leave room
+    /// for gas inside the braid and its fittings.
+    fn checked(self) -> Result<Self, MuscleError> {
+        if self.stated(Parameter::Fibres).is_none() {
+            if !self.is_pleated() && self.stated(Parameter::FibreStiffness).is_some() {
+                return Err(MuscleError::NoFibreCount);
+            }
+            if self.stated(Parameter::ClothCircumference).is_some() {
+                return Err(MuscleError::LobesOfContinuous);
+            }
         }
-        self.bladder = Some(bladder);
-        self.with_room()
-    }
-
-    /// The same muscle, if its walls leave room for gas inside the braid and its fittings.
-    fn with_room(self) -> Result<Self, MuscleError> {
+        let [hoop, unfolded] = [Parameter::HoopStiffness, Parameter::UnfoldedRadius];
+        if self.stated(hoop).is_some() != self.stated(unfolded).is_some() {
+            let parameter = if self.stated(hoop).is_some() { hoop } else { unfolded };
+            return Err(MuscleError::HalfUnfolding { parameter });
+        }
+        if let (Some(c10), Some(c01)) = (self.stated(Parameter::C10), self.stated(Parameter::C01)) {
+            if self.wall().is_none() {
+                return Err(MuscleError::NoWall);
+            }
+            if c10 + c01 <= 0.0 {
+                return Err(MuscleError::NoElasticity { c10, c01 });
+            }
+        }
+        if self.has_inner_gas && self.wall().is_none() {
+            return Err(MuscleError::NoGasWall);
+        }
         let radius = self.radius().si();
         let walls = [
-            ("wall", self.wall(), radius),
-            ("effects.wall-thickness", self.gas_wall(), radius.min(self.end_radius().si())),
+            ("wall", Parameter::Wall, radius),
+            ("effects.wall-thickness", Parameter::GasWall, radius.min(self.end_radius().si())),
         ];
         for (key, wall, radius_m) in walls {
-            if let Some(wall_m) = wall.map(Quantity::si).filter(|wall| *wall >= radius_m) {
+            if let Some(wall_m) = self.get(wall).filter(|wall| *wall >= radius_m) {
                 return Err(MuscleError::WallTooThick { key, wall_m, radius_m });
             }
         }
         Ok(self)
     }
 
-    /// The same muscle with cloth that can unfold only so far.
-    #[must_use]
-    pub fn with_unfolding(mut self, unfolding: Unfolding) -> Self {
-        self.unfolding = Some(unfolding);
-        self
+    /// The same muscle with a bladder of this thickness, once its rubber is stated. Without, the bladder is as
+    /// thick as the wall.
+    pub(crate) fn with_bladder_wall(mut self, wall: Length) -> Result<Self, MuscleError> {
+        check::positive("effects.bladder-elasticity.wall", wall)?;
+        self.bladder_wall = Some(wall.si()).filter(|wall| self.get(Parameter::Wall) != Some(*wall));
+        Ok(self)
     }
 
     /// The same muscle with gas that acts not at the braid radius but at this thickness inside it, on the
@@ -147,28 +167,19 @@ impl Muscle {
     /// If the thickness is negative, not finite or leaves no room for gas, if none is given and that of the
     /// wall is not known, or if the muscle is pleated.
     pub fn with_gas_wall(mut self, thickness: Option<Length>) -> Result<Self, MuscleError> {
-        if self.is_pleated() {
-            let (parameter, kind) = (Parameter::GasWall, Kind::Pleated);
-            return Err(MuscleError::OtherKind { parameter, kind, owner: Kind::Braided });
+        if let Some(thickness) = thickness {
+            return self.with(Parameter::GasWall, thickness.si());
         }
-        self.gas_wall = Some(match thickness {
-            Some(thickness) => {
-                check::not_negative("effects.wall-thickness.thickness", thickness)?;
-                GasWall::At(thickness)
-            }
-            None if self.wall().is_some() => GasWall::Inner,
-            None => return Err(MuscleError::NoGasWall),
-        });
-        self.with_room()
+        self.check_kind(Parameter::GasWall)?;
+        self.numbers.remove(&Parameter::GasWall);
+        self.has_inner_gas = true;
+        self.checked()
     }
 
     /// The same muscle with other ends, if it is a braid: clamped in fittings, or a cylinder to the end.
     #[must_use]
-    pub fn with_ends(mut self, ends: Ends) -> Self {
-        if let Construction::Braided(braided) = &self.construction {
-            self.construction = Construction::Braided(braided.with_ends(ends));
-        }
-        self
+    pub fn with_ends(self, ends: Ends) -> Self {
+        if self.is_pleated() { self } else { Self { ends, ..self } }
     }
 
     /// The same muscle with a stated width (one standard deviation, SI) of a parameter; it replaces an
@@ -202,60 +213,75 @@ impl Muscle {
     /// If the value is out of range, or the muscle cannot have the parameter.
     pub fn with(&self, parameter: Parameter, value: f64) -> Result<Self, MuscleError> {
         let mut changed = self.clone();
-        match parameter {
-            Parameter::Length => {
-                changed.length = Length::m(value);
-                check::positive("length", changed.length)?;
+        changed.set(parameter, value)?;
+        changed.checked()
+    }
+
+    /// A copy with several parameters changed, in SI. A number that doesn't change leaves the muscle as it is,
+    /// to the bit. Numbers that need each other may be new together.
+    ///
+    /// # Errors
+    /// As [`Muscle::with`].
+    pub fn with_all(&self, numbers: &[(Parameter, f64)]) -> Result<Self, MuscleError> {
+        let mut changed = self.clone();
+        for &(parameter, value) in numbers {
+            if changed.get(parameter) != Some(value) {
+                changed.set(parameter, value)?;
             }
-            Parameter::FibreStiffness => {
-                let stiffness = Force::n(value);
-                let fibre = self
-                    .fibre
-                    .map_or_else(|| Fibre::new(stiffness), |fibre| fibre.with_stiffness(stiffness))?;
-                return changed.with_fibre(fibre);
-            }
-            Parameter::HoopStiffness | Parameter::UnfoldedRadius => {
-                let now = self.unfolding.ok_or(MuscleError::HalfUnfolding { parameter })?;
-                changed.unfolding = Some(if parameter == Parameter::HoopStiffness {
-                    Unfolding::new(LineStiffness::n_per_m(value), now.unfolded_radius())?
-                } else {
-                    Unfolding::new(now.hoop_stiffness(), Length::m(value))?
-                });
-            }
-            Parameter::GasWall => return changed.with_gas_wall(Some(Length::m(value))),
-            _ => match self.construction {
-                Construction::Pleated(pleated) => {
-                    changed.construction = Construction::Pleated(pleated_with(pleated, parameter, value)?);
-                }
-                Construction::Braided(braided) => changed.change_braided(braided, parameter, value)?,
-            },
         }
-        changed.with_room()
+        changed.checked()
+    }
+
+    /// Changes one number, whether or not it agrees with the others.
+    fn set(&mut self, parameter: Parameter, value: f64) -> Result<(), MuscleError> {
+        self.check_kind(parameter)?;
+        let has = |parameter| self.numbers.contains_key(&parameter);
+        let is_end = parameter == Parameter::Radius && self.is_pleated() && has(Parameter::FittingRadius);
+        let parameter = if is_end { Parameter::FittingRadius } else { parameter };
+        parameter.check(value)?;
+        if parameter == Parameter::Wall && self.bladder_wall.is_some() && !has(Parameter::Wall) {
+            self.bladder_wall = Some(value);
+            return Ok(());
+        }
+        self.numbers.insert(parameter, value);
+        match parameter {
+            Parameter::C10 => _ = self.numbers.entry(Parameter::C01).or_insert(0.0),
+            Parameter::C01 => _ = self.numbers.entry(Parameter::C10).or_insert(0.0),
+            Parameter::Wall => self.bladder_wall = self.bladder_wall.filter(|wall| *wall != value),
+            Parameter::GasWall => self.has_inner_gas = false,
+            _ => {}
+        }
+        Ok(())
+    }
+
+    fn check_kind(&self, parameter: Parameter) -> Result<(), MuscleError> {
+        match parameter.kind().filter(|owner| *owner != self.kind) {
+            Some(owner) => Err(MuscleError::OtherKind { parameter, kind: self.kind, owner }),
+            None => Ok(()),
+        }
     }
 
     /// The value of a parameter in SI; `None` if the muscle does not have it.
     #[must_use]
     pub fn get(&self, parameter: Parameter) -> Option<f64> {
-        let construction = &self.construction;
-        let pleated = if let Construction::Pleated(pleated) = construction { Some(pleated) } else { None };
-        let braided = if let Construction::Braided(braided) = construction { Some(braided) } else { None };
         match parameter {
-            Parameter::Length => Some(self.length.si()),
-            Parameter::Radius => Some(self.radius().si()),
-            Parameter::FittingRadius => Some(self.end_radius().si()),
-            Parameter::BraidAngle => braided.map(|b| b.braid_angle.si()),
-            Parameter::Fibres => self.fibres().map(f64::from),
-            Parameter::PleatDepth => pleated.map(|p| p.pleat_depth.si()),
-            Parameter::Misalignment => pleated.map(|p| p.misalignment.si()),
-            Parameter::FibreStiffness => self.fibre.map(|fibre| fibre.stiffness().si()),
-            Parameter::C10 => self.bladder.map(|bladder| bladder.c10().si()),
-            Parameter::C01 => self.bladder.map(|bladder| bladder.c01().si()),
-            Parameter::Wall => self.wall().map(Quantity::si),
-            Parameter::GasWall => self.gas_wall().map(Quantity::si),
-            Parameter::ClothCircumference => pleated.and_then(|p| p.cloth_circumference).map(Quantity::si),
-            Parameter::HoopStiffness => self.unfolding.map(|limit| limit.hoop_stiffness().si()),
-            Parameter::UnfoldedRadius => self.unfolding.map(|limit| limit.unfolded_radius().si()),
+            Parameter::Radius if self.is_pleated() => {
+                self.stated(Parameter::FittingRadius).or_else(|| self.stated(Parameter::Radius))
+            }
+            Parameter::FittingRadius => self.stated(parameter).or_else(|| self.stated(Parameter::Radius)),
+            Parameter::Wall => self.stated(parameter).or(self.bladder_wall),
+            Parameter::GasWall if self.has_inner_gas => self.get(Parameter::Wall),
+            _ => self.stated(parameter),
         }
+    }
+
+    /// The number as the file states it, if it has a place of its own there.
+    pub(crate) fn stated(&self, parameter: Parameter) -> Option<f64> {
+        self.numbers.get(&parameter).copied()
+    }
+
+    fn length_of(&self, parameter: Parameter) -> Option<Length> {
+        self.get(parameter).map(Length::from_si)
     }
 
     /// The name.
@@ -267,71 +293,73 @@ impl Muscle {
     /// Unpressurised length l0 between the end fittings.
     #[must_use]
     pub fn length(&self) -> Length {
-        self.length
+        self.length_of(Parameter::Length).unwrap_or(Length::m(0.0))
     }
 
-    /// How it is built.
+    /// How it is built, at the radius that acts.
     #[must_use]
-    pub fn construction(&self) -> &Construction {
-        &self.construction
+    pub fn construction(&self) -> Construction {
+        let (radius, fibres) = (self.radius(), self.fibres());
+        match self.kind {
+            Kind::Pleated => {
+                let fibres = fibres.map_or(FibreCount::Continuous, FibreCount::Discrete);
+                Construction::Pleated(Pleated { radius, fibres })
+            }
+            Kind::Braided => {
+                let braid_angle = Angle::rad(self.get(Parameter::BraidAngle).unwrap_or(0.0));
+                let wall = self.stated(Parameter::Wall).map(Length::m);
+                Construction::Braided(Braided { radius, braid_angle, fibres, ends: self.ends, wall })
+            }
+        }
     }
 
     /// The family.
     #[must_use]
     pub fn kind(&self) -> Kind {
-        self.construction.kind()
+        self.kind
     }
 
     /// Whether it is a pleated muscle.
     #[must_use]
     pub fn is_pleated(&self) -> bool {
-        self.kind() == Kind::Pleated
+        self.kind == Kind::Pleated
     }
 
     /// Pleated: fibre radius R that acts at the fittings; braided: braid radius r0 at rest.
     #[must_use]
     pub fn radius(&self) -> Length {
-        match &self.construction {
-            Construction::Pleated(pleated) => pleated.radius(),
-            Construction::Braided(braided) => braided.radius(),
-        }
+        self.length_of(Parameter::Radius).unwrap_or(Length::m(0.0))
     }
 
     /// Radius at the end fittings: of the fibres in a pleated muscle, of the clamped ends in a braid.
     #[must_use]
     pub fn end_radius(&self) -> Length {
-        match &self.construction {
-            Construction::Pleated(pleated) => pleated.radius(),
-            Construction::Braided(braided) => braided.fitting_radius(),
-        }
+        self.length_of(Parameter::FittingRadius).unwrap_or(Length::m(0.0))
     }
 
     /// Number of fibres; `None` for a continuous membrane, or a braid that does not say.
     #[must_use]
     pub fn fibres(&self) -> Option<u32> {
-        match &self.construction {
-            Construction::Pleated(Pleated { fibres: FibreCount::Discrete(count), .. }) => Some(*count),
-            Construction::Pleated(_) => None,
-            Construction::Braided(braided) => braided.fibres(),
-        }
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a whole number in range"
+        )]
+        self.get(Parameter::Fibres).map(|count| count as u32)
     }
 
     /// Fibres that stretch; `None` if they are inextensible.
     #[must_use]
     pub fn fibre(&self) -> Option<Fibre> {
-        self.fibre
+        let stiffness = self.get(Parameter::FibreStiffness).map(Force::n)?;
+        Some(Fibre { stiffness, section: self.fibre_section })
     }
 
-    /// The rubber bladder, if the muscle has one that counts.
+    /// Thickness of the rubber bladder, if the muscle has one that counts: its own, else that of the wall.
     #[must_use]
-    pub fn bladder(&self) -> Option<Bladder> {
-        self.bladder
-    }
-
-    /// The limit to the unfolding of the cloth, if there is one.
-    #[must_use]
-    pub fn unfolding(&self) -> Option<Unfolding> {
-        self.unfolding
+    pub fn bladder_wall(&self) -> Option<Length> {
+        self.get(Parameter::C10)?;
+        self.bladder_wall.map(Length::m).or_else(|| self.wall())
     }
 
     /// The effects in the file besides those that shape the muscle, in the order of the file.
@@ -378,117 +406,14 @@ impl Muscle {
     /// Wall thickness: the muscle's own, else the bladder's.
     #[must_use]
     pub fn wall(&self) -> Option<Length> {
-        self.own_wall().or_else(|| self.bladder.map(|bladder| bladder.wall()))
-    }
-
-    /// Distance inside the braid radius at which the gas acts; `None` if it acts at the braid.
-    #[must_use]
-    pub fn gas_wall(&self) -> Option<Length> {
-        match self.gas_wall? {
-            GasWall::Inner => self.wall(),
-            GasWall::At(thickness) => Some(thickness),
-        }
-    }
-
-    /// The wall thickness that the muscle states itself.
-    pub(crate) fn own_wall(&self) -> Option<Length> {
-        if let Construction::Braided(braided) = &self.construction { braided.wall() } else { None }
+        self.length_of(Parameter::Wall)
     }
 
     /// Whether the parameter has a place of its own in the muscle's file, where a width can be written. A
     /// fitting radius that is not stated follows the radius, and the inner face of the wall follows the wall.
     #[must_use]
     pub fn is_stated(&self, parameter: Parameter) -> bool {
-        match (parameter, &self.construction) {
-            (Parameter::FittingRadius, Construction::Pleated(pleated)) => pleated.end_radius.is_some(),
-            (Parameter::FittingRadius, Construction::Braided(braided)) => braided.fitting_radius.is_some(),
-            (Parameter::GasWall, _) => matches!(self.gas_wall, Some(GasWall::At(_))),
-            _ => self.get(parameter).is_some(),
-        }
-    }
-
-    fn change_braided(
-        &mut self,
-        mut braided: Braided,
-        parameter: Parameter,
-        value: f64,
-    ) -> Result<(), MuscleError> {
-        match parameter {
-            Parameter::Radius => {
-                braided.radius = Length::m(value);
-                check::positive("radius", braided.radius)?;
-            }
-            Parameter::BraidAngle => {
-                braided.braid_angle = Braided::new(braided.radius, Angle::rad(value))?.braid_angle;
-            }
-            Parameter::FittingRadius => braided = braided.with_fitting_radius(Length::m(value))?,
-            Parameter::Fibres => braided = braided.with_fibres(whole(value)?)?,
-            Parameter::Wall => return self.change_wall(braided, Length::m(value)),
-            Parameter::C10 | Parameter::C01 => {
-                let wall = self.wall().ok_or(MuscleError::NoWall)?;
-                let none = Pressure::pa(0.0);
-                let (c10, c01) = self.bladder.map_or((none, none), |bladder| (bladder.c10(), bladder.c01()));
-                let wall = self.bladder.map_or(wall, |bladder| bladder.wall());
-                let modulus = Pressure::pa(value);
-                self.bladder = Some(if parameter == Parameter::C10 {
-                    Bladder::new(modulus, c01, wall)?
-                } else {
-                    Bladder::new(c10, modulus, wall)?
-                });
-            }
-            _ => return Err(MuscleError::OtherKind { parameter, kind: Kind::Braided, owner: Kind::Pleated }),
-        }
-        self.construction = Construction::Braided(braided);
-        Ok(())
-    }
-
-    /// Changes the wall where it is stated: the muscle's, the bladder's, or both if they are the same.
-    fn change_wall(&mut self, braided: Braided, wall: Length) -> Result<(), MuscleError> {
-        check::positive("wall", wall)?;
-        let own = braided.wall;
-        if let Some(bladder) = self.bladder
-            && own.is_none_or(|own| own == bladder.wall())
-        {
-            self.bladder = Some(Bladder::new(bladder.c10(), bladder.c01(), wall)?);
-        }
-        if own.is_some() || self.bladder.is_none() {
-            self.construction = Construction::Braided(braided.with_wall(wall)?);
-        }
-        Ok(())
-    }
-}
-
-fn pleated_with(mut pleated: Pleated, parameter: Parameter, value: f64) -> Result<Pleated, MuscleError> {
-    match parameter {
-        Parameter::Radius if pleated.end_radius.is_none() => {
-            pleated.radius = Length::m(value);
-            check::positive("radius", pleated.radius)?;
-            Ok(pleated)
-        }
-        Parameter::Radius | Parameter::FittingRadius => pleated.with_end_radius(Length::m(value)),
-        Parameter::Fibres => {
-            pleated.fibres = FibreCount::Discrete(whole(value)?);
-            Ok(pleated)
-        }
-        Parameter::PleatDepth => pleated.with_pleat_depth(Length::m(value)),
-        Parameter::Misalignment => pleated.with_misalignment(Angle::rad(value)),
-        Parameter::ClothCircumference => pleated.with_cloth_circumference(Length::m(value)),
-        _ => Err(MuscleError::OtherKind { parameter, kind: Kind::Pleated, owner: Kind::Braided }),
-    }
-}
-
-/// A number of fibres from a sweep, as a whole number.
-fn whole(value: f64) -> Result<u32, MuscleError> {
-    if value.fract() == 0.0 && (3.0..=f64::from(u32::MAX)).contains(&value) {
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "a whole number in range"
-        )]
-        let count = value as u32;
-        Ok(count)
-    } else {
-        Err(MuscleError::FibreCount { value })
+        self.numbers.contains_key(&parameter) || (parameter == Parameter::Wall && self.bladder_wall.is_some())
     }
 }
 
@@ -509,10 +434,10 @@ mod tests {
 
     #[test]
     fn what_is_set_is_read() {
-        let unfolding = Unfolding::new(LineStiffness::kn_per_m(81.0), Length::mm(52.6)).unwrap();
+        let unfolding = [(Parameter::HoopStiffness, 81e3), (Parameter::UnfoldedRadius, 0.0526)];
         let full = [
-            pleated().with_unfolding(unfolding),
-            braided().with_unfolding(unfolding).with(Parameter::Wall, 0.002).unwrap(),
+            pleated().with_all(&unfolding).unwrap(),
+            braided().with_all(&unfolding).unwrap().with(Parameter::Wall, 0.002).unwrap(),
         ];
         for muscle in full {
             for parameter in Parameter::ALL {
@@ -573,16 +498,57 @@ mod tests {
         assert_eq!(braided().with(Parameter::C10, 2e5), Err(MuscleError::NoWall));
         let muscle = braided().with(Parameter::Wall, 0.002).unwrap().with(Parameter::C10, 2e5).unwrap();
         let thick = muscle.with(Parameter::Wall, 0.003).unwrap();
-        assert_eq!(thick.bladder().unwrap().wall(), Length::mm(3.0));
-        assert_eq!(thick.bladder().unwrap().c10(), Pressure::mpa(0.2));
+        assert_eq!((thick.bladder_wall(), thick.get(Parameter::C10)), (Some(Length::mm(3.0)), Some(2e5)));
         assert_eq!(muscle.with(Parameter::C10, 0.0).unwrap_err().key(), "effects.bladder-elasticity.c10");
         // A bladder that states its own wall keeps it, unless the muscle has no other.
-        let own = Bladder::new(Pressure::mpa(0.2), Pressure::pa(0.0), Length::mm(1.0)).unwrap();
-        let muscle = braided().with_bladder(own).unwrap();
+        let own =
+            |muscle: Muscle| muscle.with_bladder_wall(Length::mm(1.0)).unwrap().with(Parameter::C10, 2e5);
+        let muscle = own(braided()).unwrap();
         assert_eq!(muscle.get(Parameter::Wall), Some(0.001));
         let muscle = muscle.with(Parameter::Wall, 0.0015).unwrap();
-        assert_eq!((muscle.own_wall(), muscle.bladder().unwrap().wall()), (None, Length::mm(1.5)));
-        assert_eq!(pleated().with_bladder(own), Err(MuscleError::BladderInPleated));
+        assert_eq!((muscle.stated(Parameter::Wall), muscle.bladder_wall()), (None, Some(Length::mm(1.5))));
+        let two = own(braided().with(Parameter::Wall, 0.002).unwrap()).unwrap();
+        let two = two.with(Parameter::Wall, 0.003).unwrap();
+        assert_eq!((two.wall(), two.bladder_wall()), (Some(Length::mm(3.0)), Some(Length::mm(1.0))));
+    }
+
+    /// Numbers that need each other may come in any order, if they come together.
+    #[test]
+    fn the_order_of_numbers_does_not_count() {
+        let mut rubber = [(Parameter::C10, 0.0), (Parameter::C01, 2e5), (Parameter::Wall, 0.002)];
+        let muscle = braided().with_all(&rubber).unwrap();
+        rubber.reverse();
+        assert_eq!(braided().with_all(&rubber).as_ref(), Ok(&muscle));
+        assert!(braided().with_all(&rubber[1..]).is_err() && muscle.with(Parameter::C01, 0.0).is_err());
+        let lobes = [(Parameter::ClothCircumference, 0.33), (Parameter::Fibres, 40.0)];
+        let pleated = Pleated::new(Length::mm(16.0), FibreCount::Continuous).unwrap();
+        let muscle = Muscle::new("p", Length::mm(110.0), Construction::Pleated(pleated)).unwrap();
+        assert_eq!(muscle.with_all(&lobes[..1]), Err(MuscleError::LobesOfContinuous));
+        assert!(muscle.with_all(&lobes).is_ok());
+    }
+
+    #[test]
+    fn nonsense_is_refused_with_its_number() {
+        let braided = braided().with(Parameter::Wall, 0.002).unwrap();
+        for (muscle, parameter, value, part) in [
+            (pleated(), Parameter::FittingRadius, 0.0, "`effects.end-radius.radius` is 0 m"),
+            (pleated(), Parameter::PleatDepth, -0.001, "-0.001 m"),
+            (pleated(), Parameter::PleatDepth, f64::INFINITY, "inf"),
+            (pleated(), Parameter::Misalignment, -std::f64::consts::FRAC_PI_2, "-90"),
+            (pleated(), Parameter::Misalignment, f64::NAN, "NaN"),
+            (pleated(), Parameter::ClothCircumference, -0.33, "-0.33 m"),
+            (braided.clone(), Parameter::FittingRadius, 0.0, "end-radius"),
+            (braided.clone(), Parameter::C10, -1.0, "c10` is -1 Pa"),
+            (braided.clone(), Parameter::C01, f64::NAN, "c01` is NaN"),
+            (braided.clone(), Parameter::C10, 0.0, "c10 = 0 Pa and c01 = 0 Pa"),
+            (braided.clone(), Parameter::HoopStiffness, -1.0, "-1 N/m"),
+            (braided, Parameter::UnfoldedRadius, f64::INFINITY, "inf m"),
+        ] {
+            let message = muscle.with(parameter, value).unwrap_err().to_string();
+            assert!(message.contains(part), "{message:?} does not say {part:?}");
+        }
+        let message = pleated().with_bladder_wall(Length::m(0.0)).unwrap_err().to_string();
+        assert!(message.contains("wall` is 0 m"), "{message}");
     }
 
     #[test]
@@ -600,12 +566,12 @@ mod tests {
         assert!(message.contains("`gas_wall`") && message.contains("braided"), "{message}");
         let follows = braided().with(Parameter::Wall, 0.002).unwrap().with_gas_wall(None).unwrap();
         assert_eq!(
-            (follows.gas_wall(), follows.is_stated(Parameter::GasWall)),
-            (Some(Length::mm(2.0)), false)
+            (follows.get(Parameter::GasWall), follows.is_stated(Parameter::GasWall)),
+            (Some(0.002), false)
         );
-        assert_eq!(follows.with(Parameter::Wall, 0.003).unwrap().gas_wall(), Some(Length::mm(3.0)));
+        assert_eq!(follows.with(Parameter::Wall, 0.003).unwrap().get(Parameter::GasWall), Some(0.003));
         let own = follows.with(Parameter::GasWall, 0.001).unwrap().with(Parameter::Wall, 0.003).unwrap();
-        assert_eq!((own.gas_wall(), own.wall()), (Some(Length::mm(1.0)), Some(Length::mm(3.0))));
+        assert_eq!((own.get(Parameter::GasWall), own.wall()), (Some(0.001), Some(Length::mm(3.0))));
         assert!(own.with_width(Parameter::GasWall, 1e-4).is_ok());
         assert!(follows.with_width(Parameter::GasWall, 1e-4).is_err());
     }
@@ -643,7 +609,7 @@ mod tests {
     fn readers() {
         let muscle = braided();
         assert_eq!((muscle.kind(), muscle.is_pleated(), muscle.fibres()), (Kind::Braided, false, None));
-        assert_eq!((muscle.fibre(), muscle.bladder(), muscle.unfolding()), (None, None, None));
+        assert_eq!((muscle.fibre(), muscle.bladder_wall()), (None, None));
         assert_eq!(muscle.get(Parameter::BraidAngle), Some(Angle::deg(25.0).to_rad()));
         let Construction::Braided(braid) = muscle.construction() else { panic!("a braid") };
         assert_eq!((braid.ends(), braid.with_ends(Ends::Cylinder).ends()), (Ends::Clamped, Ends::Cylinder));

@@ -1,86 +1,113 @@
 //! The numbers of a muscle that a sweep or a fit may change, by name.
 
 use crate::construction::Kind;
-use crate::quantity::{Angle, Force, Length, LineStiffness, Pressure};
-use crate::units::{self, Quantity, UnitError};
+use crate::error::MuscleError;
+use crate::quantity::{Angle, Force, Length, LineStiffness, Pressure, Ratio};
+use crate::units::{self, UnitError, Wanted};
 use serde::Serialize;
+use std::f64::consts::FRAC_PI_2;
 
-/// A number of a muscle. `Muscle::get` reads it, `Muscle::with` changes it; values are in SI.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Parameter {
-    /// Unpressurised length l0 (m).
-    Length,
-    /// Pleated: fibre radius R at the fittings; braided: braid radius r0 (m).
-    Radius,
-    /// Radius at the end fittings, if it is stated separately (m).
-    FittingRadius,
-    /// Braid angle alpha0 (rad).
+/// Everything that is to be known about a parameter.
+#[derive(Clone, Copy)]
+struct Facts {
+    name: &'static str,
+    key: &'static str,
+    kind: Option<Kind>,
+    wanted: &'static Wanted,
+    /// The unit in which a muscle file is written.
+    unit: &'static str,
+    range: Range,
+}
+
+/// The values that a parameter may have, in SI.
+#[derive(Clone, Copy)]
+enum Range {
+    Positive,
+    NotNegative,
+    Count,
     BraidAngle,
-    /// Number of fibres, a whole number.
-    Fibres,
-    /// Pleat depth (m).
-    PleatDepth,
-    /// Misalignment of pleated fibres (rad).
     Misalignment,
+}
+
+/// The table of the parameters: name in sweeps, place in a muscle file, family, quantity and unit there, range.
+macro_rules! parameters {
+    ($($(#[$about:meta])* $variant:ident = $name:literal, $key:literal, $kind:expr, $quantity:ty, $unit:literal, $range:ident;)*) => {
+        /// A number of a muscle. `Muscle::get` reads it, `Muscle::with` changes it; values are in SI.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
+        #[serde(rename_all = "snake_case")]
+        pub enum Parameter {
+            $($(#[$about])* $variant,)*
+        }
+
+        impl Parameter {
+            /// All of them.
+            pub const ALL: [Self; 15] = [$(Self::$variant),*];
+
+            const fn facts(self) -> Facts {
+                match self {
+                    $(Self::$variant => Facts {
+                        name: $name,
+                        key: $key,
+                        kind: $kind,
+                        wanted: Wanted::of::<$quantity>(),
+                        unit: $unit,
+                        range: Range::$range,
+                    },)*
+                }
+            }
+        }
+    };
+}
+
+const BRAIDED: Option<Kind> = Some(Kind::Braided);
+const PLEATED: Option<Kind> = Some(Kind::Pleated);
+
+parameters! {
+    /// Unpressurised length l0 (m).
+    Length = "length", "length", None, Length, "mm", Positive;
+    /// Pleated: fibre radius R at the fittings; braided: braid radius r0 (m).
+    Radius = "radius", "radius", None, Length, "mm", Positive;
+    /// Radius at the end fittings, if it is stated separately (m).
+    FittingRadius = "fitting_radius", "effects.end-radius.radius", None, Length, "mm", Positive;
+    /// Braid angle alpha0 (rad).
+    BraidAngle = "braid_angle", "braid_angle", BRAIDED, Angle, "deg", BraidAngle;
+    /// Number of fibres, a whole number.
+    Fibres = "fibres", "fibres", None, Ratio, "", Count;
+    /// Distance of the pleats outside the fibres under pressure (m); 0 if not stated.
+    PleatDepth = "pleat_depth", "effects.pleat-depth.depth", PLEATED, Length, "mm", NotNegative;
+    /// Misalignment of pleated fibres (rad): the angle at which they leave the end fittings, in a slight helix;
+    /// 0 if not stated.
+    Misalignment = "misalignment", "effects.fibre-misalignment.angle", PLEATED, Angle, "deg", Misalignment;
     /// Fibre stiffness EA (N).
-    FibreStiffness,
-    /// First Mooney-Rivlin constant of the bladder (Pa).
-    C10,
-    /// Second Mooney-Rivlin constant of the bladder (Pa).
-    C01,
-    /// Wall thickness (m).
-    Wall,
+    FibreStiffness = "fibre_stiffness", "fibre.stiffness", None, Force, "kN", Positive;
+    /// First Mooney-Rivlin constant of the bladder (Pa), W = c10 (I1 - 3) + c01 (I2 - 3).
+    C10 = "c10", "effects.bladder-elasticity.c10", BRAIDED, Pressure, "MPa", NotNegative;
+    /// Second Mooney-Rivlin constant of the bladder (Pa). With c01 = 0 it is a neo-Hookean rubber of shear
+    /// modulus 2 c10.
+    C01 = "c01", "effects.bladder-elasticity.c01", BRAIDED, Pressure, "MPa", NotNegative;
+    /// Wall thickness at rest (m): that of the muscle, else that of its bladder.
+    Wall = "wall", "wall", BRAIDED, Length, "mm", Positive;
     /// Thickness by which the gas stays inside the braid radius (m).
-    GasWall,
-    /// Hoop stiffness of cloth that limits the unfolding (N/m).
-    HoopStiffness,
+    GasWall = "gas_wall", "effects.wall-thickness.thickness", BRAIDED, Length, "mm", NotNegative;
+    /// Hoop stiffness K = E t (N/m) of cloth that can unfold only so far. Beyond the unfolded radius it
+    /// stretches.
+    ///
+    /// ```text
+    /// u(r) = K (2 pi (r - r_u))^2 / (2 * 2 pi r_u)   for r > r_u, else 0
+    /// ```
+    /// u (N): hoop energy per unit meridian length; `r_u` (m): unfolded radius.
+    HoopStiffness = "hoop_stiffness", "effects.limited-unfolding.hoop_stiffness", None, LineStiffness, "kN/m", Positive;
     /// Radius beyond which the cloth is taut (m).
-    UnfoldedRadius,
-    /// Circumference of the cloth that bulges in lobes between the fibres (m).
-    ClothCircumference,
+    UnfoldedRadius = "unfolded_radius", "effects.limited-unfolding.unfolded_radius", None, Length, "mm", Positive;
+    /// Circumference of the cloth that bulges in lobes between every two fibres (m).
+    ClothCircumference = "cloth_circumference", "effects.lobes.circumference", PLEATED, Length, "mm", Positive;
 }
 
 impl Parameter {
-    /// All of them.
-    pub const ALL: [Self; 15] = [
-        Self::Length,
-        Self::Radius,
-        Self::FittingRadius,
-        Self::BraidAngle,
-        Self::Fibres,
-        Self::PleatDepth,
-        Self::Misalignment,
-        Self::FibreStiffness,
-        Self::C10,
-        Self::C01,
-        Self::Wall,
-        Self::GasWall,
-        Self::HoopStiffness,
-        Self::UnfoldedRadius,
-        Self::ClothCircumference,
-    ];
-
     /// The name in sweeps, tables and reports.
     #[must_use]
     pub const fn name(self) -> &'static str {
-        match self {
-            Self::Length => "length",
-            Self::Radius => "radius",
-            Self::FittingRadius => "fitting_radius",
-            Self::BraidAngle => "braid_angle",
-            Self::Fibres => "fibres",
-            Self::PleatDepth => "pleat_depth",
-            Self::Misalignment => "misalignment",
-            Self::FibreStiffness => "fibre_stiffness",
-            Self::C10 => "c10",
-            Self::C01 => "c01",
-            Self::Wall => "wall",
-            Self::GasWall => "gas_wall",
-            Self::HoopStiffness => "hoop_stiffness",
-            Self::UnfoldedRadius => "unfolded_radius",
-            Self::ClothCircumference => "cloth_circumference",
-        }
+        self.facts().name
     }
 
     /// The parameter of that name.
@@ -92,19 +119,7 @@ impl Parameter {
     /// Its place in a muscle file.
     #[must_use]
     pub const fn key(self) -> &'static str {
-        match self {
-            Self::Length | Self::Radius | Self::BraidAngle | Self::Fibres | Self::Wall => self.name(),
-            Self::FittingRadius => "effects.end-radius.radius",
-            Self::PleatDepth => "effects.pleat-depth.depth",
-            Self::Misalignment => "effects.fibre-misalignment.angle",
-            Self::FibreStiffness => "fibre.stiffness",
-            Self::C10 => "effects.bladder-elasticity.c10",
-            Self::C01 => "effects.bladder-elasticity.c01",
-            Self::GasWall => "effects.wall-thickness.thickness",
-            Self::HoopStiffness => "effects.limited-unfolding.hoop_stiffness",
-            Self::UnfoldedRadius => "effects.limited-unfolding.unfolded_radius",
-            Self::ClothCircumference => "effects.lobes.circumference",
-        }
+        self.facts().key
     }
 
     /// The effect whose table in a muscle file holds the parameter, and its key there, if there is one.
@@ -113,52 +128,62 @@ impl Parameter {
         self.key().strip_prefix("effects.")?.split_once('.')
     }
 
+    /// The parameters in the table `[effects.NAME]` of a muscle file, with their keys there.
+    pub(crate) fn in_effect(name: &str) -> impl Iterator<Item = (Self, &'static str)> {
+        let all = Self::ALL.into_iter().filter_map(|parameter| Some((parameter, parameter.effect()?)));
+        all.filter(move |(_, (effect, _))| *effect == name).map(|(parameter, (_, key))| (parameter, key))
+    }
+
     /// The parameter under this key in the table `[effects.NAME]`.
     #[must_use]
     pub fn of_effect(name: &str, key: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|parameter| parameter.effect() == Some((name, key)))
+        Self::in_effect(name).find(|(_, own)| *own == key).map(|(parameter, _)| parameter)
     }
 
     /// The effects whose tables hold parameters of the muscle; every other `[effects.NAME]` is a
     /// [`crate::Learnt`] one.
     pub fn effects() -> impl Iterator<Item = &'static str> {
-        let is_first = |(i, name): &(usize, &str)| {
-            !Self::ALL[..*i].iter().any(|other| other.effect().is_some_and(|(other, _)| other == *name))
+        let first = |name| Self::in_effect(name).next().map(|(parameter, _)| parameter);
+        let of = move |parameter: Self| {
+            parameter.effect().map(|(name, _)| name).filter(|name| first(name) == Some(parameter))
         };
-        let all = Self::ALL.into_iter().enumerate();
-        all.filter_map(|(i, parameter)| Some((i, parameter.effect()?.0)))
-            .filter(is_first)
-            .map(|(_, name)| name)
+        Self::ALL.into_iter().filter_map(of)
     }
 
     /// The SI unit; "1" for a count.
     #[must_use]
     pub const fn unit(self) -> &'static str {
-        match self {
-            Self::Length
-            | Self::Radius
-            | Self::FittingRadius
-            | Self::PleatDepth
-            | Self::Wall
-            | Self::GasWall
-            | Self::UnfoldedRadius
-            | Self::ClothCircumference => "m",
-            Self::BraidAngle | Self::Misalignment => "rad",
-            Self::Fibres => "1",
-            Self::FibreStiffness => "N",
-            Self::C10 | Self::C01 => "Pa",
-            Self::HoopStiffness => "N/m",
-        }
+        // The SI unit is the first in every list; that of a ratio is empty.
+        let unit = self.facts().wanted.known[0].0;
+        if unit.is_empty() { "1" } else { unit }
     }
 
     /// The family it belongs to, if it belongs to only one.
     #[must_use]
     pub const fn kind(self) -> Option<Kind> {
-        match self {
-            Self::BraidAngle | Self::C10 | Self::C01 | Self::Wall | Self::GasWall => Some(Kind::Braided),
-            Self::PleatDepth | Self::Misalignment | Self::ClothCircumference => Some(Kind::Pleated),
-            _ => None,
-        }
+        self.facts().kind
+    }
+
+    /// Refuses a value \[SI\] that no muscle can have.
+    pub(crate) fn check(self, value: f64) -> Result<(), MuscleError> {
+        let (key, unit) = (self.key(), self.unit());
+        let (holds, error) = match self.facts().range {
+            Range::Positive => (value > 0.0, MuscleError::NotPositive { key, value, unit }),
+            Range::NotNegative => (value >= 0.0, MuscleError::Negative { key, value, unit }),
+            Range::Count => {
+                let is_count = value.fract() == 0.0 && (3.0..=f64::from(u32::MAX)).contains(&value);
+                (is_count, MuscleError::FibreCount { value })
+            }
+            Range::BraidAngle => {
+                let degrees = Angle::rad(value).to_deg();
+                (value > 0.0 && value < FRAC_PI_2, MuscleError::BraidAngle { degrees })
+            }
+            Range::Misalignment => {
+                let degrees = Angle::rad(value).to_deg();
+                (value.abs() < FRAC_PI_2, MuscleError::Misalignment { degrees })
+            }
+        };
+        if holds && value.is_finite() { Ok(()) } else { Err(error) }
     }
 
     /// Reads one value of this parameter, such as "100 mm" for `Length`, into SI.
@@ -166,28 +191,25 @@ impl Parameter {
     /// # Errors
     /// If the text is not a quantity of the parameter's dimension.
     pub fn parse(self, text: &str) -> Result<f64, UnitError> {
-        match self.unit() {
-            "rad" => units::parse::<Angle>(text).map(Quantity::si),
-            "N" => units::parse::<Force>(text).map(Quantity::si),
-            "Pa" => units::parse::<Pressure>(text).map(Quantity::si),
-            "N/m" => units::parse::<LineStiffness>(text).map(Quantity::si),
-            "1" => units::parse::<crate::quantity::Ratio>(text).map(Quantity::si),
-            _ => units::parse::<Length>(text).map(Quantity::si),
-        }
+        Ok(units::read(self.facts().wanted, text)?.si)
     }
 
-    /// A value in SI as it is written in a muscle file, with its unit and quotes. Reading it gives exactly
-    /// the same number.
-    pub(crate) fn text(self, value: f64) -> String {
-        let text = match self.unit() {
-            "rad" => units::exact_text(Angle::from_si(value)),
-            "N" => units::exact_text_in(Force::from_si(value), "kN"),
-            "Pa" => units::exact_text_in(Pressure::from_si(value), "MPa"),
-            "N/m" => units::exact_text(LineStiffness::from_si(value)),
-            "1" => return value.to_string(),
-            _ => units::exact_text(Length::from_si(value)),
-        };
-        format!("\"{text}\"")
+    /// The same with an optional width, such as "100 mm +- 1 mm".
+    pub(crate) fn parse_with_width(self, text: &str) -> Result<(f64, Option<f64>), UnitError> {
+        let (value, width) = units::read_with_width(self.facts().wanted, text)?;
+        Ok((value.si, width))
+    }
+
+    /// A value in SI, and its width if there is one, as they are written in a muscle file, with unit and
+    /// quotes. Reading gives exactly the same numbers.
+    pub(crate) fn text(self, value: f64, width: Option<f64>) -> String {
+        let Facts { wanted, unit, range, .. } = self.facts();
+        if matches!(range, Range::Count) {
+            return value.to_string();
+        }
+        let text = |si| units::exact_text_of(wanted, si, unit);
+        let width = width.map(|width| format!(" +- {}", text(width))).unwrap_or_default();
+        format!("\"{}{width}\"", text(value))
     }
 
     /// Reads values of this parameter, such as "100,110,120 mm" for `Length` or "20,40" for `Fibres`, into
@@ -196,17 +218,7 @@ impl Parameter {
     /// # Errors
     /// If an item is not a quantity of the parameter's dimension.
     pub fn parse_list(self, text: &str) -> Result<Vec<f64>, UnitError> {
-        fn si<Q: Quantity>(text: &str) -> Result<Vec<f64>, UnitError> {
-            Ok(units::parse_list::<Q>(text)?.into_iter().map(Quantity::si).collect())
-        }
-        match self.unit() {
-            "rad" => si::<Angle>(text),
-            "N" => si::<Force>(text),
-            "Pa" => si::<Pressure>(text),
-            "N/m" => si::<LineStiffness>(text),
-            "1" => si::<crate::quantity::Ratio>(text),
-            _ => si::<Length>(text),
-        }
+        units::read_list(self.facts().wanted, text)
     }
 }
 

@@ -96,7 +96,7 @@ mod tests {
             (Length::mm(110.0), Length::mm(11.5), Some(40))
         );
         assert_eq!(preset("ppam-2-r16").unwrap().radius(), Length::mm(16.0));
-        let Construction::Pleated(first) = *preset("ppam-1").unwrap().construction() else {
+        let Construction::Pleated(first) = preset("ppam-1").unwrap().construction() else {
             panic!("pleated")
         };
         assert_eq!(first.fibres(), FibreCount::Continuous);
@@ -107,7 +107,7 @@ mod tests {
     fn the_braid_radius_follows_from_fibre_length_and_turns() {
         // Table 2 of "Experimental Analysis of Fluidic Muscles": b = 275.85 mm, N = 1.73 turns, l0 = 250 mm.
         let muscle = preset("dmsp-20-250").unwrap();
-        let Construction::Braided(braid) = *muscle.construction() else { panic!("braided") };
+        let Construction::Braided(braid) = muscle.construction() else { panic!("braided") };
         let alpha0 = braid.braid_angle().to_rad();
         let radius = 275.85 * alpha0.sin() / (std::f64::consts::TAU * 1.73);
         // The file states five digits, the table two to five.

@@ -5,7 +5,6 @@ use crate::dimension::Dimension;
 use crate::file::read;
 use crate::file_error::FileError;
 pub use crate::file_kind::FileKind;
-use crate::file_kind::MOST_BYTES;
 use crate::muscle::Muscle;
 use crate::presets::{PRESETS, PresetError, preset};
 pub use crate::units::shortened;
@@ -62,25 +61,7 @@ impl<'t> Document<'t> {
     /// # Errors
     /// If the text is larger than 1 MiB or is not TOML.
     pub fn parse(kind: FileKind, text: &'t str, origin: &'t str) -> Result<Self, FileError> {
-        if text.len() > MOST_BYTES {
-            return Err(kind.too_large(origin));
-        }
-        let root = DeTable::parse(text).map_err(|error| {
-            let message = error.message().lines().collect::<Vec<_>>().join(", ");
-            let span = error.span().unwrap_or(0..0);
-            let instead = if message.contains("duplicate key") {
-                "state each key once: delete one of the two, or put `#` before it".to_owned()
-            } else {
-                unquoted(text, span.start).unwrap_or_else(|| {
-                    format!(
-                        "each line is `key = value`, a `[table]` or a `# comment`; numbers with a unit stand in quotes: `{}`",
-                        kind.line
-                    )
-                })
-            };
-            FileError::at(origin, text, span, format!("this is not TOML: {message}"), instead)
-        })?;
-        Ok(Self { origin, text, root })
+        Ok(Self { origin, text, root: kind.parse(text, origin)? })
     }
 
     /// The top of the file, with its name in messages and the keys that it may have.
@@ -101,11 +82,19 @@ impl<'a> Settings<'a> {
     /// The same table under another name, with the place of a key as its own.
     #[must_use]
     pub(crate) fn called(self, title: String, key: &str) -> Self {
-        Settings { span: self.value_span(key), title: title.into(), ..self }
+        let span = self.value_span(key);
+        Settings { title: title.into(), ..self.at(span) }
+    }
+
+    /// The same table with another place for what is missing in it.
+    #[must_use]
+    pub fn at(self, span: Range<usize>) -> Self {
+        Settings { span, ..self }
     }
 
     /// Its name in messages.
-    pub(crate) fn title(&self) -> &str {
+    #[must_use]
+    pub fn title(&self) -> &str {
         &self.title
     }
 
@@ -237,22 +226,22 @@ impl<'a> Settings<'a> {
     ///
     /// # Errors
     /// If the value is another word. The message names the nearest word, else all of them.
-    pub fn word<T: Copy>(&self, name: &str, known: &[(&'static str, T)]) -> Result<Option<T>, FileError> {
+    pub fn word<T: Copy>(&self, name: &str, known: &[(&str, T)]) -> Result<Option<T>, FileError> {
         self.word_or(name, known, &[])
     }
 
     /// The same. Words in `also` are not accepted, but answered with the right one.
-    pub(crate) fn word_or<T: Copy>(
+    pub(crate) fn word_or<'w, T: Copy>(
         &self,
         name: &str,
-        known: &[(&'static str, T)],
-        also: &[(&str, &'static str)],
+        known: &[(&'w str, T)],
+        also: &[(&str, &'w str)],
     ) -> Result<Option<T>, FileError> {
         let (Some(value), Some(text)) = (self.get(name), self.text(name)?) else { return Ok(None) };
         if let Some((_, found)) = known.iter().find(|(word, _)| *word == text) {
             return Ok(Some(*found));
         }
-        let words: Vec<&'static str> = known.iter().map(|(word, _)| *word).collect();
+        let words: Vec<&str> = known.iter().map(|(word, _)| *word).collect();
         let meant = also.iter().find(|(word, _)| text.eq_ignore_ascii_case(word)).map(|(_, word)| *word);
         let likely =
             meant.or_else(|| nearest(text, words.iter().copied())).map_or(words.clone(), |w| vec![w]);
@@ -300,6 +289,24 @@ impl<'a> Settings<'a> {
         Ok(Some(self.inner(value.span(), entries, title.into(), keys)))
     }
 
+    /// A table whose name isn't among the keys, because the file chooses it. `instead` says how it is written.
+    ///
+    /// # Errors
+    /// If the value is no table.
+    pub fn table_named(
+        &self,
+        name: &str,
+        title: impl Into<Cow<'a, str>>,
+        keys: Keys,
+        instead: impl Into<String>,
+    ) -> Result<Self, FileError> {
+        self.table(name, title, keys).ok().flatten().ok_or_else(|| {
+            let kind = self.get(name).map_or("nothing", Setting::type_name);
+            let what = format!("`{}` is {kind}, but must be a table", shortened(name));
+            self.error(self.value_span(name), what, instead)
+        })
+    }
+
     /// An array of tables, such as `[[block]]`, with the name of each in messages and the keys that it may
     /// have.
     ///
@@ -336,6 +343,25 @@ impl<'a> Settings<'a> {
     #[must_use]
     pub fn value_span(&self, name: &str) -> Range<usize> {
         self.get(name).map_or_else(|| self.span.clone(), Setting::span)
+    }
+
+    /// The place of some bytes of a text: the whole value if it was written with escapes.
+    #[must_use]
+    pub fn inside(&self, value: Setting<'_>, part: Range<usize>) -> Range<usize> {
+        let place = value.span();
+        let written = self.text.get(place.clone()).unwrap_or("");
+        let quotes = if written.starts_with("\"\"\"") || written.starts_with("'''") { 3 } else { 1 };
+        let body = written.get(quotes..).unwrap_or("");
+        // A line break directly after three quotes doesn't belong to the text.
+        let breaks = ["\r\n", "\n"].into_iter().filter(|_| quotes == 3);
+        let skipped =
+            breaks.filter(|line_break| body.starts_with(line_break)).map(str::len).next().unwrap_or(0);
+        if value.text().is_some_and(|text| body[skipped..].starts_with(text)) {
+            let start = place.start + quotes + skipped;
+            start + part.start..start + part.end
+        } else {
+            place
+        }
     }
 
     /// The place of a dotted path, or of the last table on the way to it.
@@ -471,20 +497,10 @@ pub fn nearest<'n>(word: &str, names: impl Iterator<Item = &'n str>) -> Option<&
     closest.or_else(|| names.iter().find(|name| length >= 4 && plain(name).starts_with(&word))).copied()
 }
 
-/// The commonest slip: `length = 110 mm` without quotes.
-fn unquoted(text: &str, at: usize) -> Option<String> {
-    let start = text.floor_char_boundary(at.min(text.len()));
-    let line_start = text[..start].rfind('\n').map_or(0, |at| at + 1);
-    let (key, value) = text[line_start..].lines().next()?.split_once('=')?;
-    let (key, value) = (key.trim(), value.split('#').next()?.trim());
-    let is_bare = !value.is_empty() && !value.contains(['"', '\'', '{', '[', '=']);
-    let is_word = !key.is_empty() && key.chars().all(|c| c.is_alphanumeric() || matches!(c, '_' | '-' | '.'));
-    (is_bare && is_word).then(|| format!("put text in quotes: `{key} = \"{}\"`", shortened(value)))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::file_kind::MOST_BYTES;
     use crate::quantity::Length;
 
     const KIND: FileKind = FileKind { name: "recipe", file: "recipe.toml", line: "time = \"50 s\"" };

@@ -4,11 +4,9 @@ use crate::error::MuscleError;
 use crate::file_error::FileError;
 use crate::keys;
 use crate::learnt::{Place, SourceFile};
-use crate::material::Unfolding;
 use crate::muscle::Muscle;
 use crate::parameter::Parameter;
-use crate::quantity::{Length, LineStiffness};
-use crate::settings::{Setting, Settings, nearest, shortened};
+use crate::settings::{Settings, nearest, shortened};
 use serde::Serialize;
 use std::sync::Arc;
 
@@ -101,27 +99,6 @@ impl Muscle {
         self.clone().without_specimens().with_all(&specimen.numbers)
     }
 
-    /// A copy with several parameters changed, in SI and in their order. A number that doesn't change leaves
-    /// the muscle as it is, to the bit. The two numbers of a limit to the unfolding may be new together.
-    ///
-    /// # Errors
-    /// As [`Muscle::with`].
-    pub fn with_all(&self, numbers: &[(Parameter, f64)]) -> Result<Self, MuscleError> {
-        let mut muscle = self.clone();
-        let number = |wanted| numbers.iter().find(|(parameter, _)| *parameter == wanted).map(|(_, v)| *v);
-        let limit = number(Parameter::HoopStiffness).zip(number(Parameter::UnfoldedRadius));
-        if let Some((stiffness, radius)) = limit.filter(|_| muscle.unfolding().is_none()) {
-            let limit = Unfolding::new(LineStiffness::n_per_m(stiffness), Length::m(radius))?;
-            muscle = muscle.with_unfolding(limit);
-        }
-        for &(parameter, value) in numbers {
-            if muscle.get(parameter) != Some(value) {
-                muscle = muscle.with(parameter, value)?;
-            }
-        }
-        Ok(muscle)
-    }
-
     /// Compares the stated specimens with those of the data. Returns those of the data for which nothing is
     /// stated: they are the muscle as it is.
     ///
@@ -209,13 +186,8 @@ pub(crate) fn specimens_in(all: &Settings<'_>, mut muscle: Muscle) -> Result<Mus
         let key = toml_key(name);
         let title = format!("`[specimens.{key}]`");
         let keys = keys::of(keys::SPECIMEN);
-        let table = all.table(name, title, keys).ok().flatten().ok_or_else(|| {
-            let kind = all.get(name).map_or("nothing", Setting::type_name);
-            let what = format!("`{}` is {kind}, but must be a table", shortened(name));
-            let instead =
-                format!("write its numbers below `[specimens.{key}]`, such as `length = \"60 mm\"`");
-            all.error(all.value_span(name), what, instead)
-        })?;
+        let instead = format!("write its numbers below `[specimens.{key}]`, such as `length = \"60 mm\"`");
+        let table = all.table_named(name, title, keys, instead)?;
         let mut numbers = Vec::new();
         numbers_in(&table, "", &mut numbers)?;
         muscle = muscle.with_specimen(name, numbers).map_err(|error| {

@@ -119,7 +119,12 @@ pub fn any_with_width(text: &str) -> Result<(Any, Option<f64>), UnitError> {
 /// # Errors
 /// If an item is empty or is not a quantity of the dimension.
 pub fn parse_list<Q: Quantity>(text: &str) -> Result<Vec<Q>, UnitError> {
-    read_all(&text.split(',').collect::<Vec<_>>())
+    Ok(read_list(Wanted::of::<Q>(), text)?.into_iter().map(Q::from_si).collect())
+}
+
+/// The same for a wanted quantity, into SI.
+pub(crate) fn read_list(wanted: &'static Wanted, text: &str) -> Result<Vec<f64>, UnitError> {
+    read_all(wanted, &text.split(',').collect::<Vec<_>>())
 }
 
 /// Reads a range: "0 %..35 %" or "0..35 %", in the order written (a range may run downwards).
@@ -129,22 +134,22 @@ pub fn parse_list<Q: Quantity>(text: &str) -> Result<Vec<Q>, UnitError> {
 pub fn parse_range<Q: Quantity>(text: &str) -> Result<(Q, Q), UnitError> {
     let not_a_range = || UnitError::NotARange { text: shortened(text), wanted: Wanted::of::<Q>() };
     let (from, to) = text.split_once("..").ok_or_else(not_a_range)?;
-    let ends = read_all(&[from, to])?;
-    Ok((ends[0], ends[1]))
+    let ends = read_all(Wanted::of::<Q>(), &[from, to])?;
+    Ok((Q::from_si(ends[0]), Q::from_si(ends[1])))
 }
 
 /// Writes a quantity so that [`parse`] gives back exactly the same number: in the natural unit with as few
 /// digits as possible, else in SI.
 #[must_use]
 pub fn exact_text<Q: Quantity>(quantity: Q) -> String {
-    exact_text_in(quantity, Q::SHOWN.0)
+    exact_text_of(Wanted::of::<Q>(), quantity.si(), Q::SHOWN.0)
 }
 
-/// The same in another unit of the dimension. An unknown unit gives SI.
-pub(crate) fn exact_text_in<Q: Quantity>(quantity: Q, unit: &str) -> String {
-    let in_si = Q::UNITS.first().map_or("", |first| first.0);
-    let (unit, factor) = find(Q::UNITS, unit).unwrap_or((in_si, 1.0));
-    exact(quantity.si(), unit, factor, in_si)
+/// The same for an SI value in another unit of the dimension. An unknown unit gives SI.
+pub(crate) fn exact_text_of(wanted: &Wanted, si: f64, unit: &str) -> String {
+    let in_si = wanted.known.first().map_or("", |first| first.0);
+    let (unit, factor) = find(wanted.known, unit).unwrap_or((in_si, 1.0));
+    exact(si, unit, factor, in_si)
 }
 
 /// Writes an SI value in a unit so that [`any`] gives back exactly the same number, with as few digits as
@@ -178,12 +183,12 @@ fn is_pure(unit: &str) -> bool {
     matches!(unit.trim(), "" | "1" | "-")
 }
 
-fn read(wanted: &'static Wanted, text: &str) -> Result<Any, UnitError> {
+pub(crate) fn read(wanted: &'static Wanted, text: &str) -> Result<Any, UnitError> {
     let (number, unit) = split(wanted, text)?;
     scaled(wanted, text, number, &unit)
 }
 
-fn read_with_width(wanted: &'static Wanted, text: &str) -> Result<(Any, Option<f64>), UnitError> {
+pub(crate) fn read_with_width(wanted: &'static Wanted, text: &str) -> Result<(Any, Option<f64>), UnitError> {
     let Some((value_text, width_text)) = ["+-", "+/-", "±"].iter().find_map(|sign| text.split_once(sign))
     else {
         return Ok((read(wanted, text)?, None));
@@ -217,13 +222,12 @@ fn read_with_width(wanted: &'static Wanted, text: &str) -> Result<(Any, Option<f
 }
 
 /// A list of values. Those without a unit take that of the last.
-fn read_all<Q: Quantity>(items: &[&str]) -> Result<Vec<Q>, UnitError> {
-    let wanted = Wanted::of::<Q>();
+fn read_all(wanted: &'static Wanted, items: &[&str]) -> Result<Vec<f64>, UnitError> {
     let parts = items.iter().map(|item| split(wanted, item)).collect::<Result<Vec<_>, _>>()?;
     let last_unit = parts.last().map_or("", |(_, unit)| unit);
     let one = |(item, (number, unit)): (&&str, &(f64, String))| {
         let unit = if unit.is_empty() { last_unit } else { unit };
-        Ok(Q::from_si(scaled(wanted, item, *number, unit)?.si))
+        Ok(scaled(wanted, item, *number, unit)?.si)
     };
     items.iter().zip(&parts).map(one).collect()
 }

@@ -1,13 +1,13 @@
 //! A muscle into TOML text that reads back as exactly the same muscle.
 
-use crate::construction::{Braided, Construction, Ends, FibreCount, Pleated};
+use crate::construction::{Construction, Ends};
 use crate::fitted;
 use crate::instrument::Instrument;
 use crate::muscle::Muscle;
 use crate::parameter::Parameter;
 use crate::quantity::{Force, Length, Pressure};
 use crate::specimen::toml_key;
-use crate::units::{Quantity, exact_text, exact_text_in};
+use crate::units::{Quantity, Wanted, exact_text, exact_text_of};
 
 /// Writes a muscle file. Reading it with `from_toml` gives an equal muscle, bit for bit.
 ///
@@ -23,16 +23,22 @@ pub fn to_toml(muscle: &Muscle) -> String {
     let mut lines = vec![
         format!("name = {}", toml::Value::String(muscle.name().to_owned())),
         format!("kind = \"{}\"", muscle.kind().name()),
-        line(muscle, "length", Parameter::Length, muscle.length()),
     ];
+    let root = [Parameter::Length, Parameter::Radius, Parameter::BraidAngle, Parameter::Fibres];
+    lines.extend(root.into_iter().filter_map(|parameter| line(muscle, parameter.key(), parameter)));
     match muscle.construction() {
-        Construction::Pleated(pleated) => pleated_lines(&mut lines, muscle, pleated),
-        Construction::Braided(braided) => braided_lines(&mut lines, muscle, braided),
+        Construction::Pleated(_) if muscle.fibres().is_none() => {
+            lines.push("fibres = \"continuous\"".to_owned());
+        }
+        Construction::Braided(braided) if braided.ends() != Ends::Clamped => {
+            lines.push(format!("ends = \"{}\"", braided.ends().name()));
+        }
+        _ => {}
     }
-    if let Some(fibre) = muscle.fibre() {
-        let stiffness = line(muscle, "stiffness", Parameter::FibreStiffness, fibre.stiffness());
-        let section =
-            fibre.section().map(|area| format!(", section = \"{}\"", exact_text(area))).unwrap_or_default();
+    lines.extend(line(muscle, "wall", Parameter::Wall));
+    if let Some(stiffness) = line(muscle, "stiffness", Parameter::FibreStiffness) {
+        let section = muscle.fibre().and_then(|fibre| fibre.section());
+        let section = section.map(|area| format!(", section = \"{}\"", exact_text(area))).unwrap_or_default();
         lines.push(format!("fibre = {{ {stiffness}{section} }}"));
     }
     effect_lines(&mut lines, muscle);
@@ -44,7 +50,7 @@ pub fn to_toml(muscle: &Muscle) -> String {
     for specimen in muscle.specimens() {
         lines.push(format!("\n[specimens.{}]", toml_key(specimen.name())));
         let number = |(parameter, value): &(Parameter, f64)| {
-            format!("{} = {}", parameter.key(), parameter.text(*value))
+            format!("{} = {}", parameter.key(), parameter.text(*value, None))
         };
         lines.extend(specimen.numbers().iter().map(number));
     }
@@ -60,84 +66,50 @@ pub fn to_toml(muscle: &Muscle) -> String {
     lines.join("\n")
 }
 
-/// `key = "value"`, with the stated width if there is one.
-fn line<Q: Quantity>(muscle: &Muscle, key: &str, parameter: Parameter, value: Q) -> String {
-    let unit = match parameter {
-        Parameter::C10 | Parameter::C01 => "MPa",
-        Parameter::FibreStiffness => "kN",
-        _ => Q::SHOWN.0,
-    };
-    let width =
-        muscle.width(parameter).map(|width| format!(" +- {}", exact_text_in(Q::from_si(width), unit)));
-    format!("{key} = \"{}{}\"", exact_text_in(value, unit), width.unwrap_or_default())
+/// `key = "value"`, with the stated width if there is one; `None` if the number has no place of its own.
+fn line(muscle: &Muscle, key: &str, parameter: Parameter) -> Option<String> {
+    let value = muscle.stated(parameter)?;
+    Some(format!("{key} = {}", parameter.text(value, muscle.width(parameter))))
 }
 
-fn pleated_lines(lines: &mut Vec<String>, muscle: &Muscle, pleated: &Pleated) {
-    lines.push(line(muscle, "radius", Parameter::Radius, pleated.stated_radius()));
-    lines.push(match pleated.fibres() {
-        FibreCount::Discrete(count) => format!("fibres = {count}"),
-        FibreCount::Continuous => "fibres = \"continuous\"".to_owned(),
-    });
-}
-
-fn braided_lines(lines: &mut Vec<String>, muscle: &Muscle, braided: &Braided) {
-    lines.push(line(muscle, "radius", Parameter::Radius, braided.radius()));
-    lines.push(line(muscle, "braid_angle", Parameter::BraidAngle, braided.braid_angle()));
-    lines.extend(braided.fibres().map(|count| format!("fibres = {count}")));
-    if braided.ends() != Ends::Clamped {
-        lines.push(format!("ends = \"{}\"", braided.ends().name()));
-    }
-    lines.extend(braided.wall().map(|wall| line(muscle, "wall", Parameter::Wall, wall)));
-}
+/// Effects with numbers of the muscle, in the order in which they are written.
+const EFFECTS: [&str; 7] = [
+    "end-radius",
+    "pleat-depth",
+    "fibre-misalignment",
+    "lobes",
+    "bladder-elasticity",
+    "wall-thickness",
+    "limited-unfolding",
+];
 
 fn effect_lines(lines: &mut Vec<String>, muscle: &Muscle) {
-    let mut effect = |name: &str, body: Vec<String>| {
-        lines.push(format!("\n[effects.{name}]"));
-        lines.extend(body);
+    // Of these a number that is 0 and has no width need not be stated.
+    let is_usual = |parameter| {
+        matches!(parameter, Parameter::PleatDepth | Parameter::Misalignment | Parameter::C01)
+            && muscle.stated(parameter) == Some(0.0)
+            && muscle.width(parameter).is_none()
     };
-    // A number that is 0 and has no width need not be stated.
-    let counts = |value: f64, parameter| value != 0.0 || muscle.width(parameter).is_some();
-    let end_radius = match muscle.construction() {
-        Construction::Pleated(pleated) => pleated.end_radius,
-        Construction::Braided(braided) => braided.fitting_radius,
-    };
-    if let Some(radius) = end_radius {
-        effect("end-radius", vec![line(muscle, "radius", Parameter::FittingRadius, radius)]);
-    }
-    if let Construction::Pleated(pleated) = muscle.construction() {
-        let (depth, angle) = (pleated.pleat_depth(), pleated.misalignment());
-        if counts(depth.si(), Parameter::PleatDepth) {
-            effect("pleat-depth", vec![line(muscle, "depth", Parameter::PleatDepth, depth)]);
+    for effect in EFFECTS {
+        let stated = Parameter::in_effect(effect).filter(|(parameter, _)| !is_usual(*parameter));
+        let mut body: Vec<String> =
+            stated.filter_map(|(parameter, key)| line(muscle, key, parameter)).collect();
+        if effect == "bladder-elasticity"
+            && let Some(wall) = muscle.bladder_wall()
+        {
+            // A width of the bladder's wall is that of the muscle's, if that states none of its own.
+            let is_only = muscle.stated(Parameter::Wall).is_none();
+            let width = muscle.width(Parameter::Wall).filter(|_| is_only);
+            if is_only || muscle.wall() != Some(wall) {
+                body.push(format!("wall = {}", Parameter::Wall.text(wall.si(), width)));
+            }
         }
-        if counts(angle.si(), Parameter::Misalignment) {
-            effect("fibre-misalignment", vec![line(muscle, "angle", Parameter::Misalignment, angle)]);
-        }
-        if let Some(cloth) = pleated.cloth_circumference() {
-            effect("lobes", vec![line(muscle, "circumference", Parameter::ClothCircumference, cloth)]);
-        }
-    }
-    if let Some(bladder) = muscle.bladder() {
-        let mut body = vec![line(muscle, "c10", Parameter::C10, bladder.c10())];
-        if counts(bladder.c01().si(), Parameter::C01) {
-            body.push(line(muscle, "c01", Parameter::C01, bladder.c01()));
-        }
-        match muscle.own_wall() {
-            None => body.push(line(muscle, "wall", Parameter::Wall, bladder.wall())),
-            Some(own) if own == bladder.wall() => {}
-            Some(_) => body.push(format!("wall = \"{}\"", exact_text(bladder.wall()))),
-        }
-        effect("bladder-elasticity", body);
-    }
-    if let Some(thickness) = muscle.gas_wall() {
         // A missing thickness means that of the wall.
-        let stated = muscle.is_stated(Parameter::GasWall);
-        let body = stated.then(|| line(muscle, "thickness", Parameter::GasWall, thickness));
-        effect("wall-thickness", body.into_iter().collect());
-    }
-    if let Some(limit) = muscle.unfolding() {
-        let stiffness = line(muscle, "hoop_stiffness", Parameter::HoopStiffness, limit.hoop_stiffness());
-        let radius = line(muscle, "unfolded_radius", Parameter::UnfoldedRadius, limit.unfolded_radius());
-        effect("limited-unfolding", vec![stiffness, radius]);
+        let is_inner_gas = effect == "wall-thickness" && muscle.get(Parameter::GasWall).is_some();
+        if !body.is_empty() || is_inner_gas {
+            lines.push(format!("\n[effects.{effect}]"));
+            lines.extend(body);
+        }
     }
 }
 
@@ -159,8 +131,8 @@ fn instrument_lines(lines: &mut Vec<String>, muscle: &Muscle) {
 
 fn instrument_line<Q: Quantity>(name: &str, unit: &str, instrument: &Instrument) -> String {
     let entries = [
-        ("noise", instrument.noise(), exact_text_in(Q::from_si(instrument.noise()), unit)),
-        ("zero", instrument.zero(), exact_text_in(Q::from_si(instrument.zero()), unit)),
+        ("noise", instrument.noise(), exact_text_of(Wanted::of::<Q>(), instrument.noise(), unit)),
+        ("zero", instrument.zero(), exact_text_of(Wanted::of::<Q>(), instrument.zero(), unit)),
         ("gain", instrument.gain().si(), exact_text(instrument.gain())),
     ];
     let stated: Vec<String> = entries

@@ -4,9 +4,9 @@
 #![expect(clippy::unwrap_used, clippy::panic, reason = "helpers of tests may fail like the tests")]
 
 use bulge_muscles::{
-    Angle, Area, Bladder, Braided, Construction, Dimension, Ends, Fibre, FibreCount, FileError, Force,
-    Instrument, Instruments, Learnt, LearntValue, Length, LineStiffness, Muscle, PRESETS, Parameter, Pleated,
-    Pressure, Ratio, Specimen, Unfolding, from_toml, read, to_toml, units,
+    Angle, Area, Braided, Construction, Dimension, Ends, Fibre, FibreCount, FileError, Force, Instrument,
+    Instruments, Learnt, LearntValue, Length, Muscle, PRESETS, Parameter, Pleated, Ratio, Specimen,
+    from_toml, read, to_toml, units,
 };
 
 const PLEATED: &str =
@@ -92,16 +92,15 @@ fn the_whole_contract_is_read() {
     assert_eq!((braid.ends(), braid.braid_angle()), (Ends::Cylinder, Angle::deg(25.0)));
     let fibre = muscle.fibre().unwrap();
     assert_eq!((fibre.stiffness(), fibre.section()), (Force::kn(12.0), Some(Area::mm2(0.3))));
-    let bladder = muscle.bladder().unwrap();
-    assert_eq!(
-        (bladder.c10(), bladder.c01(), bladder.wall()),
-        (Pressure::mpa(0.2), Pressure::kpa(50.0), Length::mm(2.0))
-    );
-    let limit = muscle.unfolding().unwrap();
-    assert_eq!(
-        (limit.hoop_stiffness(), limit.unfolded_radius()),
-        (LineStiffness::kn_per_m(81.0), Length::mm(52.6))
-    );
+    assert_eq!(muscle.bladder_wall(), Some(Length::mm(2.0)));
+    for (parameter, value) in [
+        (Parameter::C10, 2e5),
+        (Parameter::C01, 5e4),
+        (Parameter::HoopStiffness, 81e3),
+        (Parameter::UnfoldedRadius, 0.0526),
+    ] {
+        assert_eq!(muscle.get(parameter), Some(value));
+    }
     let instruments = muscle.instruments();
     assert_eq!(instruments.force, Instrument::new(4.0, 1.0, Ratio::percent(0.1)).ok());
     assert_eq!(instruments.pressure, Instrument::new(30.0, 200.0, Ratio::percent(0.1)).ok());
@@ -118,9 +117,10 @@ fn pleated_effects_are_read() {
          fibre-misalignment = {{ angle = \"-2 deg\" }}"
     );
     let muscle = from_toml(&text, "m").unwrap();
-    let Construction::Pleated(pleated) = muscle.construction() else { panic!("pleated") };
-    assert_eq!((pleated.radius(), pleated.stated_radius()), (Length::mm(15.0), Length::mm(16.0)));
-    assert_eq!((pleated.pleat_depth(), pleated.misalignment()), (Length::mm(4.5), Angle::deg(-2.0)));
+    assert_eq!(muscle.radius(), Length::mm(15.0));
+    assert!(to_toml(&muscle).contains("\nradius = \"16 mm\"\nfibres"));
+    let angle = muscle.get(Parameter::Misalignment).map(Angle::rad);
+    assert_eq!((muscle.get(Parameter::PleatDepth), angle), (Some(0.0045), Some(Angle::deg(-2.0))));
     let lobes = format!("{PLEATED}[effects.lobes]\ncircumference = \"330 mm +- 2 mm\"");
     let muscle = from_toml(&lobes, "m").unwrap();
     assert_eq!(muscle.get(Parameter::ClothCircumference), Some(0.33));
@@ -135,10 +135,10 @@ fn pleated_effects_are_read() {
 fn the_inner_wall_is_read() {
     let text = format!("{BRAIDED}wall = \"2 mm\"\n[effects.wall-thickness]\n");
     let muscle = from_toml(&text, "m").unwrap();
-    assert_eq!(muscle.gas_wall(), Some(Length::mm(2.0)));
+    assert_eq!(muscle.get(Parameter::GasWall), Some(0.002));
     assert!(to_toml(&muscle).contains("[effects.wall-thickness]\n"));
     let own = from_toml(&format!("{text}thickness = \"1.5 mm +- 0.1 mm\""), "m").unwrap();
-    assert_eq!((own.gas_wall(), own.wall()), (Some(Length::mm(1.5)), Some(Length::mm(2.0))));
+    assert_eq!((own.get(Parameter::GasWall), own.wall()), (Some(0.0015), Some(Length::mm(2.0))));
     assert_eq!(own.width(Parameter::GasWall), Some(0.0001));
     for muscle in [muscle, own] {
         assert_eq!(from_toml(&to_toml(&muscle), "copy").unwrap(), muscle);
@@ -470,7 +470,7 @@ fn specimens_have_numbers_of_their_own() {
         (third.end_radius(), third.fibres(), third.wall()),
         (Length::mm(9.0), Some(64), Some(Length::mm(1.5)))
     );
-    assert_eq!(third.bladder().unwrap().wall(), Length::mm(1.5));
+    assert_eq!(third.bladder_wall(), Some(Length::mm(1.5)));
     assert_eq!(third.get(Parameter::C10), Some(3e5));
     let base = muscle.clone().without_specimens();
     for name in ["same", "unknown"] {
@@ -657,16 +657,24 @@ fn some_muscle(random: &mut Lcg) -> Muscle {
     }
     if !is_pleated && random.next(2) == 0 {
         let c01 = if random.next(2) == 0 { 0.0 } else { random.fraction() * 1e5 };
-        let wall = muscle
-            .wall()
-            .filter(|_| random.next(2) == 0)
-            .unwrap_or(Length::m(bulge_muscles::Quantity::si(radius) * random.fraction()));
-        let bladder = Bladder::new(Pressure::pa(random.fraction() * 1e6), Pressure::pa(c01), wall).unwrap();
-        muscle = muscle.with_bladder(bladder).unwrap();
+        let c10 = random.fraction() * 1e6;
+        muscle = match random.next(3) {
+            // A bladder that is thicker or thinner than the wall can only be read.
+            0 => {
+                let text = to_toml(&muscle);
+                let thickness = radius.to_m() * random.fraction();
+                let rubber = format!("c10 = \"{c10} Pa\"\nc01 = \"{c01} Pa\"\nwall = \"{thickness} m\"");
+                from_toml(&format!("{text}\n[effects.bladder-elasticity]\n{rubber}"), "m").unwrap()
+            }
+            _ => muscle.with_all(&[(Parameter::C10, c10), (Parameter::C01, c01)]).unwrap_or(muscle),
+        };
     }
     if random.next(3) == 0 {
-        let stiffness = LineStiffness::n_per_m(random.fraction() * 1e5);
-        muscle = muscle.with_unfolding(Unfolding::new(stiffness, Length::m(random.fraction())).unwrap());
+        let limit = [
+            (Parameter::HoopStiffness, random.fraction() * 1e5),
+            (Parameter::UnfoldedRadius, random.fraction()),
+        ];
+        muscle = muscle.with_all(&limit).unwrap();
     }
     let effects = [
         Parameter::FittingRadius,

@@ -1,7 +1,6 @@
 //! Errors of the crates as Python exceptions, with the same sentences.
 
 use bulge_effects::CatalogueError;
-use bulge_effects::user::EffectFileError;
 use bulge_fibre::FibreError;
 use bulge_inference::{HideError, InferenceError, StatementError};
 use bulge_measurements::MeasurementError;
@@ -76,7 +75,7 @@ macro_rules! raised {
 }
 
 raised!(
-    FileError, PresetError, MuscleError, MeasurementError, CatalogueError, EffectFileError, SweepError, TableError,
+    FileError, PresetError, MuscleError, MeasurementError, CatalogueError, SweepError, TableError,
     TabulateError, VtkError, PlotError, serde_json::Error, std::io::Error;
     FibreError, ModelError, MuscleWithEffectsError, FamilyError, InferenceError, HideError, LearningError, StatementError
 );

@@ -24,9 +24,6 @@ use crate::plan::{Design, Plan, Quantity, Range, catalogue};
 
 /// Name of the file in messages.
 const KIND: FileKind = FileKind { name: "sweep", file: "sweep.toml", line: "pressure = \"1 bar\"" };
-/// The file of effects defined by the user.
-const EFFECTS: FileKind =
-    FileKind { name: "effects", file: "effects.toml", line: "[effects.hose-stiffness]" };
 /// Gauge pressure if none is stated \[Pa\].
 const USUAL_PRESSURE: f64 = 1e5;
 /// Points of a chunk: where the closed form applies, and where each point takes an integration.
@@ -186,7 +183,7 @@ fn own_effects(
 ) -> Result<Option<(String, String)>, FileError> {
     let Some(named) = settings.text("effects")? else { return Ok(None) };
     let path = folder.map_or_else(|| named.into(), |folder| folder.join(named));
-    let text = EFFECTS.read(&path).map_err(|error| {
+    let text = bulge_effects::user::KIND.read(&path).map_err(|error| {
         let instead = format!("name a file of effects beside the sweep: {}", error.instead());
         settings.error(settings.value_span("effects"), error.what().to_owned(), instead)
     })?;

@@ -2,8 +2,8 @@
 
 use bulge_fibre::{BRAID_ANGLE, BRAIDED_SLENDERNESS, PLEATED_SLENDERNESS};
 use bulge_muscles::{
-    Angle, Bladder, Braided, Construction, Ends, Fibre, FibreCount, Force, Length, LineStiffness, Muscle,
-    MuscleError, Parameter, Pleated, Pressure, Quantity, Unfolding,
+    Angle, Braided, Construction, Ends, Fibre, FibreCount, Force, Length, Muscle, MuscleError, Parameter,
+    Pleated, Quantity,
 };
 
 use crate::sample::Sampler;
@@ -118,12 +118,12 @@ fn braid(sampler: &mut Sampler, extras: &[Extra]) -> Result<Muscle, MuscleError>
     let radius = sampler.log_between(0.002, 0.03);
     let length = radius * sampler.log_between(BRAIDED_SLENDERNESS[0], BRAIDED_SLENDERNESS[1]);
     let angle = Angle::deg(sampler.between(BRAID_ANGLE[0], BRAID_ANGLE[1]));
-    let mut braided = Braided::new(Length::m(radius), angle)?.with_fibres(60)?;
+    let braided = Braided::new(Length::m(radius), angle)?.with_fibres(60)?;
     let fitting = if has(Extra::Fitting) { radius * sampler.between(0.2, 2.0) } else { radius };
-    if has(Extra::Fitting) {
-        braided = braided.with_fitting_radius(Length::m(fitting))?;
-    }
     let mut muscle = Muscle::new(pressure.to_string(), Length::m(length), Construction::Braided(braided))?;
+    if has(Extra::Fitting) {
+        muscle = muscle.with(Parameter::FittingRadius, fitting)?;
+    }
     if has(Extra::Depth) {
         let depth = radius.min(fitting) * sampler.between(0.01, 0.3);
         muscle = muscle.with_gas_wall(Some(Length::m(depth)))?;
@@ -164,16 +164,17 @@ fn finished(
     }
     if extras.contains(&Extra::Rubber) {
         let wall = radius * sampler.log_between(0.01, 0.3);
-        let c10 = Pressure::pa(pressure * radius / wall * sampler.log_between(RUBBER[0], RUBBER[1]));
+        let c10 = pressure * radius / wall * sampler.log_between(RUBBER[0], RUBBER[1]);
         let second = if sampler.chance(0.5) { sampler.between(0.0, 0.5) } else { 0.0 };
-        let c01 = Pressure::pa(second * c10.si());
-        muscle = muscle.with_bladder(Bladder::new(c10, c01, Length::m(wall))?)?;
+        let rubber = [(Parameter::Wall, wall), (Parameter::C10, c10), (Parameter::C01, second * c10)];
+        muscle = muscle.with_all(&rubber)?;
     }
     if extras.contains(&Extra::Cloth) {
         let unfolded = muscle.end_radius().si() + room * sampler.log_between(1e-3, 2.0);
         let [low, high] = CLOTH[usize::from(!muscle.is_pleated())];
-        let stiffness = LineStiffness::n_per_m(pressure * radius * sampler.log_between(low, high));
-        muscle = muscle.with_unfolding(Unfolding::new(stiffness, Length::m(unfolded))?);
+        let stiffness = pressure * radius * sampler.log_between(low, high);
+        let cloth = [(Parameter::HoopStiffness, stiffness), (Parameter::UnfoldedRadius, unfolded)];
+        muscle = muscle.with_all(&cloth)?;
     }
     Ok(muscle)
 }

@@ -83,26 +83,27 @@ impl Net {
                     FibreCount::Discrete(n) => f64::from(n) / TAU * (TAU / f64::from(n)).sin(),
                     FibreCount::Continuous => 1.0,
                 };
-                let depth = pleated.pleat_depth().si() / radius;
+                let depth = get(Parameter::PleatDepth).unwrap_or(0.0) / radius;
                 let lobed = get(Parameter::ClothCircumference).is_some();
                 let round = Area::Round { factor, depth };
                 let area = if lobed { Area::Lobed(Box::new(muscle.clone()), radius) } else { round };
-                (pleated.misalignment().si(), area)
+                (get(Parameter::Misalignment).unwrap_or(0.0), area)
             }
             Construction::Braided(braided) => {
-                let depth = -muscle.gas_wall().map_or(0.0, Quantity::si) / radius;
+                let depth = -get(Parameter::GasWall).unwrap_or(0.0) / radius;
                 (braided.braid_angle().si(), Area::Round { factor: 1.0, depth })
             }
         };
         let unit = p * radius * radius;
-        let rubber = muscle.bladder().map(|bladder| {
-            let scale = TAU * radius * bladder.wall().si() * angle.cos() / unit;
-            [bladder.c10().si() * scale, bladder.c01().si() * scale]
+        let rubber = muscle.bladder_wall().map(|wall| {
+            let scale = TAU * radius * wall.si() * angle.cos() / unit;
+            [Parameter::C10, Parameter::C01].map(|constant| get(constant).unwrap_or(0.0) * scale)
         });
-        let cloth = muscle.unfolding().map(|cloth| {
-            let taut = cloth.unfolded_radius().si() / radius;
-            [PI * cloth.hoop_stiffness().si() / (p * radius * taut), taut]
-        });
+        let cloth =
+            get(Parameter::HoopStiffness).zip(get(Parameter::UnfoldedRadius)).map(|(stiffness, unfolded)| {
+                let taut = unfolded / radius;
+                [PI * stiffness / (p * radius * taut), taut]
+            });
         let fibres = muscle.fibres().map_or(1.0, f64::from);
         Self {
             end: muscle.end_radius().si() / radius,
@@ -160,11 +161,7 @@ impl Net {
         };
         let circle = match &self.area {
             Area::Lobed(muscle, radius) => muscle.get(Parameter::ClothCircumference).map(|cloth| {
-                let depth = if let Construction::Pleated(pleated) = muscle.construction() {
-                    pleated.pleat_depth().si()
-                } else {
-                    0.0
-                };
+                let depth = muscle.get(Parameter::PleatDepth).unwrap_or(0.0);
                 (cloth / TAU - depth) / radius
             }),
             Area::Round { .. } => None,

@@ -6,7 +6,7 @@ use bulge_membrane::{
     Cloth, Copies, Fitting, Inflation, Law, Load, Part, RingLayer, Sheet, Solver, Structure, Support, Thread,
     Tolerance,
 };
-use bulge_muscles::{Angle, Bladder, Length, Pressure};
+use bulge_muscles::{Angle, Length, Parameter, Pressure};
 
 use crate::check::{Check, Claim, Trouble};
 use crate::specimen::braid;
@@ -31,10 +31,10 @@ struct Braid {
 impl Braid {
     /// The contraction from which on shooting finds no taut fibres.
     fn border(&self) -> Result<f64, Trouble> {
-        let bladder =
-            Bladder::new(Pressure::mpa(self.c10_mpa), Pressure::mpa(self.c01_mpa), Length::mm(1.0))?;
+        let [c10, c01] = [self.c10_mpa, self.c01_mpa].map(|mpa| Pressure::mpa(mpa).to_pa());
+        let rubber = [(Parameter::Wall, 0.001), (Parameter::C10, c10), (Parameter::C01, c01)];
         let muscle =
-            braid(Length::mm(self.length_mm), Length::mm(10.0), Angle::deg(25.0))?.with_bladder(bladder)?;
+            braid(Length::mm(self.length_mm), Length::mm(10.0), Angle::deg(25.0))?.with_all(&rubber)?;
         let problem = Problem::new(&muscle, Pressure::bar(self.pressure_bar))?;
         let (mut taut, mut slack) = (problem.contraction_limit(Approach::Auto)?, 0.3);
         while slack - taut > 1e-9 {

@@ -4,8 +4,7 @@
 
 use bulge_fibre::{Approach, FibreError, Given, Problem, Response};
 use bulge_muscles::{
-    Angle, Braided, Construction, FibreCount, Length, LineStiffness, Muscle, Parameter, Pleated, Pressure,
-    Quantity, Unfolding,
+    Angle, Braided, Construction, FibreCount, Length, Muscle, Parameter, Pleated, Pressure, Quantity,
 };
 use bulge_validation::sample::Sampler;
 
@@ -162,9 +161,8 @@ fn random_lobes() {
             muscle = muscle.with(Parameter::PleatDepth, 0.5 * (open - radius)).unwrap();
         }
         if sampler.chance(0.2) {
-            let cloth = LineStiffness::n_per_m(radius * 1e5 * sampler.log_between(0.1, 10.0));
-            let unfolding = Unfolding::new(cloth, Length::m(radius + 0.7 * (open - radius))).unwrap();
-            muscle = muscle.with_unfolding(unfolding);
+            let stiffness = radius * 1e5 * sampler.log_between(0.1, 10.0);
+            muscle = with_cloth(&muscle, stiffness, radius + 0.7 * (open - radius));
         }
         let pressure = sampler.pressure();
         // What is too soft or too slender is refused at once or along the way.
@@ -254,11 +252,15 @@ fn pleated(length: f64, radius: f64) -> Muscle {
 }
 
 fn braid(length: f64, radius: f64, degrees: f64, fitting: Option<f64>) -> Muscle {
-    let mut braided = Braided::new(Length::m(radius), Angle::deg(degrees)).unwrap().with_fibres(60).unwrap();
-    if let Some(fitting) = fitting {
-        braided = braided.with_fitting_radius(Length::m(fitting)).unwrap();
-    }
-    Muscle::new("braid", Length::m(length), Construction::Braided(braided)).unwrap()
+    let braided = Braided::new(Length::m(radius), Angle::deg(degrees)).unwrap().with_fibres(60).unwrap();
+    let muscle = Muscle::new("braid", Length::m(length), Construction::Braided(braided)).unwrap();
+    fitting.map_or(muscle.clone(), |fitting| muscle.with(Parameter::FittingRadius, fitting).unwrap())
+}
+
+/// Cloth of a hoop stiffness \[N/m\] that is taut beyond a radius \[m\].
+fn with_cloth(muscle: &Muscle, stiffness: f64, radius: f64) -> Muscle {
+    let limit = [(Parameter::HoopStiffness, stiffness), (Parameter::UnfoldedRadius, radius)];
+    muscle.with_all(&limit).unwrap()
 }
 
 /// Muscles at the edges of the ranges, and with two numbers nearly equal.
@@ -281,15 +283,12 @@ fn edges() -> Vec<Muscle> {
         muscles.push(braid(0.12, r, 25.0, Some(r * (1.0 + step))));
         // Cloth that becomes taut at the fitting's radius and at the largest one (23.13 mm at 10 %).
         for radius in [r, 0.023_134_545_911_4] {
-            let cloth =
-                Unfolding::new(LineStiffness::kn_per_m(8.0), Length::m(radius * (1.0 + step))).unwrap();
-            muscles.push(pleated(0.06875, r).with_unfolding(cloth));
+            muscles.push(with_cloth(&pleated(0.06875, r), 8e3, radius * (1.0 + step)));
         }
         let braid = braid(0.12, r, 25.0, None);
         let widest =
             Problem::new(&braid, PRESSURE).unwrap().follow(0.1, Approach::Auto).unwrap().max_radius_m;
-        let cloth = Unfolding::new(LineStiffness::kn_per_m(8.0), Length::m(widest * (1.0 + step))).unwrap();
-        muscles.push(braid.with_unfolding(cloth));
+        muscles.push(with_cloth(&braid, 8e3, widest * (1.0 + step)));
     }
     for misalignment in [1e-12, 1e-9, 1e-6, -1e-6, 1e-3] {
         muscles.push(pleated(0.06875, r).with(Parameter::Misalignment, misalignment).unwrap());

@@ -122,8 +122,8 @@ impl Family {
         limits.check()?;
         // Effects that change the shape are numbers of the muscle itself.
         let mut effects: Vec<&str> = known.iter().map(|(effect, _)| effect.card().name).collect();
-        effects.extend(muscle.bladder().map(|_| "bladder-elasticity"));
-        effects.extend(muscle.unfolding().map(|_| "limited-unfolding"));
+        effects.extend(muscle.bladder_wall().map(|_| "bladder-elasticity"));
+        effects.extend(muscle.get(Parameter::HoopStiffness).map(|_| "limited-unfolding"));
         let basis = if effects.is_empty() {
             "equilibrium".to_owned()
         } else {
@@ -148,7 +148,7 @@ impl Family {
     pub fn similar(mut self) -> Self {
         if let Source::Net { known, is_similar, muscle } = &mut self.source
             && known.is_empty()
-            && muscle.unfolding().is_none()
+            && muscle.get(Parameter::HoopStiffness).is_none()
             && !*is_similar
         {
             *is_similar = true;

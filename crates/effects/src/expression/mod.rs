@@ -23,7 +23,7 @@ mod parser;
 mod variable;
 
 pub use error::ExpressionError;
-pub(crate) use error::{nearest, quoted};
+pub(crate) use error::quoted;
 pub use variable::{SHAPE_VARIABLES, VARIABLES, Variable, variable_index};
 
 use bulge_muscles::Dimension;

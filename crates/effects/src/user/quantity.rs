@@ -1,32 +1,27 @@
 //! Values of a parameter: numbers with a unit of its dimension that are consistent with each other.
 
-use super::EffectFileError;
-use super::value::Table;
-use bulge_muscles::Dimension;
-use bulge_muscles::units::{self, Any, UnitError};
-use std::ops::Range;
-use toml::Spanned;
-use toml::de::DeValue;
+use bulge_muscles::settings::{Setting, Settings};
+use bulge_muscles::units::{self, Any};
+use bulge_muscles::{Dimension, FileError};
 
 /// A parameter's table and its unit.
 pub(crate) struct Quantity<'a> {
-    pub(crate) table: Table<'a>,
+    pub(crate) table: Settings<'a>,
     pub(crate) unit: String,
     pub(crate) dimension: Dimension,
 }
 
 impl Quantity<'_> {
     /// Low, typical and high value, in this order.
-    pub(crate) fn bounded(&self) -> Result<(f64, f64, f64), EffectFileError> {
-        let (low, low_place) = self.required("low")?;
-        let (high, _) = self.required("high")?;
-        let (typical, typical_place) = self.required("typical")?;
+    pub(crate) fn bounded(&self) -> Result<(f64, f64, f64), FileError> {
+        let [low, high, typical] = ["low", "high", "typical"].map(|key| self.required(key));
+        let (low, high, typical) = (low?, high?, typical?);
         if low >= high {
             let (low, high) = (self.shown(low), self.shown(high));
             let what = format!("`low` is {low}, but must be less than `high`, {high}");
             let instead = "write the smallest possible value as `low` and the largest as `high`\n\
                            a value that is known can stand in the formula as a number";
-            return Err(self.table.error(low_place, what, instead));
+            return Err(self.table.error(self.table.value_span("low"), what, instead));
         }
         if !(low..=high).contains(&typical) {
             let what = format!(
@@ -34,25 +29,22 @@ impl Quantity<'_> {
                 self.shown(typical),
                 self.range(low, high)
             );
-            return Err(self.table.error(typical_place, what, "write a value between `low` and `high`"));
+            let place = self.table.value_span("typical");
+            return Err(self.table.error(place, what, "write a value between `low` and `high`"));
         }
         Ok((low, typical, high))
     }
 
     /// Mean (within the bounds) and standard deviation, if they are stated.
-    pub(crate) fn prior(&self, low: f64, high: f64) -> Result<Option<(f64, f64)>, EffectFileError> {
+    pub(crate) fn prior(&self, low: f64, high: f64) -> Result<Option<(f64, f64)>, FileError> {
         let Some(value) = self.table.get("prior") else { return Ok(None) };
-        let text = self.value_text("prior", value)?;
-        let (mean, width) =
-            units::any_with_width(&text).map_err(|error| self.no_number("prior", value, &error))?;
+        let (mean, width) = units::any_with_width(self.value_text("prior", value)?)
+            .map_err(|error| self.refused("prior", value, error.to_string()))?;
         self.check("prior", value, &mean)?;
         let Some(width) = width.filter(|width| *width > 0.0) else {
             let instead = format!("write `{}`, or leave it out", self.example("prior"));
-            return Err(self.table.error(
-                value.span(),
-                "`prior` has no standard deviation greater than 0",
-                instead,
-            ));
+            let what = "`prior` has no standard deviation greater than 0";
+            return Err(self.table.error(value.span(), what, instead));
         };
         if !(low..=high).contains(&mean.si) {
             let (mean, bounds) = (self.shown(mean.si), self.range(low, high));
@@ -85,32 +77,31 @@ impl Quantity<'_> {
         self.dimension.is_none() && matches!(self.unit.as_str(), "1" | "-" | "rad" | "decade")
     }
 
-    fn required(&self, key: &str) -> Result<(f64, Range<usize>), EffectFileError> {
-        let Some(value) = self.table.get(key) else {
-            return Err(self.table.missing(key, &self.example(key)));
-        };
-        let text = self.value_text(key, value)?;
-        let found = units::any(&text).map_err(|error| self.no_number(key, value, &error))?;
+    fn required(&self, key: &str) -> Result<f64, FileError> {
+        let value = self.table.get(key).ok_or_else(|| {
+            let what = format!("{} needs `{key}`, which is missing", self.table.title());
+            self.table.error(self.table.key_span(key), what, format!("add `{}`", self.example(key)))
+        })?;
+        let found = units::any(self.value_text(key, value)?)
+            .map_err(|error| self.refused(key, value, error.to_string()))?;
         self.check(key, value, &found)?;
-        Ok((found.si, value.span()))
+        Ok(found.si)
     }
 
-    fn value_text(&self, key: &str, value: &Spanned<DeValue<'_>>) -> Result<String, EffectFileError> {
-        match value.get_ref() {
-            DeValue::String(text) => Ok(text.to_string()),
-            DeValue::Float(number) => Ok(number.as_str().to_owned()),
-            DeValue::Integer(number) if number.radix() == 10 => Ok(number.as_str().to_owned()),
-            _ => Err(self.table.wrong_type(key, value, "a number with its unit", &self.example(key))),
-        }
+    fn value_text<'v>(&self, key: &str, value: Setting<'v>) -> Result<&'v str, FileError> {
+        value.number().ok_or_else(|| {
+            let what = format!("`{key}` is {}, but must be a number with its unit", value.type_name());
+            self.refused(key, value, what)
+        })
     }
 
-    fn no_number(&self, key: &str, value: &Spanned<DeValue<'_>>, error: &UnitError) -> EffectFileError {
-        self.table.error(value.span(), error.to_string(), format!("write `{}`", self.example(key)))
+    fn refused(&self, key: &str, value: Setting<'_>, what: String) -> FileError {
+        self.table.error(value.span(), what, format!("write `{}`", self.example(key)))
     }
 
     /// Checks the unit of a value against that of the parameter. A bare number isn't a value in per cent or
     /// degrees.
-    fn check(&self, key: &str, value: &Spanned<DeValue<'_>>, found: &Any) -> Result<(), EffectFileError> {
+    fn check(&self, key: &str, value: Setting<'_>, found: &Any) -> Result<(), FileError> {
         let wanted = format!("a parameter in `{}` needs {}", self.unit, self.dimension.describe());
         let what = if found.dimension != self.dimension && found.unit.is_empty() {
             format!("`{key}` has no unit, but {wanted}")
@@ -121,6 +112,6 @@ impl Quantity<'_> {
         } else {
             return Ok(());
         };
-        Err(self.table.error(value.span(), what, format!("write `{}`", self.example(key))))
+        Err(self.refused(key, value, what))
     }
 }

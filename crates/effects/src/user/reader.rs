@@ -1,43 +1,40 @@
 //! Reads effects from the tables of a file, and checks that they are complete and consistent.
 
 use super::quantity::Quantity;
-use super::value::{Entry, Table};
-use super::{
-    EXAMPLE, EffectFileError, MAX_PARAMETERS, ShapeFormula, ShapeQuantity, UserEffect, UserFormula,
-    UserParameter,
-};
+use super::{EXAMPLE, MAX_PARAMETERS, ShapeFormula, ShapeQuantity, UserEffect, UserFormula, UserParameter};
 use crate::catalogue::Catalogue;
 use crate::expression::{
-    Expression, ExpressionError, SHAPE_VARIABLES, VARIABLES, Variable, check_name, nearest, quoted,
+    Expression, ExpressionError, SHAPE_VARIABLES, VARIABLES, Variable, check_name, quoted,
 };
 use crate::mechanism::{Form, Mechanism};
-use bulge_muscles::Dimension;
-use bulge_muscles::units;
+use bulge_muscles::settings::{Document, Keys, Setting, Settings};
+use bulge_muscles::{Dimension, FileError, units};
 use std::ops::Range;
-use toml::de::{DeTable, DeValue};
 
-/// The keys of an effect, and of a parameter.
-const EFFECT_KEYS: [&str; 12] = [
-    "title",
-    "force",
-    "energy",
-    "area",
-    "twist",
-    "about",
-    "source",
-    "family",
-    "mechanism",
-    "form",
-    "twins",
-    "parameters",
+/// The keys of the file, of an effect, and of a parameter.
+const FILE: Keys = &[("effects", "[effects.hose-stiffness]")];
+const EFFECT: Keys = &[
+    ("title", "title = \"Hose pulls on the muscle\""),
+    ("force", "force = \"-k * (eps - eps_free)\""),
+    ("energy", "energy = \"h * c10 * (l1^2 + l2^2 + 1/(l1*l2)^2 - 3)\""),
+    ("area", "area = \"pi*(r - t)^2\""),
+    ("twist", "twist = \"sin(alpha0)/r0*(1 + k*p)\""),
+    ("about", "about = \"what happens\""),
+    ("source", "source = \"author, title, year, equation\""),
+    ("family", "family = \"mounting\""),
+    ("mechanism", "mechanism = \"give-of-the-rig\""),
+    ("form", "form = \"loose\""),
+    ("twins", "twins = [\"force-offset\"]"),
+    ("parameters", PARAMETER),
 ];
-const PARAMETER_KEYS: [&str; 6] = ["unit", "typical", "low", "high", "prior", "about"];
-
-const TITLE: &str = "title = \"Hose pulls on the muscle\"";
-const FORCE: &str = "force = \"-k * (eps - eps_free)\"";
-const MECHANISM: &str = "mechanism = \"give-of-the-rig\"";
-const FORM: &str = "form = \"loose\"";
-const TWINS: &str = "twins = [\"force-offset\"]";
+const PARAMETER_KEYS: Keys = &[
+    ("unit", "unit = \"N\""),
+    ("typical", "typical = \"50 N\""),
+    ("low", "low = \"0 N\""),
+    ("high", "high = \"500 N\""),
+    ("prior", "prior = \"50 N +- 30 N\""),
+    ("about", "about = \"what it is\""),
+];
 const PARAMETER: &str =
     "parameters.k = { unit = \"N\", typical = \"50 N\", low = \"0 N\", high = \"500 N\" }";
 
@@ -48,54 +45,44 @@ const MAX_WORDS: usize = 4000;
 const MAX_TWINS: usize = 20;
 
 /// All effects of a file, in their order.
-pub(crate) fn effects(
-    text: &str,
-    origin: &str,
-    root: &DeTable<'_>,
-) -> Result<Vec<UserEffect>, EffectFileError> {
-    let root = Table { text, origin, title: "the file".to_owned(), span: 0..0, entries: root };
-    root.only(&["effects"])?;
-    let looks = || format!("a file of effects looks like this:\n{EXAMPLE}");
-    let Some(entry) = root.in_order().into_iter().next() else {
-        return Err(root.error(0..0, "the file states no effect", looks()));
-    };
-    let all = root.table(&entry, "`effects`".to_owned(), "[effects.hose-stiffness]")?;
-    let entries = all.in_order();
-    if entries.is_empty() {
-        return Err(all.error(all.span.clone(), "the file states no effect", looks()));
+pub(crate) fn effects(document: &Document<'_>) -> Result<Vec<UserEffect>, FileError> {
+    let root = document.settings("the file", FILE);
+    root.check_keys()?;
+    match root.table("effects", "`effects`", &[])?.filter(|all| !all.names().is_empty()) {
+        Some(all) => all.names().into_iter().map(|(name, place)| effect(&all, name, place)).collect(),
+        None => {
+            let instead = format!("a file of effects looks like this:\n{EXAMPLE}");
+            Err(root.error(root.key_span("effects"), "the file states no effect", instead))
+        }
     }
-    entries.iter().map(|entry| effect(&all, entry)).collect()
 }
 
-fn effect(all: &Table<'_>, entry: &Entry<'_>) -> Result<UserEffect, EffectFileError> {
-    let (name, place, _) = entry;
+fn effect(all: &Settings<'_>, name: &str, place: Range<usize>) -> Result<UserEffect, FileError> {
     if !is_effect_name(name) {
         let what = format!("`{}` is no name of an effect", quoted(name));
         let instead =
             "write lower-case words with hyphens, such as `[effects.hose-stiffness]`, at most 64 characters";
-        return Err(all.error(place.clone(), what, instead));
+        return Err(all.error(place, what, instead));
     }
-    let title = format!("the effect `{name}`");
-    let table = all.table(entry, title, &format!("[effects.{name}]"))?;
-    table.only(&EFFECT_KEYS)?;
-    let title = words(&table, "title", TITLE, MAX_TITLE)?;
-    let about = words(&table, "about", "about = \"what happens\"", MAX_WORDS)?;
-    let source = words(&table, "source", "source = \"author, title, year, equation\"", MAX_WORDS)?;
-    let family = words(&table, "family", "family = \"mounting\"", MAX_TITLE)?;
+    let instead = format!("write `[effects.{name}]`");
+    // A table made by dotted keys has no place of its own, so the place of its name is used.
+    let table = all.table_named(name, format!("the effect `{name}`"), EFFECT, instead)?.at(place);
+    table.check_keys()?;
+    let title = words(&table, "title", MAX_TITLE)?;
+    let about = words(&table, "about", MAX_WORDS)?;
+    let source = words(&table, "source", MAX_WORDS)?;
+    let family = words(&table, "family", MAX_TITLE)?;
     let mechanism = mechanism(&table, family.as_deref())?;
-    let form = form(&table)?;
+    let form = table.word("form", &Form::ALL.map(|form| (form.name(), form)))?.unwrap_or(Form::Loose);
     let twins = twins(&table, name)?;
-    let title = title.ok_or_else(|| table.missing("title", TITLE))?;
+    let title = title.ok_or_else(|| table.missing("title"))?;
     let (key, shape) = formula_key(&table)?;
-    let Some((formula_text, formula_place)) = table.words(key, FORCE)? else {
-        return Err(table.missing("force", FORCE));
-    };
+    let (formula_value, formula_text) = filled(&table, key)?.ok_or_else(|| table.missing("force"))?;
     let variables: &'static [Variable] = if shape.is_some() { &SHAPE_VARIABLES } else { &VARIABLES };
     let (parameters, places) = parameters(&table, variables)?;
     let known: Vec<(&str, Dimension)> = parameters.iter().map(|p| (p.name.as_str(), p.dimension)).collect();
     let at = |error: ExpressionError| {
-        let place = table.inside(formula_text, &formula_place, error.span());
-        table.error(place, error.what(), error.instead())
+        table.error(table.inside(formula_value, error.span()), error.what(), error.instead())
     };
     let formula = match shape {
         None => UserFormula::Force(Expression::parse(formula_text, &known, Dimension::FORCE).map_err(at)?),
@@ -115,7 +102,7 @@ fn effect(all: &Table<'_>, entry: &Entry<'_>) -> Result<UserEffect, EffectFileEr
         }
     }
     Ok(UserEffect {
-        name: (*name).to_owned(),
+        name: name.to_owned(),
         title,
         about,
         source,
@@ -130,19 +117,14 @@ fn effect(all: &Table<'_>, entry: &Entry<'_>) -> Result<UserEffect, EffectFileEr
 
 /// The key of the formula, and the shape quantity that it describes. The key is `force` if there is no
 /// formula.
-fn formula_key(table: &Table<'_>) -> Result<(&'static str, Option<ShapeQuantity>), EffectFileError> {
+fn formula_key(table: &Settings<'_>) -> Result<(&'static str, Option<ShapeQuantity>), FileError> {
     let shapes = ShapeQuantity::ALL.map(|quantity| (quantity.key(), Some(quantity)));
     let all = std::iter::once(("force", None)).chain(shapes);
     let mut stated = all.filter(|(key, _)| table.get(key).is_some());
     let first = stated.next().unwrap_or(("force", None));
-    match stated.next() {
-        None => Ok(first),
-        Some((other, _)) => {
-            let span = table.get(other).map_or(table.span.clone(), toml::Spanned::span);
-            let what = format!("{} has a formula for `{}` and one for `{other}`", table.title, first.0);
-            Err(table.error(span, what, "write two effects, one for each"))
-        }
-    }
+    let Some((other, _)) = stated.next() else { return Ok(first) };
+    let what = format!("{} has a formula for `{}` and one for `{other}`", table.title(), first.0);
+    Err(table.error(table.value_span(other), what, "write two effects, one for each"))
 }
 
 /// Lower-case words with hyphens: "hose-stiffness".
@@ -152,76 +134,59 @@ fn is_effect_name(name: &str) -> bool {
     name.len() <= 64 && name.starts_with(|c: char| c.is_ascii_lowercase()) && name.split('-').all(is_word)
 }
 
-fn words(
-    table: &Table<'_>,
-    name: &str,
-    example: &str,
-    limit: usize,
-) -> Result<Option<String>, EffectFileError> {
-    let Some((text, place)) = table.words(name, example)? else { return Ok(None) };
+/// A text that isn't empty, as it is written.
+fn filled<'a>(table: &Settings<'a>, name: &str) -> Result<Option<(Setting<'a>, &'a str)>, FileError> {
+    let (Some(value), Some(text)) = (table.get(name), table.text(name)?) else { return Ok(None) };
+    if text.trim().is_empty() {
+        return Err(table.unreadable(name, value, format!("`{name}` is empty")));
+    }
+    Ok(Some((value, text)))
+}
+
+fn words(table: &Settings<'_>, name: &str, limit: usize) -> Result<Option<String>, FileError> {
+    let Some((value, text)) = filled(table, name)? else { return Ok(None) };
     let length = text.chars().count();
     if length > limit {
         let what = format!("`{name}` has {length} characters, but at most {limit} are read");
-        return Err(table.error(place, what, "shorten it, or write the rest behind a `#`"));
+        return Err(table.error(value.span(), what, "shorten it, or write the rest behind a `#`"));
     }
     Ok(Some(text.trim().to_owned()))
 }
 
 /// The mechanism: the stated one, or that of the family, or the user's own.
-fn mechanism(table: &Table<'_>, family: Option<&str>) -> Result<Mechanism, EffectFileError> {
+fn mechanism(table: &Settings<'_>, family: Option<&str>) -> Result<Mechanism, FileError> {
     let catalogue = Catalogue::builtin();
     let of_family = catalogue
         .iter()
         .map(|effect| effect.card())
         .find(|card| Some(card.family) == family)
         .map(|card| (card.family, card.mechanism));
-    let Some((stated, place)) = table.words("mechanism", MECHANISM)? else {
-        return Ok(of_family.map_or(Mechanism::User, |(_, mechanism)| mechanism));
-    };
     let key = |mechanism: Mechanism| mechanism.name().replace(' ', "-");
-    let Some(mechanism) = Mechanism::ALL.into_iter().find(|mechanism| key(*mechanism) == stated.trim())
-    else {
-        let keys = Mechanism::ALL.map(key);
-        let instead = match nearest(stated, keys.iter().map(String::as_str)) {
-            Some(near) => format!("did you mean `{near}`?"),
-            None => format!("write one of {}, or leave it out", keys.join(", ")),
-        };
-        return Err(table.error(place, format!("there is no mechanism `{}`", quoted(stated)), instead));
-    };
-    match of_family {
-        Some((family, other)) if other != mechanism => {
+    let keys = Mechanism::ALL.map(key);
+    let known: Vec<_> = keys.iter().map(String::as_str).zip(Mechanism::ALL).collect();
+    match (table.word("mechanism", &known)?, of_family) {
+        (Some(mechanism), Some((family, other))) if other != mechanism => {
             let what =
                 format!("`{family}` is a family of the mechanism `{}`, not `{}`", key(other), key(mechanism));
-            Err(table.error(place, what, "leave the mechanism out, or give the effect a family of its own"))
+            let instead = "leave the mechanism out, or give the effect a family of its own";
+            Err(table.error(table.value_span("mechanism"), what, instead))
         }
-        _ => Ok(mechanism),
+        (Some(mechanism), _) | (None, Some((_, mechanism))) => Ok(mechanism),
+        (None, None) => Ok(Mechanism::User),
     }
 }
 
-/// How exact the formula can be; loose if not stated.
-fn form(table: &Table<'_>) -> Result<Form, EffectFileError> {
-    let Some((stated, place)) = table.words("form", FORM)? else { return Ok(Form::Loose) };
-    Form::ALL.into_iter().find(|form| form.name() == stated.trim()).ok_or_else(|| {
-        let instead = "write `exact` (only its numbers can be wrong), `near` (to 5 %) or `loose` (to 40 %)";
-        table.error(place, format!("there is no form `{}`", quoted(stated)), instead)
-    })
-}
-
-fn twins(table: &Table<'_>, own: &str) -> Result<Vec<String>, EffectFileError> {
+fn twins(table: &Settings<'_>, own: &str) -> Result<Vec<String>, FileError> {
     let Some(value) = table.get("twins") else { return Ok(Vec::new()) };
-    let wanted = "a list of names of effects";
-    let DeValue::Array(list) = value.get_ref() else {
-        return Err(table.wrong_type("twins", value, wanted, TWINS));
-    };
+    let no_list = |value| table.wrong_type("twins", value, "a list of names of effects");
+    let list = value.items().ok_or_else(|| no_list(value))?;
     if list.len() > MAX_TWINS {
         let what = format!("`twins` names {} effects, but at most {MAX_TWINS} are read", list.len());
         return Err(table.error(value.span(), what, "name those that are hardest to tell apart"));
     }
     let mut twins: Vec<String> = Vec::new();
     for item in list {
-        let DeValue::String(name) = item.get_ref() else {
-            return Err(table.wrong_type("twins", item, wanted, TWINS));
-        };
+        let name = item.text().ok_or_else(|| no_list(item))?;
         let what = if !is_effect_name(name) {
             format!("`{}` is no name of an effect", quoted(name))
         } else if name == own {
@@ -229,52 +194,45 @@ fn twins(table: &Table<'_>, own: &str) -> Result<Vec<String>, EffectFileError> {
         } else if twins.iter().any(|other| other == name) {
             format!("`{name}` is named twice")
         } else {
-            twins.push(name.to_string());
+            twins.push(name.to_owned());
             continue;
         };
-        return Err(table.error(item.span(), what, format!("write names of other effects: `{TWINS}`")));
+        let instead = format!("write names of other effects: `{}`", table.example("twins"));
+        return Err(table.error(item.span(), what, instead));
     }
     Ok(twins)
 }
 
 /// The parameters, and the places of their names.
 fn parameters(
-    table: &Table<'_>,
+    table: &Settings<'_>,
     variables: &[Variable],
-) -> Result<(Vec<UserParameter>, Vec<Range<usize>>), EffectFileError> {
-    let none = |place| {
-        let what = format!("{} has no parameter, so there is nothing to learn about it", table.title);
-        table.error(place, what, format!("add `{PARAMETER}` and use it in the formula"))
+) -> Result<(Vec<UserParameter>, Vec<Range<usize>>), FileError> {
+    let list = table.table("parameters", format!("`parameters` of {}", table.title()), &[])?;
+    let names = list.as_ref().map(Settings::names).unwrap_or_default();
+    let Some(list) = list.filter(|_| !names.is_empty()) else {
+        let what = format!("{} has no parameter, so there is nothing to learn about it", table.title());
+        let instead = format!("add `{PARAMETER}` and use it in the formula");
+        return Err(table.error(table.key_span("parameters"), what, instead));
     };
-    let Some(entry) = table.in_order().into_iter().find(|(name, ..)| *name == "parameters") else {
-        return Err(none(table.span.clone()));
-    };
-    let list = table.table(&entry, format!("`parameters` of {}", table.title), PARAMETER)?;
-    let entries = list.in_order();
-    match entries.len() {
-        0 => Err(none(list.span.clone())),
-        count if count > MAX_PARAMETERS => {
-            let what =
-                format!("{} has {count} parameters, but at most {MAX_PARAMETERS} are read", table.title);
-            let place = entries[MAX_PARAMETERS].1.clone();
-            Err(table.error(place, what, "write numbers for those that are known, or several effects"))
-        }
-        _ => {
-            let read =
-                entries.iter().map(|entry| parameter(&list, entry, variables)).collect::<Result<_, _>>()?;
-            Ok((read, entries.into_iter().map(|(_, place, _)| place).collect()))
-        }
+    if let Some((_, place)) = names.get(MAX_PARAMETERS) {
+        let (title, count) = (table.title(), names.len());
+        let what = format!("{title} has {count} parameters, but at most {MAX_PARAMETERS} are read");
+        let instead = "write numbers for those that are known, or several effects";
+        return Err(table.error(place.clone(), what, instead));
     }
+    let read = names.iter().map(|(name, place)| parameter(&list, name, place, variables));
+    Ok((read.collect::<Result<_, _>>()?, names.into_iter().map(|(_, place)| place).collect()))
 }
 
 fn parameter(
-    list: &Table<'_>,
-    entry: &Entry<'_>,
+    list: &Settings<'_>,
+    name: &str,
+    place: &Range<usize>,
     variables: &[Variable],
-) -> Result<UserParameter, EffectFileError> {
-    let (name, place, _) = entry;
+) -> Result<UserParameter, FileError> {
     check_name(name, variables).map_err(|what| {
-        let taken = variables.iter().any(|known| known.name == *name || known.alias == Some(name));
+        let taken = variables.iter().any(|known| known.name == name || known.alias == Some(name));
         let instead = if taken {
             "rename the parameter, or delete it and use the variable".to_owned()
         } else {
@@ -282,33 +240,29 @@ fn parameter(
         };
         list.error(place.clone(), what, instead)
     })?;
-    let table = list.table(entry, format!("the parameter `{name}`"), PARAMETER)?;
-    table.only(&PARAMETER_KEYS)?;
-    let about = words(&table, "about", "about = \"what it is\"", MAX_WORDS)?;
-    let Some((unit, unit_place)) = unit_text(&table)? else {
-        return Err(table.missing("unit", "unit = \"N\""));
-    };
+    let instead = format!("write `{PARAMETER}`");
+    let table =
+        list.table_named(name, format!("the parameter `{name}`"), PARAMETER_KEYS, instead)?.at(place.clone());
+    table.check_keys()?;
+    let about = words(&table, "about", MAX_WORDS)?;
+    let unit = unit_text(&table)?;
     let (factor, dimension) = units::unit(&unit).map_err(|error| {
-        table.error(
-            unit_place,
-            error.to_string(),
-            "write `unit = \"N\"`, or `unit = \"1\"` for a pure number",
-        )
+        let instead = "write `unit = \"N\"`, or `unit = \"1\"` for a pure number";
+        table.error(table.value_span("unit"), error.to_string(), instead)
     })?;
     let known = Quantity { table, unit, dimension };
     let (low, typical, high) = known.bounded()?;
     let prior = known.prior(low, high)?;
     let unit = known.unit;
-    Ok(UserParameter { name: (*name).to_owned(), unit, factor, dimension, typical, low, high, prior, about })
+    Ok(UserParameter { name: name.to_owned(), unit, factor, dimension, typical, low, high, prior, about })
 }
 
 /// The unit, which may be written as the number 1.
-fn unit_text(table: &Table<'_>) -> Result<Option<(String, Range<usize>)>, EffectFileError> {
-    let Some(value) = table.get("unit") else { return Ok(None) };
-    match value.get_ref() {
-        DeValue::Integer(number) if number.as_str() == "1" => Ok(Some(("1".to_owned(), value.span()))),
-        DeValue::String(text) if text.trim().is_empty() => Ok(Some(("1".to_owned(), value.span()))),
-        DeValue::String(text) => Ok(Some((text.trim().to_owned(), value.span()))),
-        _ => Err(table.wrong_type("unit", value, "text in quotes", "unit = \"N\"")),
+fn unit_text(table: &Settings<'_>) -> Result<String, FileError> {
+    let value = table.get("unit").ok_or_else(|| table.missing("unit"))?;
+    match value.text().or(value.number().filter(|number| *number == "1")).map(str::trim) {
+        Some("") => Ok("1".to_owned()),
+        Some(unit) => Ok(unit.to_owned()),
+        None => Err(table.wrong_type("unit", value, "text in quotes")),
     }
 }

@@ -5,8 +5,7 @@
 
 use bulge_fibre::{Approach, FibreError, Given, Problem, RangeEnd};
 use bulge_muscles::{
-    Angle, Bladder, Braided, Construction, Fibre, Force, Length, LineStiffness, Muscle, Pressure, Unfolding,
-    from_toml, preset,
+    Angle, Braided, Construction, Fibre, Force, Length, Muscle, Parameter, Pressure, from_toml, preset,
 };
 
 #[test]
@@ -73,13 +72,14 @@ fn fibres_become_slack_where_the_rubber_carries_all() {
 /// A braid of 60 fibres: length, radius and that of the fittings in mm, degrees.
 fn braid(length: f64, radius: f64, fitting: f64, degrees: f64) -> Muscle {
     let braid = Braided::new(Length::mm(radius), Angle::deg(degrees)).unwrap().with_fibres(60).unwrap();
-    let braid = braid.with_fitting_radius(Length::mm(fitting)).unwrap();
-    Muscle::new("braid", Length::mm(length), Construction::Braided(braid)).unwrap()
+    let muscle = Muscle::new("braid", Length::mm(length), Construction::Braided(braid)).unwrap();
+    muscle.with(Parameter::FittingRadius, Length::mm(fitting).to_m()).unwrap()
 }
 
 fn rubber(muscle: &Muscle, c10_kpa: f64, c01_kpa: f64, wall: f64) -> Muscle {
-    let bladder = Bladder::new(Pressure::kpa(c10_kpa), Pressure::kpa(c01_kpa), Length::mm(wall)).unwrap();
-    muscle.clone().with_bladder(bladder).unwrap()
+    let [c10, c01] = [c10_kpa, c01_kpa].map(|kpa| Pressure::kpa(kpa).to_pa());
+    let wall = (Parameter::Wall, Length::mm(wall).to_m());
+    muscle.with_all(&[wall, (Parameter::C10, c10), (Parameter::C01, c01)]).unwrap()
 }
 
 fn elastic(muscle: &Muscle, newton: f64) -> Muscle {
@@ -123,9 +123,9 @@ fn a_volume_that_a_muscle_holds_is_found() {
 /// the force vanishes.
 #[test]
 fn stretched_at_rest_is_not_drawn_out() {
-    let cloth = Unfolding::new(LineStiffness::n_per_m(401.0), Length::mm(7.026)).unwrap();
+    let cloth = [(Parameter::HoopStiffness, 401.0), (Parameter::UnfoldedRadius, 7.026e-3)];
     let muscle = rubber(&elastic(&braid(160.73, 12.3614, 6.0022, 33.244), 64.483), 25_790.0, 0.0, 1.3977);
-    let problem = Problem::new(&muscle.with_unfolding(cloth), Pressure::kpa(31.103)).unwrap();
+    let problem = Problem::new(&muscle.with_all(&cloth).unwrap(), Pressure::kpa(31.103)).unwrap();
     let at_rest = problem.solve(Given::Contraction(0.0), Approach::Auto).unwrap();
     assert!(at_rest.fibre_strain > bulge_fibre::MOST_STRAIN, "{}", at_rest.fibre_strain);
     let beside = problem.solve(Given::Length(0.160_73 * (1.0 + 1e-15)), Approach::Auto).unwrap();

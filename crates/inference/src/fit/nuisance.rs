@@ -132,7 +132,7 @@ fn widths(muscle: &Muscle) -> Vec<Width> {
             // The wall's thickness changes the force in two ways: the gas acts on its inner face where the
             // file says so, and the rubber's stored energy is proportional to modulus times thickness.
             Parameter::Wall => {
-                if muscle.gas_wall().is_some() && !muscle.is_stated(Parameter::GasWall) {
+                if muscle.get(Parameter::GasWall).is_some() && !muscle.is_stated(Parameter::GasWall) {
                     add("wall-thickness", "thickness", stated, *sd);
                 }
                 if let Some(c10) = muscle.get(Parameter::C10) {

@@ -3,14 +3,14 @@
 use super::*;
 use crate::base::Shaped;
 use bulge_fibre::Parts;
-use bulge_muscles::{Angle, Bladder, Braided, Construction, Length, Muscle, Pressure};
+use bulge_muscles::{Angle, Braided, Construction, Length, Muscle, Parameter};
 
 /// A braid of 25 degrees with a rubber bladder; its radius is in mm and c10 in Pa.
 pub(crate) fn braid(radius: f64, c10: f64) -> (Parts, Equilibrium) {
     let braided = Braided::new(Length::mm(radius), Angle::deg(25.0)).unwrap();
     let muscle = Muscle::new("b", Length::mm(120.0), Construction::Braided(braided)).unwrap();
-    let rubber = Bladder::new(Pressure::pa(c10), Pressure::pa(0.0), Length::mm(1.5)).unwrap();
-    let parts = Parts::of(&muscle.with_bladder(rubber).unwrap());
+    let rubber = [(Parameter::Wall, 0.0015), (Parameter::C10, c10)];
+    let parts = Parts::of(&muscle.with_all(&rubber).unwrap());
     let equilibrium = Equilibrium::new(Shaped { parts: parts.still(), beside: Vec::new() }).unwrap();
     (parts, equilibrium)
 }
