@@ -63,9 +63,11 @@ fn shooting(c: &mut Criterion) {
         one(&mut group, &name, &usual, Approach::Shooting, contraction);
     }
     one(&mut group, "braid l0/r0 = 100, 20 %", &braid(100.0).unwrap(), Approach::Shooting, 0.2);
+    one(&mut group, "braid l0/r0 = 25 by quadrature, 20 %", &usual, Approach::Auto, 0.2);
     let (shipped, formula) = (bladder().unwrap(), rubber_as_formula().unwrap());
     for (name, problem) in [("bladder", &shipped), ("rubber as a formula", &formula)] {
         one(&mut group, &format!("braid l0/r0 = 25 + {name}, 20 %"), problem, Approach::Shooting, 0.2);
+        one(&mut group, &format!("{name} by quadrature, 20 %"), problem, Approach::Auto, 0.2);
         // As a fit asks for it.
         let moving = problem.parts().still();
         group.bench_function(format!("linearised, {name}, 20 %"), |b| {
