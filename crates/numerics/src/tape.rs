@@ -297,7 +297,9 @@ impl Builder {
             Operator::Multiply | Operator::Divide if is(b, 1.0) => a,
             Operator::Multiply | Operator::Divide if is(a, 0.0) => a,
             Operator::Multiply if is(b, 0.0) => b,
-            Operator::Multiply if self.constant_at(b).is_some() => self.operate(operator, b, a),
+            Operator::Multiply if self.constant_at(b).is_some() && self.constant_at(a).is_none() => {
+                self.operate(operator, b, a)
+            }
             _ => match (operator, self.step_at(a), self.step_at(b)) {
                 // A division costs most, and its derivatives cost more.
                 (Operator::Divide, _, Some(Step::WholePower(base, exponent))) if exponent != i32::MIN => {
