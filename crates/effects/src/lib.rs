@@ -12,15 +12,20 @@
 //!    contains a unit struct with `impl Effect` (its card and its parameters) and with the one trait of its
 //!    action. Start from a neighbour with the same action: `pleat_depth.rs` (shape), `pressure_gain.rs`
 //!    (input), `coulomb_friction.rs` (load), `force_gain.rs` (output). Numbers are [`Jet`]s, which compute
-//!    their own derivatives, so there are none to write.
-//! 2. Add its line to the list in the `mod.rs` of the folder.
-//! 3. Test it in the file: a force that is known otherwise, its limit, no change at `off`. The tests of the
-//!    whole catalogue include it automatically. They check the card, the units, the bounds, the derivatives
-//!    against differences, and that it changes nothing where it is off.
+//!    their own derivatives (with [`bulge_numerics::Real`]), so there are none to write. At `off` their
+//!    values stay, bit for bit. An early return there would lose their derivatives too, which no test of this
+//!    crate sees, and a diagnosis would take the effect for one that is even in its parameter.
+//! 2. Add two lines to the `mod.rs` of the folder: the `mod` of the file, and its entry in the list.
+//! 3. Test it in the file: a force that is known otherwise, its limit, no change at `off`, its derivative
+//!    there. Helpers are in `geometry/bench.rs` (shape) and `probe.rs` (the others).
+//! 4. Run `cargo test -p bulge-effects`. Its tests of the whole catalogue include the effect automatically.
+//!    They check the card (each twin is a name in the catalogue, and need not name the effect in return), the
+//!    units, the bounds, the derivatives within the bounds against differences, and no change at `off`.
 //!
 //! Help, muscle files, fits, rankings, sweeps, reports and Python then know the effect. A shape effect
-//! changes [`bulge_fibre::Parts`], from which the equilibrium is solved with all derivatives. If a formula
-//! describes the whole effect, a file of [`user`] effects needs no Rust.
+//! changes [`bulge_fibre::Parts`], from which the equilibrium is solved with all derivatives; it sees neither
+//! pressure nor contraction. If a formula describes the whole effect, a file of [`user`] effects needs no
+//! Rust.
 //!
 //! Deliberately absent: data. An effect sees one [`Moment`] after the other, never a data set.
 
