@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 use crate::net::{Local, Net};
 
 /// Radii at which the fibres are tested for slackness.
-const SAMPLES: usize = 16;
+const SAMPLES: usize = 17;
 /// A ratio of push to bulge that is next to nothing.
 const SLIGHT: f64 = 1e-304;
 /// Margin, as a part of H, by which H must be too small for the fibres to count as slack.

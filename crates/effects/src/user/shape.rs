@@ -355,7 +355,7 @@ mod tests {
     fn what_changes_nothing_is_left_out() {
         let untouched = Parts::of(&clamped());
         let sling = "[effects.sling]\ntitle = \"Sling\"\nenergy = \"k*max(0, l2 - 1.9)^2\"\n\
-            parameters.k = { unit = \"N/mm\", typical = 1, low = 0, high = 100 }\n";
+            parameters.k = { unit = \"N/m\", typical = \"2000 N/m\", low = \"0 N/m\", high = \"1e6 N/m\" }\n";
         let turn = "[effects.turn]\ntitle = \"Turn\"\ntwist = \"sin(alpha0)/r0*(1 + k*p)\"\n\
             parameters.k = { unit = \"1/MPa\", typical = 0.05, low = -1, high = 1 }\n";
         for (text, theta) in [(SHAPE_EXAMPLE, vec![0.0, 0.002]), (sling, vec![0.0]), (turn, vec![0.0])] {
