@@ -36,7 +36,7 @@ impl EffectsCommand {
 
     fn laws(&self) -> Result<String, Failure> {
         let document = json!({"schema": "bulge.laws/1", "papers": PAPERS, "laws": LAWS});
-        self.json.or(&document, || reference())
+        self.json.or(&document, reference)
     }
 
     fn one(&self, catalogue: &Catalogue, name: &str) -> Result<String, Failure> {

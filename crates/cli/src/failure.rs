@@ -126,13 +126,13 @@ of_libraries!(
         | SensingError::NotMonotone { .. }
         | SensingError::NoChange
         | SensingError::NoPlace { .. } => 3,
-        _ => 1,
+        SensingError::Input(_) => 1,
     },
     GasError: |error| match error {
         GasError::Number { .. } => 1,
         GasError::Stopped { .. } => 4,
         GasError::Muscle { error, .. } => status(error.fault()),
-        _ => 3,
+        GasError::NoBalance(_) => 3,
     },
     HeatError: |error| match error {
         HeatError::Invalid { .. } => 1,

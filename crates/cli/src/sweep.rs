@@ -26,7 +26,6 @@ const MANY: u128 = 1_000_000_000;
 const PER_SECOND: f64 = 1e6;
 
 /// A parallel sweep over the axes of a family of muscles, into Parquet files and a certified table.
-#[expect(clippy::struct_excessive_bools, reason = "flags of a command line")]
 #[derive(Debug, Args)]
 #[command(after_long_help = example())]
 pub(crate) struct SweepCommand {

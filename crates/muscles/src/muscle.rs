@@ -247,7 +247,9 @@ impl Muscle {
         match parameter {
             Parameter::C10 => _ = self.numbers.entry(Parameter::C01).or_insert(0.0),
             Parameter::C01 => _ = self.numbers.entry(Parameter::C10).or_insert(0.0),
-            Parameter::Wall => self.bladder_wall = self.bladder_wall.filter(|wall| *wall != value),
+            Parameter::Wall => {
+                self.bladder_wall = self.bladder_wall.filter(|wall| wall.to_bits() != value.to_bits());
+            }
             Parameter::GasWall => self.has_inner_gas = false,
             _ => {}
         }

@@ -48,13 +48,11 @@ const MAX_TWINS: usize = 20;
 pub(crate) fn effects(document: &Document<'_>) -> Result<Vec<UserEffect>, FileError> {
     let root = document.settings("the file", FILE);
     root.check_keys()?;
-    match root.table("effects", "`effects`", &[])?.filter(|all| !all.names().is_empty()) {
-        Some(all) => all.names().into_iter().map(|(name, place)| effect(&all, name, place)).collect(),
-        None => {
-            let instead = format!("a file of effects looks like this:\n{EXAMPLE}");
-            Err(root.error(root.key_span("effects"), "the file states no effect", instead))
-        }
-    }
+    let Some(all) = root.table("effects", "`effects`", &[])?.filter(|all| !all.names().is_empty()) else {
+        let instead = format!("a file of effects looks like this:\n{EXAMPLE}");
+        return Err(root.error(root.key_span("effects"), "the file states no effect", instead));
+    };
+    all.names().into_iter().map(|(name, place)| effect(&all, name, place)).collect()
 }
 
 fn effect(all: &Settings<'_>, name: &str, place: Range<usize>) -> Result<UserEffect, FileError> {

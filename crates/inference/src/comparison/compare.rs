@@ -25,7 +25,10 @@ use crate::fit::held::{HeldNumber, held};
 /// or the data.
 pub fn compare(data: &Data, muscle: &Muscle, options: &Options) -> Result<Comparison, InferenceError> {
     // On a thread of the pool, so that small evaluations aren't handed over to it one by one.
-    rayon::scope(|_| Comparing::of(Analysis::new(data, muscle, options)?)?.asked(Comparing::compared))
+    rayon::scope(|_| {
+        Comparing::of(Analysis::new(data, muscle, options)?)?
+            .asked(|own, analysis, ladder| Ok(own.compared(analysis, ladder)))
+    })
 }
 
 /// The comparison with its rows and the force of each rung, as a report draws them.
@@ -154,7 +157,7 @@ impl<'a> Comparing<'a> {
         restrictions: &[Restriction],
     ) -> Result<Comparison, InferenceError> {
         let answer = |own: &Comparing<'_>, analysis: &Analysis<'_>, ladder: &[Arc<Step>]| {
-            own.compared(analysis, ladder)
+            Ok(own.compared(analysis, ladder))
         };
         if self.is_of_base(restrictions) {
             return self.asking(effects, restrictions, answer);
@@ -238,10 +241,10 @@ impl<'a> Comparing<'a> {
         effects: &[Arc<dyn Effect>],
         restrictions: &[Restriction],
     ) -> Result<Fitting, InferenceError> {
-        self.asking(effects, restrictions, |own, analysis, ladder| own.fitted(analysis, ladder))
+        self.asking(effects, restrictions, |own, analysis, ladder| Ok(own.fitted(analysis, ladder)))
     }
 
-    fn fitted(&self, analysis: &Analysis<'_>, ladder: &[Arc<Step>]) -> Result<Fitting, InferenceError> {
+    fn fitted(&self, analysis: &Analysis<'_>, ladder: &[Arc<Step>]) -> Fitting {
         let (base, last) = (&self.base, &ladder[ladder.len() - 1]);
         let Climbed { prepared, theta, fit, force, failed } = &last.climbed;
         let mut fit = fit.clone().unwrap_or_else(|| nothing_fitted(analysis, theta.clone(), force));
@@ -249,7 +252,7 @@ impl<'a> Comparing<'a> {
         fit.warnings.extend(last.rung.without_state.as_ref().map(|left| without_state("the fit", left)));
         fit.warnings.extend(note(&analysis.data, analysis.muscle));
         fit.warnings.splice(0..0, analysis.findings.iter().map(ToString::to_string));
-        Ok(Fitting {
+        Fitting {
             held: held(&prepared.model, &fit.theta),
             model: prepared.model.clone(),
             fit,
@@ -257,12 +260,12 @@ impl<'a> Comparing<'a> {
             before_rmse_n: base.rung.rmse_n,
             rmse_n: last.rung.rmse_n,
             noise_floor: self.floor.clone(),
-        })
+        }
     }
 
     fn asked_with_rows(&self) -> Result<(Comparison, Rows), InferenceError> {
         self.asked(|comparing, analysis, ladder| {
-            Ok((comparing.compared(analysis, ladder)?, rungs(analysis, ladder, true)?))
+            Ok((comparing.compared(analysis, ladder), rungs(analysis, ladder, true)?))
         })
     }
 
@@ -284,7 +287,7 @@ impl<'a> Comparing<'a> {
         Ok(ladder)
     }
 
-    fn compared(&self, analysis: &Analysis<'_>, ladder: &[Arc<Step>]) -> Result<Comparison, InferenceError> {
+    fn compared(&self, analysis: &Analysis<'_>, ladder: &[Arc<Step>]) -> Comparison {
         let last = &ladder[last_that_says_something(analysis, ladder)].climbed;
         // The saturated surface follows the residuals of a better model more closely: less of them is taken
         // for noise then.
@@ -313,7 +316,7 @@ impl<'a> Comparing<'a> {
         }
         warnings.extend(floor.as_ref().and_then(|floor| beyond_sheet(analysis.muscle, floor)));
         let Analysis { muscle, options, .. } = analysis;
-        Ok(Comparison {
+        Comparison {
             schema: "bulge.comparison/1",
             muscle: muscle.name().to_owned(),
             base: options.law.as_ref().map_or("equilibrium", |(law, _, _)| law.name).to_owned(),
@@ -330,7 +333,7 @@ impl<'a> Comparing<'a> {
             rivals: if options.rivals { rivals::laws(analysis) } else { Vec::new() },
             warnings,
             ladder: rungs,
-        })
+        }
     }
 }
 
@@ -381,7 +384,10 @@ pub struct Fitting {
 /// As [`compare`].
 pub fn fit_effects(data: &Data, muscle: &Muscle, options: &Options) -> Result<Fitting, InferenceError> {
     let options = Options { held_out: false, ..options.clone() };
-    rayon::scope(|_| Comparing::of(Analysis::new(data, muscle, &options)?)?.asked(Comparing::fitted))
+    rayon::scope(|_| {
+        Comparing::of(Analysis::new(data, muscle, &options)?)?
+            .asked(|own, analysis, ladder| Ok(own.fitted(analysis, ladder)))
+    })
 }
 
 /// The fit of a model without free parameters.

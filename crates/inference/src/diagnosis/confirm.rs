@@ -208,7 +208,6 @@ impl Context<'_> {
                     tolerance: TOLERANCE,
                     max_evaluations: EVALUATIONS,
                     least_decrease: NEAR,
-                    ..Options::default()
                 };
                 let from =
                     |inside: &[f64]| minimise_frozen(&problem, inside, &bounds, &options).map_err(of_start);

@@ -194,13 +194,8 @@ fn search(prepared: &Prepared, start: &[f64], task: &Task<'_>) -> Result<Searche
     let problem_of = || FitProblem::new(model, &thin, &used, sd.clone(), start.to_vec(), &prepared.priors);
     let problem = problem_of();
     let bounds = problem.bounds();
-    let options = Options {
-        check_curvature: false,
-        tolerance: 1e-4,
-        max_evaluations: 60,
-        least_decrease: NEAR,
-        ..Options::default()
-    };
+    let options =
+        Options { check_curvature: false, tolerance: 1e-4, max_evaluations: 60, least_decrease: NEAR };
     let mut starts = vec![clamped(problem.coordinates(start), &bounds.lower, &bounds.upper)];
     starts.push(clamped(problem.coordinates(&nearly_off(model, start)), &bounds.lower, &bounds.upper));
     let is_known = |index: usize| task.known.get(index).is_some_and(|known| *known);
@@ -344,13 +339,7 @@ fn settle(problem: &FitProblem<'_>, theta: &[f64], quick: bool) -> Result<Minimu
     let tolerance = if quick { 1e-4 } else { 1e-5 };
     // At a kink of the residuals: to a hundredth of a standard deviation.
     let least_decrease = if quick { NEAR } else { 1e-4 };
-    let options = Options {
-        check_curvature: false,
-        tolerance,
-        max_evaluations: 200,
-        least_decrease,
-        ..Options::default()
-    };
+    let options = Options { check_curvature: false, tolerance, max_evaluations: 200, least_decrease };
     minimise_frozen(problem, &start, &bounds, &options).map_err(of_start)
 }
 
