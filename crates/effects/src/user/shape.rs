@@ -357,7 +357,7 @@ mod tests {
         let sling = "[effects.sling]\ntitle = \"Sling\"\nenergy = \"k*max(0, l2 - 1.9)^2\"\n\
             parameters.k = { unit = \"N/m\", typical = \"2000 N/m\", low = \"0 N/m\", high = \"1e6 N/m\" }\n";
         let turn = "[effects.turn]\ntitle = \"Turn\"\ntwist = \"sin(alpha0)/r0*(1 + k*p)\"\n\
-            parameters.k = { unit = \"1/MPa\", typical = 0.05, low = -1, high = 1 }\n";
+            parameters.k = { unit = \"1/MPa\", typical = \"0.05 1/MPa\", low = \"-1 1/MPa\", high = \"1 1/MPa\" }\n";
         for (text, theta) in [(SHAPE_EXAMPLE, vec![0.0, 0.002]), (sling, vec![0.0]), (turn, vec![0.0])] {
             assert_eq!(own(text).reshaped(&theta, &clamped()).unwrap(), untouched, "{text}");
         }
