@@ -306,6 +306,8 @@ mod tests {
             };
             let (a, b) = (at(0.25e-6, 2.0), at(1e-6, 0.5));
             assert!((a / b - 1.0).abs() < 1e-10 && (a / at(0.0, 2.0) - 1.0).abs() > 1e-3, "{a} {b}");
+            // A formula that is sin(alpha0)/r0 to rounding is the muscle itself.
+            assert!((at(1e-18, 2.0) / at(0.0, 2.0) - 1.0).abs() < 1e-10);
         }
         // At 0 nothing changes.
         assert_eq!(own(area).reshaped(&[0.0], &muscle).unwrap(), Parts::of(&muscle));

@@ -1,5 +1,6 @@
 //! Equilibria and numerical methods through the public API: one program of tests, one module for each part.
 
+mod cloth_energy;
 mod elastic_waist;
 mod quadrature_and_ode;
 mod slack;
