@@ -83,7 +83,7 @@ pub(crate) struct Follow {
 }
 
 impl Problem {
-    /// Whether an equilibrium takes an integration of the ODE, because there is no closed form.
+    /// Whether an equilibrium takes a search by shooting, because there is no closed form.
     #[must_use]
     pub fn shoots(&self) -> bool {
         matches!(self.scheme(Approach::Auto), Ok(Scheme::Shooting(_)))

@@ -12,7 +12,7 @@ pub(super) const INTERVALS: [usize; 4] = [8, 16, 32, 64];
 pub(super) const MOST: usize = 65;
 /// Size of the last two Chebyshev coefficients, relative to the function, below which the function counts as
 /// resolved. The integrals then err by about the square root of the ratio of two coefficients less.
-const RESOLVED: f64 = 3e-12;
+pub(super) const RESOLVED: f64 = 3e-12;
 
 /// Chebyshev's points between 0 (mid-length) and 1 (fitting), with the weights for interpolation and
 /// integration between them.

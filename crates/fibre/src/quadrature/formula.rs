@@ -13,14 +13,11 @@
 use arrayvec::ArrayVec;
 use bulge_numerics::Real;
 
-use super::chebyshev::{GRIDS, Grid, MOST, value};
+use super::chebyshev::{GRIDS, Grid, MOST, RESOLVED, value};
 use crate::formulas::Formulas;
 use crate::meridian::Middle;
 use crate::net::Net;
 
-/// Size of the last two coefficients, relative to the largest, up to which a series counts as resolved. The
-/// integrals then err by about the square root of the ratio of two coefficients less.
-const RESOLVED: f64 = 3e-12;
 /// Size of coefficients that are rounding, relative to the energy's second derivative.
 const ROUNDING: f64 = 1e-15;
 
