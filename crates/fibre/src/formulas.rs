@@ -6,7 +6,7 @@ use bulge_numerics::tape::Tape;
 use std::sync::Arc;
 
 use crate::lobes::Section;
-use crate::net::Wall;
+use crate::net::{EVEN_POWERS, Wall};
 
 /// Largest number of parameters of one formula.
 pub const MOST_PARAMETERS: usize = 6;
@@ -20,6 +20,9 @@ pub const MOST_PARAMETERS: usize = 6;
 pub struct Formula<D = f64> {
     /// The tape that computes it.
     pub tape: Arc<Tape>,
+    /// For an energy that is a sum of [`EVEN_POWERS`] of the stretches: the tape that computes their factors
+    /// \[N/m\], which depend on neither stretch nor radius. Such an energy is solved with in closed form.
+    pub even: Option<Arc<Tape>>,
     /// Its parameters in SI, at most [`MOST_PARAMETERS`].
     pub parameters: Vec<D>,
 }
@@ -52,13 +55,23 @@ impl<D: Real> Formula<D> {
         self.run_at(|index| inputs.get(index).map(|input| [*input])).map(|[output]| output)
     }
 
+    /// The factors of the even powers, if it is a sum of these.
+    pub(crate) fn even_powers(&self, inputs: [D; INPUTS]) -> Option<[D; EVEN_POWERS.len()]> {
+        let tape = self.even.as_ref()?;
+        Some(tape.run_on(|index| inputs.get(index).copied().unwrap_or_else(|| self.parameter(index))))
+    }
+
+    /// The parameter at a place of the tape.
+    fn parameter(&self, index: usize) -> D {
+        self.parameters.get(index - INPUTS).copied().unwrap_or(D::from(f64::NAN))
+    }
+
     /// The same at `L` points.
     fn run_at<const OUTPUTS: usize, const L: usize>(
         &self,
         input: impl Fn(usize) -> Option<[D; L]>,
     ) -> [[D; L]; OUTPUTS] {
-        let parameter = |i: usize| self.parameters.get(i).copied().unwrap_or(D::from(f64::NAN));
-        self.tape.run_at(|index| input(index).unwrap_or_else(|| [parameter(index - INPUTS); L]))
+        self.tape.run_at(|index| input(index).unwrap_or_else(|| [self.parameter(index); L]))
     }
 
     /// The same for another scalar. Each parameter has its name.
@@ -73,7 +86,11 @@ impl<D: Real> Formula<D> {
 
     /// The same for another scalar.
     pub(crate) fn map<E>(&self, f: impl FnMut(D) -> E) -> Formula<E> {
-        Formula { tape: Arc::clone(&self.tape), parameters: self.parameters.iter().copied().map(f).collect() }
+        Formula {
+            tape: Arc::clone(&self.tape),
+            even: self.even.clone(),
+            parameters: self.parameters.iter().copied().map(f).collect(),
+        }
     }
 }
 

@@ -17,20 +17,17 @@ use bulge_numerics::{Dual, Real};
 use crate::net::{NUMBERS, Net, OWN_NUMBERS};
 use crate::shooting::Total;
 
-/// Largest number of groups: length, fitting, angle, compliance, section, depth, two of the lobes or of the
-/// bladder, two of the cloth.
-const GROUPS: usize = 10;
 /// Part of a derivative that may be left unexplained.
 const REST: f64 = 1e-11;
 
 /// The derivatives of a net by its `N` - 2 variables, in two factors.
 pub(crate) struct Groups<const N: usize> {
     /// C, row by row in the places of [`Net::map`].
-    numbers: [[f64; GROUPS]; NUMBERS],
+    numbers: [[f64; N]; NUMBERS],
     /// Sizes of the numbers. The columns of C are orthonormal over them.
     size: [f64; NUMBERS],
     /// B.
-    variables: [[f64; N]; GROUPS],
+    variables: [[f64; N]; N],
     count: usize,
 }
 
@@ -45,9 +42,8 @@ impl<const N: usize> Groups<N> {
         let rows = &mut rows[..net.places()];
         let norm = |rows: &[[f64; N]], i: usize| rows.iter().map(|row| row[i] * row[i]).sum::<f64>().sqrt();
         let whole: [f64; N] = std::array::from_fn(|i| norm(rows, i));
-        let mut found =
-            Self { numbers: [[0.0; GROUPS]; NUMBERS], size, variables: [[0.0; N]; GROUPS], count: 0 };
-        while found.count < GROUPS {
+        let mut found = Self { numbers: [[0.0; N]; NUMBERS], size, variables: [[0.0; N]; N], count: 0 };
+        while found.count < N {
             let share = |i: usize| if whole[i] > 0.0 { norm(rows, i) / whole[i] } else { 0.0 };
             let Some(pivot) = (2..N).max_by(|a, b| share(*a).total_cmp(&share(*b))) else { break };
             if share(pivot) < REST {

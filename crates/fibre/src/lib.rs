@@ -30,6 +30,7 @@ pub use error::FibreError;
 pub use formulas::{Formula, FormulaInput, MOST_PARAMETERS};
 pub use isobars::{Isobar, isobars};
 pub use linearised::{Linear, Linearised, Repeated, Start};
+pub use net::EVEN_POWERS;
 pub use outcome::Approach;
 pub use parts::{Jet, LANES, Parts, Rubber, TautCloth};
 pub use problem::{

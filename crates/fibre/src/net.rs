@@ -12,7 +12,7 @@
 //! a constraint and T its multiplier):
 //!
 //! ```text
-//! w(r, sigma) = c T^2/2  +  B W(sigma/cos(alpha0), r/r0)  +  sigma u(r)                fibres + bladder + cloth
+//! w(r, sigma) = c T^2/2  +  B W(sigma/cos(alpha0), r/r0)  +  sigma u(r)                fibres + wall + cloth
 //! ```
 //!
 //! The equilibrium of -p A(r) dx and w dS then needs only these local quantities:
@@ -32,19 +32,33 @@ use std::f64::consts::PI;
 use crate::formulas::Formulas;
 use crate::lobes::{Lobes, Section};
 
-/// Largest count of numbers in a net without formulas: with lobes, bladder and cloth.
-pub(crate) const OWN_NUMBERS: usize = 17;
+/// Place of the first coefficient of the rubber, and that of the cloth after it.
+const RUBBER: usize = 13;
+const CLOTH: usize = RUBBER + EVEN_POWERS.len();
+/// Largest count of numbers in a net without formulas: with lobes, rubber and cloth.
+pub(crate) const OWN_NUMBERS: usize = CLOTH + 2;
 /// Largest count of numbers in a net.
 pub(crate) const NUMBERS: usize = OWN_NUMBERS + Formulas::<f64>::NUMBERS;
 
-/// Rubber bladder that follows the net point by point: Mooney-Rivlin W = c10 (I1 - 3) + c01 (I2 - 3),
-/// incompressible, plane stress, stretches l1 = sigma/cos(alpha0) along the meridian and l2 = r/r0 around it.
+/// Exponents of the stretches l1 and l2 in the terms of an energy that is solved with in closed form.
+///
+/// Along fibres that don't stretch l1^2 is linear in l2^2. The second divided differences of all these terms by
+/// l2^2 together then take no more than three coefficients.
+pub const EVEN_POWERS: [[i32; 2]; 8] = [[2, 0], [0, 2], [-2, -2], [-2, 0], [0, -2], [2, 2], [4, 0], [0, 4]];
+
+/// Energy of a wall that follows the net point by point: a sum of [`EVEN_POWERS`] of the stretches
+/// l1 = sigma/cos(alpha0) along the meridian and l2 = r/r0 around it, 0 at rest.
+///
+/// ```text
+/// w = sum of c_k (l1^i_k l2^j_k - 1),       (i_k, j_k) the exponents
+/// ```
+///
+/// Incompressible rubber after Mooney and Rivlin, W = c10 (I1 - 3) + c01 (I2 - 3), has c10 in the first three
+/// terms and c01 in the next three.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Bladder<D> {
-    /// 2 pi r0 t cos(alpha0) c10/(p R^2): energy scale per unstretched fibre length.
-    pub(crate) c10: D,
-    /// The same for c01.
-    pub(crate) c01: D,
+pub(crate) struct EvenPowers<D> {
+    /// 2 pi r0 cos(alpha0)/(p R^2) times the energy per area at rest: per unstretched fibre length.
+    pub(crate) terms: [D; EVEN_POWERS.len()],
 }
 
 /// Cloth that stops unfolding at r_u: u(r) = K (2 pi (r - r_u))^2/(2 * 2 pi r_u) beyond it, per meridian
@@ -82,11 +96,11 @@ pub(crate) struct Net<D> {
     pub(crate) depth: D,
     /// Cloth in lobes between the fibres, if any. It replaces the polygon.
     pub(crate) lobes: Option<Lobes<D>>,
-    /// Bladder, if any.
-    pub(crate) bladder: Option<Bladder<D>>,
+    /// Rubber or another wall whose energy has even powers only, if any.
+    pub(crate) rubber: Option<EvenPowers<D>>,
     /// Cloth with limited unfolding, if any.
     pub(crate) cloth: Option<Cloth<D>>,
-    /// A user's own formulas, if any: for the energy of the wall, for the area.
+    /// A user's own formulas, if any: for an energy of the wall that has other powers, for the area.
     pub(crate) formulas: Option<Box<Formulas<D>>>,
 }
 
@@ -151,7 +165,7 @@ impl<D: Real> Net<D> {
 
     /// Whether something besides the fibres stores energy all along the meridian: rubber, or a formula.
     pub(crate) fn has_wall(&self) -> bool {
-        self.bladder.is_some() || self.has_energy()
+        self.rubber.is_some() || self.has_energy()
     }
 
     /// Whether a user's own formula gives the energy of the wall.
@@ -227,8 +241,8 @@ impl<D: Real> Net<D> {
     pub(crate) fn wall(&self, sigma: D, r: D) -> Wall<D> {
         let zero = D::from(0.0);
         let mut wall = Wall { w: zero, w_1: zero, w_2: zero, w_11: zero, w_12: zero, w_22: zero };
-        if let Some(bladder) = &self.bladder {
-            bladder.add(&mut wall, sigma, r, self.cos_rest);
+        if let Some(rubber) = &self.rubber {
+            rubber.add(&mut wall, sigma, r, self.cos_rest);
         }
         if let Some(cloth) = &self.cloth {
             cloth.add(&mut wall, sigma, r);
@@ -373,8 +387,16 @@ impl<D: Real> Net<D> {
             area_factor: f(6, self.area_factor),
             depth: f(7, self.depth),
             lobes: self.lobes.map(|lobes| lobes.map(|i, d| f(8 + i, d))),
-            bladder: self.bladder.map(|b| Bladder { c10: f(13, b.c10), c01: f(14, b.c01) }),
-            cloth: self.cloth.map(|c| Cloth { stiffness: f(15, c.stiffness), radius: f(16, c.radius) }),
+            rubber: self.rubber.map(|rubber| {
+                let mut place = RUBBER;
+                rubber.map(|term| {
+                    place += 1;
+                    f(place - 1, term)
+                })
+            }),
+            cloth: self
+                .cloth
+                .map(|c| Cloth { stiffness: f(CLOTH, c.stiffness), radius: f(CLOTH + 1, c.radius) }),
             formulas: self
                 .formulas
                 .as_ref()
@@ -411,7 +433,7 @@ impl Net<f64> {
             area_factor: 1.0,
             depth: 0.0,
             lobes: None,
-            bladder: None,
+            rubber: None,
             cloth: None,
             formulas: None,
         }
@@ -427,32 +449,64 @@ impl Net<f64> {
         self.map(|_, d| D::from(d))
     }
 
-    /// The same net with a fraction of the stiffness of bladder and cloth.
+    /// The same net with a fraction of the stiffness of wall and cloth.
     pub(crate) fn with_walls(&self, part: f64) -> Self {
-        let bladder = self.bladder.map(|b| Bladder { c10: part * b.c10, c01: part * b.c01 });
+        let rubber = self.rubber.map(|rubber| rubber.map(|term| part * term));
         let cloth = self.cloth.map(|c| Cloth { stiffness: part * c.stiffness, ..c });
         let formulas = self.formulas.as_ref().map(|formulas| Box::new(formulas.with_part(part)));
-        Self { bladder, cloth, formulas, ..self.clone() }
+        Self { rubber, cloth, formulas, ..self.clone() }
     }
 }
 
-impl<D: Real> Bladder<D> {
-    /// ```text
-    /// I1 - 3 = l1^2 + l2^2 + 1/(l1 l2)^2 - 3        I2 - 3 = 1/l1^2 + 1/l2^2 + (l1 l2)^2 - 3
-    /// ```
+impl<D: Real> EvenPowers<D> {
+    /// Rubber after Mooney and Rivlin.
+    pub(crate) fn mooney_rivlin(c10: D, c01: D) -> Self {
+        let none = D::from(0.0);
+        Self { terms: [c10, c10, c10, c01, c01, c01, none, none] }
+    }
+
+    /// The energies of both.
+    pub(crate) fn with(&self, other: &Self) -> Self {
+        Self { terms: std::array::from_fn(|k| self.terms[k] + other.terms[k]) }
+    }
+
+    /// Each term changed.
+    pub(crate) fn map<E>(self, f: impl FnMut(D) -> E) -> EvenPowers<E> {
+        EvenPowers { terms: self.terms.map(f) }
+    }
+
+    /// The factors of y^2, 1/y and 1/sigma^2 in the energy of fibres that don't stretch, with y = r^2,
+    /// l2^2 = y and l1^2 = sigma^2/cos(alpha0)^2 = (1 - q^2 y)/cos(alpha0)^2. The rest is linear in y.
+    pub(crate) fn along_fibres(&self, q2: D, cos2: D) -> [D; 3] {
+        let [_, _, both, along, around, product, along_4, around_4] = self.terms;
+        let share = q2 / cos2;
+        // 1/(l1 l2)^2 = cos^2 (1/y + q^2/sigma^2).
+        [around_4 + share * (share * along_4 - product), both * cos2 + around, (both * q2 + along) * cos2]
+    }
+
+    /// A derivative of a power is the power times its exponent over the stretch.
     fn add(&self, wall: &mut Wall<D>, sigma: D, r: D, cos_rest: D) {
-        let (l1, l2) = (sigma / cos_rest, r);
-        let (i1, i2) = (D::from(1.0) / l1, D::from(1.0) / l2);
-        let (a, b) = (l1 * l1, l2 * l2);
-        let (ia, ib) = (i1 * i1, i2 * i2);
-        let iab = ia * ib;
-        let sum = |x: D, y: D| self.c10 * x + self.c01 * y;
-        wall.w += sum(a + b + iab - 3.0, ia + ib + a * b - 3.0);
-        wall.w_1 += sum(l1 - iab * i1, l1 * b - ia * i1) * 2.0 / cos_rest;
-        wall.w_2 += sum(l2 - iab * i2, l2 * a - ib * i2) * 2.0;
-        wall.w_11 += sum(iab * ia * 3.0 + 1.0, ia * ia * 3.0 + b) * 2.0 / (cos_rest * cos_rest);
-        wall.w_22 += sum(iab * ib * 3.0 + 1.0, ib * ib * 3.0 + a) * 2.0;
-        wall.w_12 += sum(iab * i1 * i2, l1 * l2) * 4.0 / cos_rest;
+        let (l1, per_sigma, per_r) = (sigma / cos_rest, D::from(1.0) / sigma, D::from(1.0) / r);
+        let per_l1 = cos_rest * per_sigma;
+        let (a, b, per_a, per_b) = (l1 * l1, r * r, per_l1 * per_l1, per_r * per_r);
+        let powers = [a, b, per_a * per_b, per_a, per_b, a * b, a * a, b * b];
+        let none = D::from(0.0);
+        let (mut by_1, mut by_2, mut by_11, mut by_12, mut by_22) = (none, none, none, none, none);
+        for ((term, power), [i, j]) in self.terms.iter().zip(powers).zip(EVEN_POWERS) {
+            let (i, j) = (f64::from(i), f64::from(j));
+            let part = *term * power;
+            wall.w += part - *term;
+            by_1 = part.scale_add(i, by_1);
+            by_2 = part.scale_add(j, by_2);
+            by_11 = part.scale_add(i * (i - 1.0), by_11);
+            by_12 = part.scale_add(i * j, by_12);
+            by_22 = part.scale_add(j * (j - 1.0), by_22);
+        }
+        wall.w_1 += by_1 * per_sigma;
+        wall.w_2 += by_2 * per_r;
+        wall.w_11 += by_11 * per_sigma * per_sigma;
+        wall.w_12 += by_12 * per_sigma * per_r;
+        wall.w_22 += by_22 * per_b;
     }
 }
 
@@ -485,7 +539,7 @@ impl<D: Real> Cloth<D> {
 pub(crate) mod tests {
     use super::*;
 
-    /// An elastic net with bladder and cloth, every term alive.
+    /// An elastic net with rubber and cloth, every term alive.
     pub(crate) fn rich<D: Real>() -> Net<D> {
         Net {
             end_radius: D::from(1.0),
@@ -497,7 +551,7 @@ pub(crate) mod tests {
             area_factor: D::from(0.97),
             depth: D::from(0.1),
             lobes: None,
-            bladder: Some(Bladder { c10: D::from(0.3), c01: D::from(0.1) }),
+            rubber: Some(EvenPowers { terms: [0.3, 0.3, 0.3, 0.1, 0.1, 0.1, 0.04, 0.02].map(D::from) }),
             cloth: Some(Cloth { stiffness: D::from(0.7), radius: D::from(1.2) }),
             formulas: None,
         }

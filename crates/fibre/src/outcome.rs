@@ -8,6 +8,7 @@ use crate::cylinder;
 use crate::groups::Groups;
 use crate::meridian::{COS, SIN, TENSION};
 use crate::net::{Net, OWN_NUMBERS};
+use crate::parts::PARTS;
 use crate::problem::{MOST_STRAIN, Problem};
 use crate::shape::{Convergence, Method};
 use crate::shooting::{self, Ending, Total, Way};
@@ -160,7 +161,8 @@ impl Problem {
                     0..=2 => by_groups::<N, 4>(plain, net, &groups, contraction, (from, ending)),
                     3..=4 => by_groups::<N, 6>(plain, net, &groups, contraction, (from, ending)),
                     5..=6 => by_groups::<N, 8>(plain, net, &groups, contraction, (from, ending)),
-                    _ => by_groups::<N, 12>(plain, net, &groups, contraction, (from, ending)),
+                    7..=10 => by_groups::<N, 12>(plain, net, &groups, contraction, (from, ending)),
+                    _ => by_groups::<N, { 3 + PARTS }>(plain, net, &groups, contraction, (from, ending)),
                 }
             }
         })

@@ -10,7 +10,7 @@ use std::f64::consts::PI;
 use crate::FibreError;
 use crate::formulas::{Formula, Formulas, MOST_PARAMETERS};
 use crate::lobes::Lobes;
-use crate::net::{Bladder, Cloth, Net};
+use crate::net::{Cloth, EvenPowers, Net};
 use crate::problem::{
     BRAID_ANGLE, BRAIDED_SLENDERNESS, LOBED_FIBRES, LOBED_LENGTH, PLEATED_SLENDERNESS, WIDEST_FITTING,
 };
@@ -424,11 +424,18 @@ impl<D: Real> Parts<D> {
             let [turn] = twist.run([none, none, none, radius, pressure, self.angle, self.length]);
             net.turn = turn * radius;
         }
-        if self.energy.is_some() || self.area.is_some() {
+        // Per unstretched fibre length: 2 pi r0 W per axial length at rest, cos(alpha0) of that.
+        let scale = cos * (2.0 * PI) / (radius * pressure);
+        let even = self.energy.as_ref().and_then(|energy| {
+            let none = D::from(f64::NAN);
+            energy.even_powers([none, none, none, radius, pressure, self.angle, self.length])
+        });
+        let energy = self.energy.clone().filter(|_| even.is_none());
+        if energy.is_some() || self.area.is_some() {
             net.formulas = Some(Box::new(Formulas {
-                energy: self.energy.clone(),
+                energy,
                 area: self.area.clone(),
-                scale: cos * (2.0 * PI) / (radius * pressure),
+                scale,
                 radius,
                 pressure,
                 angle: self.angle,
@@ -439,11 +446,15 @@ impl<D: Real> Parts<D> {
             net.area_factor = n * (D::from(2.0 * PI) / n).sin_cos().0 / (2.0 * PI);
             net.lobes = self.lobes.map(|circumference| Lobes::new(n, circumference / radius));
         }
-        net.bladder = self.rubber.map(|rubber| {
-            // 2 pi r0 t W per axial length at rest; cos(alpha0) of that per fibre length.
-            let scale = rubber.wall * cos * (2.0 * PI) / (radius * pressure);
-            Bladder { c10: scale * rubber.c10, c01: scale * rubber.c01 }
+        let rubber = self.rubber.map(|rubber| {
+            let scale = rubber.wall * scale;
+            EvenPowers::mooney_rivlin(scale * rubber.c10, scale * rubber.c01)
         });
+        let own = even.map(|terms| EvenPowers { terms }.map(|term| scale * term));
+        net.rubber = match (rubber, own) {
+            (Some(rubber), Some(own)) => Some(rubber.with(&own)),
+            (rubber, own) => rubber.or(own),
+        };
         net.cloth = self.cloth.map(|cloth| Cloth {
             stiffness: cloth.stiffness / (pressure * radius),
             radius: cloth.radius / radius,

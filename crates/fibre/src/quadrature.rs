@@ -217,15 +217,9 @@ impl<'a, D: Real> Inextensible<'a, D> {
         }
         let zero = D::from(0.0);
         let mut wall = [zero; 3];
-        if let Some(bladder) = &net.bladder {
-            // With l1^2 = sigma^2/c^2, l2^2 = y and sigma^2 = 1 - q^2 y:
-            // I1 = (1 - q^2/c^2) y + c^2/y + c^2 q^2/sigma^2 + const        I2 = c^2/sigma^2 + 1/y + (y - q^2 y^2)/c^2 + const
-            let c2 = net.cos_rest * net.cos_rest;
-            wall = [
-                -(bladder.c01 * q2 / c2),
-                (bladder.c10 * c2 + bladder.c01) / (y_m * y_m),
-                (bladder.c10 * q2 + bladder.c01) * c2 * q2 * q2 / (v_m * v_m),
-            ];
+        if let Some(rubber) = &net.rubber {
+            let [of_square, of_inverse, of_sigma] = rubber.along_fibres(q2, net.cos_rest * net.cos_rest);
+            wall = [of_square, of_inverse / (y_m * y_m), of_sigma * q2 * q2 / (v_m * v_m)];
         }
         Self {
             sigma_m,
@@ -477,7 +471,7 @@ fn end<D: Real>(net: &Net<D>, meridian: &impl Meridian<D>, sums: [D; 3]) -> End<
 mod tests {
     use super::*;
     use crate::meridian;
-    use crate::net::Bladder;
+    use crate::net::EvenPowers;
     use crate::unknowns::Unknowns;
     use bulge_numerics::Dual;
 
@@ -487,25 +481,25 @@ mod tests {
     }
 
     fn nets() -> Vec<(&'static str, Net<f64>)> {
-        let bladder = Some(Bladder { c10: 0.5, c01: 0.2 });
+        let rubber = Some(EvenPowers::mooney_rivlin(0.5, 0.2));
+        let even = Some(EvenPowers { terms: [0.5, 0.3, 0.2, 0.1, 0.4, 0.1, 0.05, 0.08] });
         let cloth = Some(Cloth { stiffness: 3.0, radius: 1.1 });
         vec![
             ("braid", braid()),
-            ("bladder", Net { bladder, depth: -0.1, ..braid() }),
-            ("fittings", Net { bladder, end_radius: 0.8, ..braid() }),
+            ("bladder", Net { rubber, depth: -0.1, ..braid() }),
+            ("even powers", Net { rubber: even, ..braid() }),
+            ("even powers, elastic", Net { rubber: even, compliance: 1e-3, ..braid() }),
+            ("fittings", Net { rubber, end_radius: 0.8, ..braid() }),
             ("straight", Net { half_fibre: 3.0, area_factor: 0.98, depth: 0.1, ..Net::plain() }),
             ("cloth", Net { half_fibre: 3.0, cloth, ..Net::plain() }),
-            ("all", Net { bladder, cloth, depth: 0.1, half_fibre: 5.0, ..braid() }),
+            ("all", Net { rubber, cloth, depth: 0.1, half_fibre: 5.0, ..braid() }),
             ("elastic", Net { compliance: 4e-3, ..braid() }),
-            ("elastic bladder", Net { compliance: 1e-3, bladder, depth: -0.1, ..braid() }),
-            ("hardly elastic", Net { compliance: 1e-7, bladder, end_radius: 0.8, ..braid() }),
+            ("elastic bladder", Net { compliance: 1e-3, rubber, depth: -0.1, ..braid() }),
+            ("hardly elastic", Net { compliance: 1e-7, rubber, end_radius: 0.8, ..braid() }),
             ("elastic, straight", Net { compliance: 1e-2, half_fibre: 3.0, depth: 0.1, ..Net::plain() }),
             ("elastic cloth", Net { compliance: 4e-3, cloth, ..braid() }),
             ("elastic, straight, cloth", Net { compliance: 1e-2, half_fibre: 3.0, cloth, ..Net::plain() }),
-            (
-                "elastic, all",
-                Net { compliance: 1e-3, bladder, cloth, depth: 0.1, half_fibre: 5.0, ..braid() },
-            ),
+            ("elastic, all", Net { compliance: 1e-3, rubber, cloth, depth: 0.1, half_fibre: 5.0, ..braid() }),
         ]
     }
 
@@ -535,7 +529,7 @@ mod tests {
                     let seeded = Net {
                         turn: lifted.turn + Dual::variable(0.0, 2),
                         end_radius: lifted.end_radius + Dual::variable(0.0, 3),
-                        bladder: lifted.bladder.map(|b| Bladder { c10: b.c10 + Dual::variable(0.0, 4), ..b }),
+                        rubber: lifted.rubber.map(|rubber| rubber.map(|term| term + Dual::variable(0.0, 4))),
                         compliance: if net.compliance > 0.0 {
                             Dual::variable(net.compliance, 5)
                         } else {
@@ -589,7 +583,7 @@ mod tests {
     #[test]
     fn a_deep_waist_keeps_its_first_integral() {
         let turn: f64 = 0.555_101_278_868_038;
-        let bladder = Some(Bladder { c10: 0.012_229_751_065_880_427, c01: 0.0 });
+        let rubber = Some(EvenPowers::mooney_rivlin(0.012_229_751_065_880_427, 0.0));
         for compliance in [0.0, 1.838_454_295_801_838e-7] {
             let net = Net {
                 end_radius: 1.759_921_190_323_371_1,
@@ -598,7 +592,7 @@ mod tests {
                 sin2_rest: turn * turn,
                 turn,
                 compliance,
-                bladder,
+                rubber,
                 ..Net::plain()
             };
             let at = Unknowns::new(&net, -1.0, [0.482_900_125_306_665_76, -9.216_759_708_977_916]);

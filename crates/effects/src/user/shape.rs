@@ -1,6 +1,6 @@
 //! User-defined shape effects: the equilibrium of the net is solved with a formula.
 
-use bulge_fibre::{Formula, FormulaInput, Jet, MOST_PARAMETERS, Parts};
+use bulge_fibre::{EVEN_POWERS, Formula, FormulaInput, Jet, MOST_PARAMETERS, Parts};
 use bulge_muscles::{Dimension, MuscleError};
 use bulge_numerics::Real;
 use bulge_numerics::tape::{Builder, Function, Operator, Place, Tape};
@@ -62,6 +62,8 @@ pub struct ShapeFormula {
     pub expression: Expression,
     /// The formula with the derivatives that the equilibrium needs.
     tape: Arc<Tape>,
+    /// The factors of [`EVEN_POWERS`], for an energy that is a sum of these.
+    even: Option<Arc<Tape>>,
 }
 
 impl ShapeFormula {
@@ -113,7 +115,8 @@ impl ShapeFormula {
             let what = format!("`{}` and its derivatives need too many numbers at a time", quantity.key());
             refused(what, "write a shorter formula")
         })?;
-        Ok(Self { quantity, expression, tape: Arc::new(tape) })
+        let even = if quantity == ShapeQuantity::Energy { even_powers(&expression) } else { None };
+        Ok(Self { quantity, expression, tape: Arc::new(tape), even: even.map(Arc::new) })
     }
 
     /// Puts the formula with its parameters into the parts of a muscle. If it changes nothing (at zero
@@ -122,7 +125,8 @@ impl ShapeFormula {
         if !theta.iter().any(Jet::moves) && self.changes_nothing(theta, parts) {
             return Ok(());
         }
-        let formula = Formula { tape: Arc::clone(&self.tape), parameters: theta.to_vec() };
+        let formula =
+            Formula { tape: Arc::clone(&self.tape), even: self.even.clone(), parameters: theta.to_vec() };
         let place = match self.quantity {
             ShapeQuantity::Energy => &mut parts.energy,
             ShapeQuantity::Area => &mut parts.area,
@@ -158,6 +162,28 @@ impl ShapeFormula {
             }
         }
     }
+}
+
+/// The factors of [`EVEN_POWERS`] in an energy, if it has no other powers. What depends on neither stretch is left
+/// out: it changes nothing.
+fn even_powers(expression: &Expression) -> Option<Tape> {
+    use FormulaInput::{AlongMeridian, AroundAxis, Radius, ReferenceRadius};
+    let (mut steps, place) = expression.steps();
+    let terms = steps.powers(place, [AlongMeridian, AroundAxis, Radius].map(|input| input as usize))?;
+    let reference = steps.input(ReferenceRadius as usize);
+    let mut factors = [steps.constant(0.0); EVEN_POWERS.len()];
+    for ([along, around, radius], factor) in terms {
+        // r = l2 r0.
+        let powers = [along, around.checked_add(radius)?];
+        let scale = steps.whole_power(reference, radius);
+        let factor = steps.operate(Operator::Multiply, factor, scale);
+        match EVEN_POWERS.iter().position(|even| *even == powers) {
+            Some(k) => factors[k] = steps.operate(Operator::Add, factors[k], factor),
+            None if powers == [0, 0] => {}
+            None => return None,
+        }
+    }
+    steps.finish(&factors)
 }
 
 /// The derivative by l2, with r = l2 r0 following l2.
@@ -251,6 +277,81 @@ mod tests {
         parameters.mu = { unit = \"MPa\", typical = \"0.6 MPa\", low = \"0 MPa\", high = \"6 MPa\" }\n\
         parameters.a = { unit = \"1\", typical = 1.3, low = 0.5, high = 8 }\n\
         parameters.h = { unit = \"mm\", typical = \"2 mm\", low = \"0.5 mm\", high = \"5 mm\" }\n";
+
+    /// Energies of even powers are solved with in closed form, however they are written; others give the same by
+    /// series.
+    #[test]
+    fn even_powers_are_found() {
+        let parameters =
+            "parameters.k = { unit = \"N/m\", typical = \"500 N/m\", low = \"0 N/m\", high = \"1e6 N/m\" }\n";
+        let of = |energy: &str| {
+            own(&format!("[effects.own]\ntitle = \"Own\"\nenergy = \"{energy}\"\n{parameters}"))
+        };
+        let parts = |energy: &str| of(energy).reshaped(&[500.0], &clamped()).unwrap();
+        let force = |parts: &Parts| force(parts, 3.0, 0.1);
+        for (even, other) in [
+            ("k*(l1^2 + (r/r0)^2 + 1/(l1*l2)^2 - 3)", "k*(l1^2 + l2^2 + 1/(l1*l2)^2.0000000000001 - 3)"),
+            ("k*(l1^-2 + l2^-2 + (l1*l2)^2)", "k*(exp(-2*ln(l1)) + 1/l2^2 + l1^2*l2^2)"),
+            ("0.5*k*((l1^2 - 1)^2 + (l2^2 - 1)^2)", "0.5*k*((sqrt(l1)^4 - 1)^2 + (l2^2 - 1)^2)"),
+            ("k*(l2 - 1/l2)^2", "k*(sqrt(l2)^2 - 1/l2)^2"),
+        ] {
+            let (even, other) = (parts(even), parts(other));
+            let is_even = |parts: &Parts| parts.energy.as_ref().unwrap().even.is_some();
+            assert!(is_even(&even) && !is_even(&other));
+            assert!((force(&even) / force(&other) - 1.0).abs() < 1e-11, "{} {}", force(&even), force(&other));
+            assert!((force(&even) / force(&Parts::of(&clamped())) - 1.0).abs() > 1e-4);
+        }
+        for other in ["k*(l2 - 1)^2", "k*l1*l2", "k*(l1^2 + l2^2 - 2)^2/(l1^2 + l2^2)", "k*l2^6"] {
+            assert!(parts(other).energy.unwrap().even.is_none(), "{other}");
+        }
+    }
+
+    /// Every number of an elastic braid with rubber and formulas for energy and area, more than ten independent
+    /// groups: its derivative against a difference.
+    #[test]
+    fn derivatives_by_all_parts_are_those_of_differences() {
+        let muscle = preset("dmsp-20-250")
+            .unwrap()
+            .with(Parameter::Wall, 0.002)
+            .and_then(|muscle| muscle.with(Parameter::C10, 2e5))
+            .and_then(|muscle| muscle.with(Parameter::C01, 5e4))
+            .and_then(|muscle| muscle.with(Parameter::FittingRadius, 0.0105))
+            .unwrap();
+        let energy = "[effects.own]\ntitle = \"Own\"\nenergy = \"a*l2^2.5 + b*l1^1.5 + c*ln(l2)^2 + d*l1*l2 + e*(l1 - 1)^4 + f*exp(l2)\"\n";
+        let area =
+            "[effects.area]\ntitle = \"Area\"\narea = \"pi*(r - t)^2*(1 + g*(l2 - 1)^2) + h*r*(r - r0)\"\n";
+        let number = |name: &str, unit: &str| {
+            format!(
+                "parameters.{name} = {{ unit = \"{unit}\", typical = \"1 {unit}\", low = \"0 {unit}\", high = \"1e6 {unit}\" }}\n"
+            )
+        };
+        let plain =
+            |name: &str| format!("parameters.{name} = {{ unit = \"1\", typical = 1, low = 0, high = 10 }}\n");
+        let energy: String =
+            energy.to_owned() + &["a", "b", "c", "d", "e", "f"].map(|name| number(name, "N/m")).concat();
+        let area = area.to_owned() + &number("t", "mm") + &plain("g") + &plain("h");
+        let mut moving =
+            own(&energy).reshaped(&[90.0, 70.0, 50.0, 40.0, 60.0, 20.0], &muscle).unwrap().still();
+        own(&area).reshape(&[0.001, 0.1, 0.05].map(Jet::from), &mut moving).unwrap();
+        moving.compliance = Jet::from(1e-5);
+        let parts = moving.values();
+        let (pressure, contraction) = (Pressure::bar(3.0), 0.1);
+        let found = Problem::new(&parts, pressure).unwrap().gradient(contraction, Approach::Auto).unwrap();
+        let mut tried = 0;
+        for (name, number) in parts.numbers() {
+            let step = 1e-5 * if number == 0.0 { 1e-3 } else { number };
+            let force = |sign: f64| {
+                let moved = parts.map(|other, value| if other == name { value + sign * step } else { value });
+                Problem::new(&moved, pressure).unwrap().follow(contraction, Approach::Auto).unwrap().force_n
+            };
+            let difference = (force(1.0) - force(-1.0)) / (2.0 * step);
+            let (_, [exact, _]) = found.by_part.iter().find(|(other, _)| *other == name).unwrap();
+            let size = exact.abs() + 1e-3 / step.abs() * 1e-5;
+            assert!((exact - difference).abs() < 1e-5 * size, "{name}: {exact} {difference}");
+            tried += u32::from(*exact != 0.0);
+        }
+        assert!(tried > 15, "{tried}");
+    }
 
     /// dF = 2 pi r0 (W_1 - W_2 l1 cot^2(alpha0)/l2) for a cylinder, with W per area at rest.
     #[test]
