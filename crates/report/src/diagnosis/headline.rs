@@ -12,6 +12,8 @@ const ALIKE: usize = 4;
 const SURER: f64 = 0.05;
 /// Beginning of a verdict that names effects.
 const MISSING: &str = "missing: ";
+/// Added to a claim that another geometry would change.
+const IF_STATED: &str = ", if the geometry is as stated, which these data doubt";
 /// Possible beginning of a diagnosis without a verdict.
 const CANNOT_TELL: &str = "these data can't tell: ";
 /// Wording of verdicts for which the diagnosis has no sentence of its own.
@@ -38,6 +40,8 @@ pub fn headlines(diagnosis: &Diagnosis) -> Vec<String> {
 }
 
 fn verdict(diagnosis: &Diagnosis) -> Vec<String> {
+    let doubtful = diagnosis.geometry.if_doubtful.as_ref();
+    let if_stated = if doubtful.is_some_and(|other| other.differs) { IF_STATED } else { "" };
     let claim = |missing: &Missing| {
         let (right, mechanism) = (chance(missing.confidence), missing.mechanism.name());
         let right = if missing.simulated.claims == 0 {
@@ -52,7 +56,7 @@ fn verdict(diagnosis: &Diagnosis) -> Vec<String> {
             String::new()
         };
         let of = if missing.level == Level::Class { format!("{}: ", missing.effect) } else { String::new() };
-        format!("{MISSING}{} ({of}{mechanism}; {right}{of_mechanism})", missing.claim())
+        format!("{MISSING}{} ({of}{mechanism}; {right}{of_mechanism}{if_stated})", missing.claim())
     };
     let nearest = |why: &str| -> Vec<String> {
         diagnosis.nearest.iter().map(|missing| format!("nearest: {} ({why})", missing.effect)).collect()

@@ -3,7 +3,7 @@
 use crate::diagnosed::{adequate, cannot_tell, missing, unknown};
 use crate::page::{check_page, check_plots, parsed, words};
 use crate::sample::{Recipe, bare, crowded, empty, hostile, rich};
-use bulge_inference::{Comparison, Diagnosis, Level};
+use bulge_inference::{Comparison, Diagnosis, Level, OtherAnswer, Verdict};
 use bulge_report::PlotError;
 use bulge_report::diagnosis::{base_name, headlines, html, noise_says, plots, remains_says};
 use roxmltree::Document;
@@ -138,6 +138,14 @@ fn a_claim_goes_as_far_as_the_data_decide() {
     assert!(first(&diagnosis).starts_with(begins), "{}", first(&diagnosis));
     diagnosis.missing[0].class.truncate(1);
     assert!(first(&diagnosis).starts_with("missing: rubber, likeliest bladder-elasticity ("));
+    // A claim that the usual doubt of the geometry would take back says so.
+    let other = |differs| Some(OtherAnswer { verdict: Verdict::Unknown, missing: Vec::new(), differs });
+    for (differs, ends) in
+        [(false, "of the time)"), (true, ", if the geometry is as stated, which these data doubt)")]
+    {
+        diagnosis.geometry.if_doubtful = other(differs);
+        assert!(first(&diagnosis).ends_with(ends), "{}", first(&diagnosis));
+    }
     // A further effect of which not even the mechanism is likely is shown, but not claimed.
     let mut doubtful = diagnosis.missing.remove(1);
     (doubtful.confidence_mechanism, doubtful.plausible) = (0.2, true);
