@@ -12,6 +12,7 @@
 //! C has as many columns as the net has independent derivatives. Gram and Schmidt's method with pivots finds
 //! them.
 
+use arrayvec::ArrayVec;
 use bulge_numerics::{Dual, Real};
 
 use crate::net::{NUMBERS, Net, OWN_NUMBERS};
@@ -33,37 +34,48 @@ pub(crate) struct Groups<const N: usize> {
 
 impl<const N: usize> Groups<N> {
     pub(crate) fn of(net: &Net<Dual<N>>) -> Self {
-        let (mut size, mut rows) = ([1.0; NUMBERS], [[0.0; N]; NUMBERS]);
+        let mut found =
+            Self { numbers: [[0.0; N]; NUMBERS], size: [1.0; NUMBERS], variables: [[0.0; N]; N], count: 0 };
+        // The rows of the numbers that move, relative to the number, so that a small one is not lost beside a
+        // larger one.
+        let mut rows: ArrayVec<(usize, [f64; N]), NUMBERS> = ArrayVec::new();
         net.each(|row, number| {
-            // Relative to the number, so that a small one is not lost beside a larger one.
-            size[row] = if number.value() == 0.0 { 1.0 } else { number.value().abs() };
-            rows[row] = number.gradient().map(|slope| slope / size[row]);
+            if number.gradient().iter().any(|slope| *slope != 0.0) {
+                let size = if number.value() == 0.0 { 1.0 } else { number.value().abs() };
+                found.size[row] = size;
+                rows.push((row, number.gradient().map(|slope| slope / size)));
+            }
         });
-        let rows = &mut rows[..net.places()];
-        let norm = |rows: &[[f64; N]], i: usize| rows.iter().map(|row| row[i] * row[i]).sum::<f64>().sqrt();
-        let whole: [f64; N] = std::array::from_fn(|i| norm(rows, i));
-        let mut found = Self { numbers: [[0.0; N]; NUMBERS], size, variables: [[0.0; N]; N], count: 0 };
+        let norms = |rows: &[(usize, [f64; N])]| {
+            let mut sums = [0.0; N];
+            for (_, row) in rows {
+                sums.iter_mut().zip(row).for_each(|(sum, value)| *sum += value * value);
+            }
+            sums.map(f64::sqrt)
+        };
+        let whole = norms(&rows);
         while found.count < N {
-            let share = |i: usize| if whole[i] > 0.0 { norm(rows, i) / whole[i] } else { 0.0 };
+            let left = norms(&rows);
+            let share = |i: usize| if whole[i] > 0.0 { left[i] / whole[i] } else { 0.0 };
             let Some(pivot) = (2..N).max_by(|a, b| share(*a).total_cmp(&share(*b))) else { break };
             if share(pivot) < REST {
                 break;
             }
-            let (k, length) = (found.count, norm(rows, pivot));
-            let mut direction = [0.0; NUMBERS];
-            for (along, row) in direction.iter_mut().zip(&*rows) {
-                *along = row[pivot] / length;
+            let k = found.count;
+            for (row, slopes) in &rows {
+                found.numbers[*row][k] = slopes[pivot] / left[pivot];
             }
-            for i in 2..N {
-                let along: f64 = rows.iter().zip(&direction).map(|(row, d)| row[i] * d).sum();
-                found.variables[k][i] = along;
-                for (row, d) in rows.iter_mut().zip(&direction) {
-                    row[i] -= along * d;
-                }
+            let mut along = [0.0; N];
+            for (row, slopes) in &rows {
+                let direction = found.numbers[*row][k];
+                along.iter_mut().zip(slopes).skip(2).for_each(|(sum, slope)| *sum += slope * direction);
             }
-            for (row, (d, size)) in found.numbers.iter_mut().zip(direction.iter().zip(size)) {
-                row[k] = d * size;
+            for (row, slopes) in &mut rows {
+                let direction = &mut found.numbers[*row][k];
+                slopes.iter_mut().zip(along).for_each(|(slope, along)| *slope -= along * *direction);
+                *direction *= found.size[*row];
             }
+            found.variables[k] = along;
             found.count += 1;
         }
         found

@@ -191,21 +191,28 @@ impl<D: Real> Net<D> {
         [cloth, self.lobes.map(|lobes| lobes.contact_radius() - self.depth)]
     }
 
-    #[inline]
-    fn section_of_formula(&self, r: D) -> Option<Section<D>> {
-        self.formulas.as_ref()?.section(r)
-    }
-
     /// The cross-section: the area A(r) on which the pressure acts, and its derivatives.
     #[inline]
     pub(crate) fn section(&self, r: D) -> Section<D> {
-        if let Some(section) = self.section_of_formula(r) {
+        // An integration asks for it at every radius: the usual section takes no call.
+        if self.lobes.is_some() || self.formulas.is_some() {
+            return self.section_of_parts(r);
+        }
+        self.usual_section(r + self.depth)
+    }
+
+    #[inline(never)]
+    fn section_of_parts(&self, r: D) -> Section<D> {
+        if let Some(section) = self.formulas.as_ref().and_then(|formulas| formulas.section(r)) {
             return section;
         }
         let r = r + self.depth;
-        if let Some(lobes) = &self.lobes {
-            return lobes.section(r);
-        }
+        self.lobes.as_ref().map_or_else(|| self.usual_section(r), |lobes| lobes.section(r))
+    }
+
+    /// A polygon or circle that reaches out to r.
+    #[inline]
+    fn usual_section(&self, r: D) -> Section<D> {
         let area_rr = self.area_factor * (2.0 * PI);
         let area_r = area_rr * r;
         Section { area: area_r * r * 0.5, area_r, area_rr }
@@ -272,22 +279,16 @@ impl<D: Real> Net<D> {
         ((self.compliance * tension + 1.0).squared() - (self.turn * r).squared()).sqrt()
     }
 
-    /// Straight fibres and nothing else: the general formulas reduce to N = T, h = 0.
-    fn is_plain(&self) -> bool {
-        self.turn.value() == 0.0 && !self.has_wall() && self.cloth.is_none()
-    }
-
-    /// An angle and nothing else, the usual braid.
-    fn is_trellis(&self) -> bool {
-        self.compliance.value() == 0.0 && !self.has_wall() && self.cloth.is_none()
-    }
-
     /// All local quantities at radius `r` and tension `tension` of all fibres.
     ///
     /// An integration spends most of its time here. The two usual nets are therefore written out: that of a
     /// braid takes half the time of the general formulas, to which both are equal up to rounding.
     pub(crate) fn local(&self, r: D, tension: D) -> Local<D> {
-        if self.is_plain() {
+        if self.has_wall() || self.cloth.is_some() {
+            return self.local_of_everything(r, tension);
+        }
+        if self.turn.value() == 0.0 {
+            // N = T, h = 0.
             let zero = D::from(0.0);
             return Local {
                 sigma: self.compliance * tension + 1.0,
@@ -299,7 +300,7 @@ impl<D: Real> Net<D> {
                 hoop_t: zero,
             };
         }
-        if self.is_trellis() {
+        if self.compliance.value() == 0.0 {
             let q2 = self.turn * self.turn;
             let q2r = q2 * r;
             let sigma = (-(q2r * r) + 1.0).sqrt();
@@ -404,11 +405,6 @@ impl<D: Real> Net<D> {
         }
     }
 
-    /// One past the last place of its numbers.
-    pub(crate) fn places(&self) -> usize {
-        if self.formulas.is_some() { NUMBERS } else { OWN_NUMBERS }
-    }
-
     /// Its numbers with their places.
     pub(crate) fn each(&self, f: impl FnMut(usize, D)) {
         self.map(f);
@@ -422,6 +418,7 @@ impl<D: Real> Net<D> {
 
 impl Net<f64> {
     /// Straight inextensible fibres, circular sections, of half-length 1.
+    #[cfg(test)]
     pub(crate) const fn plain() -> Self {
         Self {
             end_radius: 1.0,
@@ -484,29 +481,26 @@ impl<D: Real> EvenPowers<D> {
         [around_4 + share * (share * along_4 - product), both * cos2 + around, (both * q2 + along) * cos2]
     }
 
-    /// A derivative of a power is the power times its exponent over the stretch.
+    /// A derivative of a power is the power times its exponent over the stretch. The exponents are written out: an
+    /// integration spends most of its time here.
     fn add(&self, wall: &mut Wall<D>, sigma: D, r: D, cos_rest: D) {
         let (l1, per_sigma, per_r) = (sigma / cos_rest, D::from(1.0) / sigma, D::from(1.0) / r);
         let per_l1 = cos_rest * per_sigma;
         let (a, b, per_a, per_b) = (l1 * l1, r * r, per_l1 * per_l1, per_r * per_r);
         let powers = [a, b, per_a * per_b, per_a, per_b, a * b, a * a, b * b];
-        let none = D::from(0.0);
-        let (mut by_1, mut by_2, mut by_11, mut by_12, mut by_22) = (none, none, none, none, none);
-        for ((term, power), [i, j]) in self.terms.iter().zip(powers).zip(EVEN_POWERS) {
-            let (i, j) = (f64::from(i), f64::from(j));
-            let part = *term * power;
-            wall.w += part - *term;
-            by_1 = part.scale_add(i, by_1);
-            by_2 = part.scale_add(j, by_2);
-            by_11 = part.scale_add(i * (i - 1.0), by_11);
-            by_12 = part.scale_add(i * j, by_12);
-            by_22 = part.scale_add(j * (j - 1.0), by_22);
+        let parts: [D; EVEN_POWERS.len()] = std::array::from_fn(|k| self.terms[k] * powers[k]);
+        for (part, term) in parts.iter().zip(&self.terms) {
+            wall.w += *part - *term;
         }
-        wall.w_1 += by_1 * per_sigma;
-        wall.w_2 += by_2 * per_r;
-        wall.w_11 += by_11 * per_sigma * per_sigma;
-        wall.w_12 += by_12 * per_sigma * per_r;
-        wall.w_22 += by_22 * per_b;
+        let [a, b, both, per_a, per_b, product, a2, b2] = parts;
+        let odd = product - both;
+        wall.w_1 += (odd + a - per_a + a2 * 2.0) * 2.0 * per_sigma;
+        wall.w_2 += (odd + b - per_b + b2 * 2.0) * 2.0 * per_r;
+        let along = (both + per_a) * 3.0 + product + a + a2 * 6.0;
+        let around = (both + per_b) * 3.0 + product + b + b2 * 6.0;
+        wall.w_11 += along * 2.0 * per_sigma * per_sigma;
+        wall.w_12 += (both + product) * 4.0 * per_sigma * per_r;
+        wall.w_22 += around * 2.0 * per_r * per_r;
     }
 }
 
@@ -593,6 +587,35 @@ pub(crate) mod tests {
         let by_t = |f: &dyn Fn(f64) -> f64| (f(tension + h) - f(tension - h)) / (2.0 * h);
         assert!((by_t(&|t| net.local(r, t).force) - local.force_t).abs() < 1e-8);
         assert!((by_t(&|t| net.local(r, t).hoop) - local.hoop_t).abs() < 1e-8);
+    }
+
+    /// The energy of even powers is the sum of its terms, and its derivatives are those of this sum.
+    #[test]
+    fn even_powers_are_those_of_the_list() {
+        type Twice = Dual<2>;
+        let (sigma, r, cos_rest) = (0.8, 1.3, 0.9);
+        for k in 0..EVEN_POWERS.len() {
+            let terms = std::array::from_fn(|i| if i == k { 0.7 } else { 0.0 });
+            let (mut found, mut moving) =
+                (Net::plain().wall(sigma, r), Net::plain().lift().wall(sigma.into(), r.into()));
+            EvenPowers { terms }.add(&mut found, sigma, r, cos_rest);
+            let at: [Twice; 2] = [Dual::variable(sigma, 0), Dual::variable(r, 1)];
+            EvenPowers { terms: terms.map(Dual::from) }.add(&mut moving, at[0], at[1], cos_rest.into());
+            let [i, j] = EVEN_POWERS[k];
+            let exact = ((at[0] / cos_rest).powi(i) * at[1].powi(j) - 1.0) * 0.7;
+            let pairs = [
+                (found.w, exact.value()),
+                (found.w_1, exact.gradient()[0]),
+                (found.w_2, exact.gradient()[1]),
+                (found.w_11, moving.w_1.gradient()[0]),
+                (found.w_12, moving.w_1.gradient()[1]),
+                (found.w_12, moving.w_2.gradient()[0]),
+                (found.w_22, moving.w_2.gradient()[1]),
+            ];
+            for (found, exact) in pairs {
+                assert!((found - exact).abs() < 1e-14 * (1.0 + exact.abs()), "{k}: {found} {exact}");
+            }
+        }
     }
 
     /// The nets that are written out are special cases of the general formulas.

@@ -409,30 +409,20 @@ impl<D: Real> Parts<D> {
         // Fibres at an angle make the unpressurised muscle a braid of radius R. The law of pinned crossings
         // needs a second family, or cloth that takes the torque: a lone family would follow geodesics.
         let (sin, cos) = self.angle.sin_cos();
-        let mut net = Net {
-            half_fibre: self.length / (radius * 2.0) / cos,
-            cos_rest: cos,
-            sin2_rest: sin * sin,
-            turn: sin,
-            end_radius: self.fitting.map_or(D::from(1.0), |fitting| fitting / radius),
-            depth: self.depth / radius,
-            compliance: pressure * radius * radius * self.compliance,
-            ..Net::plain().lift_to()
-        };
-        if let Some(twist) = &self.twist {
-            let none = D::from(f64::NAN);
-            let [turn] = twist.run([none, none, none, radius, pressure, self.angle, self.length]);
-            net.turn = turn * radius;
-        }
+        let none = D::from(f64::NAN);
+        let inputs = [none, none, none, radius, pressure, self.angle, self.length];
+        let turn = self.twist.as_ref().map(|twist| twist.run::<1>(inputs)[0] * radius);
         // Per unstretched fibre length: 2 pi r0 W per axial length at rest, cos(alpha0) of that.
         let scale = cos * (2.0 * PI) / (radius * pressure);
-        let even = self.energy.as_ref().and_then(|energy| {
-            let none = D::from(f64::NAN);
-            energy.even_powers([none, none, none, radius, pressure, self.angle, self.length])
+        let rubber = self.rubber.map(|rubber| {
+            let scale = rubber.wall * scale;
+            EvenPowers::mooney_rivlin(scale * rubber.c10, scale * rubber.c01)
         });
-        let energy = self.energy.clone().filter(|_| even.is_none());
-        if energy.is_some() || self.area.is_some() {
-            net.formulas = Some(Box::new(Formulas {
+        let even = self.energy.as_ref().and_then(|energy| energy.even_powers(inputs));
+        let own = even.map(|terms| EvenPowers { terms: terms.map(|term| scale * term) });
+        let energy = if own.is_none() { self.energy.clone() } else { None };
+        let formulas = (energy.is_some() || self.area.is_some()).then(|| {
+            Box::new(Formulas {
                 energy,
                 area: self.area.clone(),
                 scale,
@@ -440,25 +430,30 @@ impl<D: Real> Parts<D> {
                 pressure,
                 angle: self.angle,
                 length: self.length,
-            }));
-        }
-        if let Some(n) = self.fibres.filter(|_| self.is_polygon) {
-            net.area_factor = n * (D::from(2.0 * PI) / n).sin_cos().0 / (2.0 * PI);
-            net.lobes = self.lobes.map(|circumference| Lobes::new(n, circumference / radius));
-        }
-        let rubber = self.rubber.map(|rubber| {
-            let scale = rubber.wall * scale;
-            EvenPowers::mooney_rivlin(scale * rubber.c10, scale * rubber.c01)
+            })
         });
-        let own = even.map(|terms| EvenPowers { terms }.map(|term| scale * term));
-        net.rubber = match (rubber, own) {
-            (Some(rubber), Some(own)) => Some(rubber.with(&own)),
-            (rubber, own) => rubber.or(own),
-        };
-        net.cloth = self.cloth.map(|cloth| Cloth {
-            stiffness: cloth.stiffness / (pressure * radius),
-            radius: cloth.radius / radius,
-        });
-        net
+        let polygon = self.fibres.filter(|_| self.is_polygon);
+        Net {
+            half_fibre: self.length / (radius * 2.0) / cos,
+            cos_rest: cos,
+            sin2_rest: sin * sin,
+            turn: turn.unwrap_or(sin),
+            end_radius: self.fitting.map_or(D::from(1.0), |fitting| fitting / radius),
+            depth: self.depth / radius,
+            compliance: pressure * radius * radius * self.compliance,
+            area_factor: polygon
+                .map_or(D::from(1.0), |n| n * (D::from(2.0 * PI) / n).sin_cos().0 / (2.0 * PI)),
+            lobes: polygon
+                .and_then(|n| self.lobes.map(|circumference| Lobes::new(n, circumference / radius))),
+            rubber: match (rubber, own) {
+                (Some(rubber), Some(own)) => Some(rubber.with(&own)),
+                (rubber, own) => rubber.or(own),
+            },
+            cloth: self.cloth.map(|cloth| Cloth {
+                stiffness: cloth.stiffness / (pressure * radius),
+                radius: cloth.radius / radius,
+            }),
+            formulas,
+        }
     }
 }

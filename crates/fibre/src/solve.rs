@@ -81,10 +81,13 @@ impl Gradient {
         if !muscle.is_stated(parameter) || parameter == Parameter::FittingRadius && muscle.is_pleated() {
             return None;
         }
-        let slopes = Parts::seeded(muscle, &[parameter]).numbers();
-        Some(std::array::from_fn(|i| {
-            self.by_part.iter().zip(&slopes).map(|((_, by), (_, part))| by[i] * part.gradient()[0]).sum()
-        }))
+        let (mut sum, mut by_part) = ([0.0; 2], self.by_part.iter());
+        Parts::seeded(muscle, &[parameter]).map(|_, part| {
+            if let Some((_, by)) = by_part.next() {
+                sum.iter_mut().zip(by).for_each(|(sum, by)| *sum += by * part.gradient()[0]);
+            }
+        });
+        Some(sum)
     }
 }
 

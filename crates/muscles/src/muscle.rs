@@ -11,7 +11,6 @@ use crate::parameter::Parameter;
 use crate::quantity::{Angle, Area, Force, Length};
 use crate::specimen::Specimen;
 use crate::units::Quantity;
-use std::collections::BTreeMap;
 
 /// A pneumatic artificial muscle.
 ///
@@ -29,9 +28,10 @@ pub struct Muscle {
     name: String,
     kind: Kind,
     ends: Ends,
-    /// The numbers in SI that have a place of their own in the file. Those of a bladder stand together, as do
-    /// those of a limit to the unfolding; a pleated muscle without fibres is continuous.
-    numbers: BTreeMap<Parameter, f64>,
+    /// The numbers in SI that have a place of their own in the file, in the order of [`Parameter::ALL`]. Those of
+    /// a bladder stand together, as do those of a limit to the unfolding; a pleated muscle without fibres is
+    /// continuous.
+    numbers: [Option<f64>; Parameter::ALL.len()],
     fibre_section: Option<Area>,
     /// Thickness of the bladder in SI if it is not that of the muscle's wall.
     bladder_wall: Option<f64>,
@@ -56,23 +56,30 @@ impl Muscle {
         construction: Construction,
     ) -> Result<Self, MuscleError> {
         Parameter::Length.check(length.si())?;
-        let mut numbers = BTreeMap::from([(Parameter::Length, length.si())]);
+        let mut numbers = [None; Parameter::ALL.len()];
+        let mut put = |parameter, value| numbers[parameter as usize] = Some(value);
+        put(Parameter::Length, length.si());
         let mut ends = Ends::Clamped;
         let fibres = match construction {
             Construction::Pleated(pleated) => {
-                numbers.insert(Parameter::Radius, pleated.radius.si());
-                numbers.extend([Parameter::PleatDepth, Parameter::Misalignment].map(|none| (none, 0.0)));
+                put(Parameter::Radius, pleated.radius.si());
+                put(Parameter::PleatDepth, 0.0);
+                put(Parameter::Misalignment, 0.0);
                 if let FibreCount::Discrete(count) = pleated.fibres { Some(count) } else { None }
             }
             Construction::Braided(braided) => {
-                numbers.insert(Parameter::Radius, braided.radius.si());
-                numbers.insert(Parameter::BraidAngle, braided.braid_angle.si());
-                numbers.extend(braided.wall.map(|wall| (Parameter::Wall, wall.si())));
+                put(Parameter::Radius, braided.radius.si());
+                put(Parameter::BraidAngle, braided.braid_angle.si());
+                if let Some(wall) = braided.wall {
+                    put(Parameter::Wall, wall.si());
+                }
                 ends = braided.ends;
                 braided.fibres
             }
         };
-        numbers.extend(fibres.map(|count| (Parameter::Fibres, f64::from(count))));
+        if let Some(count) = fibres {
+            put(Parameter::Fibres, f64::from(count));
+        }
         let muscle = Self {
             name: String::new(),
             kind: construction.kind(),
@@ -171,7 +178,7 @@ impl Muscle {
             return self.with(Parameter::GasWall, thickness.si());
         }
         self.check_kind(Parameter::GasWall)?;
-        self.numbers.remove(&Parameter::GasWall);
+        *self.place(Parameter::GasWall) = None;
         self.has_inner_gas = true;
         self.checked()
     }
@@ -235,7 +242,7 @@ impl Muscle {
     /// Changes one number, whether or not it agrees with the others.
     fn set(&mut self, parameter: Parameter, value: f64) -> Result<(), MuscleError> {
         self.check_kind(parameter)?;
-        let has = |parameter| self.numbers.contains_key(&parameter);
+        let has = |parameter| self.stated(parameter).is_some();
         let is_end = parameter == Parameter::Radius && self.is_pleated() && has(Parameter::FittingRadius);
         let parameter = if is_end { Parameter::FittingRadius } else { parameter };
         parameter.check(value)?;
@@ -243,10 +250,10 @@ impl Muscle {
             self.bladder_wall = Some(value);
             return Ok(());
         }
-        self.numbers.insert(parameter, value);
+        *self.place(parameter) = Some(value);
         match parameter {
-            Parameter::C10 => _ = self.numbers.entry(Parameter::C01).or_insert(0.0),
-            Parameter::C01 => _ = self.numbers.entry(Parameter::C10).or_insert(0.0),
+            Parameter::C10 => _ = self.place(Parameter::C01).get_or_insert(0.0),
+            Parameter::C01 => _ = self.place(Parameter::C10).get_or_insert(0.0),
             Parameter::Wall => {
                 self.bladder_wall = self.bladder_wall.filter(|wall| wall.to_bits() != value.to_bits());
             }
@@ -279,7 +286,11 @@ impl Muscle {
 
     /// The number as the file states it, if it has a place of its own there.
     pub(crate) fn stated(&self, parameter: Parameter) -> Option<f64> {
-        self.numbers.get(&parameter).copied()
+        self.numbers[parameter as usize]
+    }
+
+    fn place(&mut self, parameter: Parameter) -> &mut Option<f64> {
+        &mut self.numbers[parameter as usize]
     }
 
     fn length_of(&self, parameter: Parameter) -> Option<Length> {
@@ -415,7 +426,7 @@ impl Muscle {
     /// fitting radius that is not stated follows the radius, and the inner face of the wall follows the wall.
     #[must_use]
     pub fn is_stated(&self, parameter: Parameter) -> bool {
-        self.numbers.contains_key(&parameter) || (parameter == Parameter::Wall && self.bladder_wall.is_some())
+        self.stated(parameter).is_some() || (parameter == Parameter::Wall && self.bladder_wall.is_some())
     }
 }
 

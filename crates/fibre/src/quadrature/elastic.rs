@@ -72,7 +72,7 @@ impl Span {
 }
 
 /// A meridian of elastic fibres.
-pub(super) struct Elastic<D> {
+pub(super) struct Elastic<'a, D: Real> {
     ends: Ends<D>,
     /// N - A at mid-length.
     force: D,
@@ -86,7 +86,7 @@ pub(super) struct Elastic<D> {
     slope: D,
     bend: D,
     /// The net that acts at mid-length.
-    net: Net<D>,
+    net: Cow<'a, Net<D>>,
 }
 
 /// The pieces of a meridian and the tensions at their points.
@@ -169,8 +169,8 @@ struct Tried<D> {
     is_resolved: bool,
 }
 
-impl<D: Real> Elastic<D> {
-    pub(super) fn of(net: &Net<D>, middle: &Middle<D>, tensions: &Tensions) -> Option<Self> {
+impl<'a, D: Real> Elastic<'a, D> {
+    pub(super) fn of(net: &'a Net<D>, middle: &Middle<D>, tensions: &Tensions) -> Option<Self> {
         let mut meridian = Self::begun(net, middle);
         let mut values = tensions.values.as_slice();
         for span in &tensions.spans {
@@ -183,9 +183,9 @@ impl<D: Real> Elastic<D> {
     }
 
     /// At mid-length.
-    fn begun(net: &Net<D>, middle: &Middle<D>) -> Self {
+    fn begun(net: &'a Net<D>, middle: &Middle<D>) -> Self {
         let ends = Ends::of(net, middle);
-        let net = net.acting_at(ends.r_m.value()).into_owned();
+        let net = net.acting_at(ends.r_m.value());
         let zero = D::from(0.0);
         Self {
             force: middle.force - net.area(ends.r_m),
@@ -277,7 +277,7 @@ impl<D: Real> Elastic<D> {
     }
 }
 
-impl Elastic<f64> {
+impl Elastic<'_, f64> {
     /// The tensions at the points of the next piece.
     fn tensions(&self, span: &Span, evaluations: &mut u32) -> Option<ArrayVec<f64, MOST>> {
         let net = self.law(span);
@@ -301,7 +301,7 @@ impl Elastic<f64> {
     }
 }
 
-impl<D: Real> Meridian<D> for Elastic<D> {
+impl<D: Real> Meridian<D> for Elastic<'_, D> {
     fn ends(&self) -> &Ends<D> {
         &self.ends
     }
