@@ -69,10 +69,10 @@ impl Builder {
             }
             Step::Operate(Operator::Multiply, [a, b]) => self.product(of(a)?, of(b)?),
             Step::Operate(Operator::Divide, [a, b]) => {
-                let inverse = self.to_power(of(b)?, -1)?;
+                let inverse = self.raised(of(b)?, -1)?;
                 self.product(of(a)?, &inverse)
             }
-            Step::WholePower(a, exponent) => self.to_power(of(a)?, exponent),
+            Step::WholePower(a, exponent) => self.raised(of(a)?, exponent),
             _ => None,
         }
     }
@@ -115,13 +115,13 @@ impl Builder {
         Some(sum)
     }
 
-    fn to_power<const N: usize>(&mut self, terms: &Terms<N>, exponent: i32) -> Option<Terms<N>> {
+    fn raised<const N: usize>(&mut self, terms: &Terms<N>, exponent: i32) -> Option<Terms<N>> {
         if let [(powers, factor)] = terms.as_slice() {
-            let mut raised = *powers;
-            for power in &mut raised {
+            let mut by = *powers;
+            for power in &mut by {
                 *power = power.checked_mul(exponent)?;
             }
-            return Some(vec![(raised, self.whole_power(*factor, exponent))]);
+            return Some(vec![(by, self.whole_power(*factor, exponent))]);
         }
         // One over a sum is no sum.
         if !(1..=MOST_POWER).contains(&exponent) {
