@@ -594,14 +594,13 @@ pub(crate) mod tests {
     fn even_powers_are_those_of_the_list() {
         type Twice = Dual<2>;
         let (sigma, r, cos_rest) = (0.8, 1.3, 0.9);
-        for k in 0..EVEN_POWERS.len() {
-            let terms = std::array::from_fn(|i| if i == k { 0.7 } else { 0.0 });
+        for (k, [i, j]) in EVEN_POWERS.into_iter().enumerate() {
+            let terms = std::array::from_fn(|other| if other == k { 0.7 } else { 0.0 });
             let (mut found, mut moving) =
                 (Net::plain().wall(sigma, r), Net::plain().lift().wall(sigma.into(), r.into()));
             EvenPowers { terms }.add(&mut found, sigma, r, cos_rest);
             let at: [Twice; 2] = [Dual::variable(sigma, 0), Dual::variable(r, 1)];
             EvenPowers { terms: terms.map(Dual::from) }.add(&mut moving, at[0], at[1], cos_rest.into());
-            let [i, j] = EVEN_POWERS[k];
             let exact = ((at[0] / cos_rest).powi(i) * at[1].powi(j) - 1.0) * 0.7;
             let pairs = [
                 (found.w, exact.value()),
