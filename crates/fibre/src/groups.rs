@@ -86,28 +86,30 @@ impl<const N: usize> Groups<N> {
         self.count
     }
 
-    /// The net with the groups as the variables 2 ..; there must be room for all of them.
-    pub(crate) fn net<const M: usize>(&self, net: &Net<Dual<N>>) -> Net<Dual<M>> {
+    /// The net with the groups from `first` on as the variables 2 .., as many as there is room for.
+    pub(crate) fn net<const M: usize>(&self, net: &Net<Dual<N>>, first: usize) -> Net<Dual<M>> {
         net.map(|row, number| {
             let slopes = &self.numbers[row];
-            let slope = |i: usize| if i < 2 { 0.0 } else { slopes.get(i - 2).copied().unwrap_or(0.0) };
+            let slope =
+                |i: usize| if i < 2 { 0.0 } else { slopes.get(first + i - 2).copied().unwrap_or(0.0) };
             Dual::new(number.value(), std::array::from_fn(slope))
         })
     }
 
     /// The derivatives by the numbers of the net along the directions of the groups, from the derivatives by
     /// the groups. Across these directions they are zero.
-    pub(crate) fn by_number<const M: usize>(&self, by_group: &Total<M>) -> [f64; OWN_NUMBERS] {
+    pub(crate) fn by_number<const M: usize>(&self, by_group: &Total<M>, first: usize) -> [f64; OWN_NUMBERS] {
         std::array::from_fn(|row| {
-            let pairs = self.numbers[row].iter().zip(by_group.by_parameter.iter().skip(2)).take(self.count);
+            let slopes = self.numbers[row].iter().take(self.count).skip(first);
+            let pairs = slopes.zip(by_group.by_parameter.iter().skip(2));
             pairs.map(|(slope, by)| slope * by).sum::<f64>() / (self.size[row] * self.size[row])
         })
     }
 
-    /// The derivatives by the variables from those by the groups.
-    pub(crate) fn expand<const M: usize>(&self, by_group: &Total<M>) -> Total<N> {
+    /// The derivatives by the variables from those by the groups from `first` on.
+    pub(crate) fn expand<const M: usize>(&self, by_group: &Total<M>, first: usize) -> Total<N> {
         let along = |i: usize| {
-            let pairs = self.variables.iter().zip(by_group.by_parameter.iter().skip(2));
+            let pairs = self.variables.iter().skip(first).zip(by_group.by_parameter.iter().skip(2));
             pairs.map(|(slopes, by)| slopes[i] * by).sum()
         };
         Total {
@@ -140,13 +142,13 @@ mod tests {
         let net = moving();
         let groups = Groups::of(&net);
         assert_eq!(groups.count(), 3);
-        let few: Net<Dual<5>> = groups.net(&net);
+        let few: Net<Dual<5>> = groups.net(&net, 0);
         let (mut expected, mut found) = (Vec::new(), Vec::new());
         net.each(|_, number| expected.push(number));
         few.each(|_, number| {
             let total =
                 Total { value: number.value(), by_contraction: 0.0, by_parameter: *number.gradient() };
-            found.push(groups.expand(&total));
+            found.push(groups.expand(&total, 0));
         });
         for (expected, found) in expected.iter().zip(&found) {
             assert_eq!(expected.value().to_bits(), found.value.to_bits());

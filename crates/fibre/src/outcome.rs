@@ -8,7 +8,6 @@ use crate::cylinder;
 use crate::groups::Groups;
 use crate::meridian::{COS, SIN, TENSION};
 use crate::net::{Net, OWN_NUMBERS};
-use crate::parts::PARTS;
 use crate::problem::{MOST_STRAIN, Problem};
 use crate::shape::{Convergence, Method};
 use crate::shooting::{self, Ending, Total, Way};
@@ -81,6 +80,23 @@ pub(crate) struct Outcome<const N: usize> {
 pub(crate) struct Follow {
     pub(crate) by_contraction: [f64; 2],
     pub(crate) by_number: [[f64; OWN_NUMBERS]; 2],
+}
+
+impl<const N: usize> Outcome<N> {
+    /// Adds the derivatives by other variables at the same equilibrium.
+    fn add_derivatives(&mut self, other: &Self) {
+        let add = |to: &mut [f64], more: &[f64]| to.iter_mut().zip(more).for_each(|(sum, by)| *sum += by);
+        for (total, more) in [&mut self.force, &mut self.volume, &mut self.mid_radius].into_iter().zip([
+            &other.force,
+            &other.volume,
+            &other.mid_radius,
+        ]) {
+            add(&mut total.by_parameter, &more.by_parameter);
+        }
+        if let (Some(follow), Some(more)) = (&mut self.follow, &other.follow) {
+            follow.by_number.iter_mut().zip(&more.by_number).for_each(|(by, more)| add(by, more));
+        }
+    }
 }
 
 impl Problem {
@@ -161,8 +177,7 @@ impl Problem {
                     0..=2 => by_groups::<N, 4>(plain, net, &groups, contraction, (from, ending)),
                     3..=4 => by_groups::<N, 6>(plain, net, &groups, contraction, (from, ending)),
                     5..=6 => by_groups::<N, 8>(plain, net, &groups, contraction, (from, ending)),
-                    7..=10 => by_groups::<N, 12>(plain, net, &groups, contraction, (from, ending)),
-                    _ => by_groups::<N, { 3 + PARTS }>(plain, net, &groups, contraction, (from, ending)),
+                    _ => by_groups::<N, 12>(plain, net, &groups, contraction, (from, ending)),
                 }
             }
         })
@@ -348,20 +363,29 @@ fn by_groups<const N: usize, const M: usize>(
     contraction: f64,
     (from, ending): (Option<Unknowns>, Ending),
 ) -> Result<Outcome<N>, FibreError> {
-    let (found, follow) =
-        by_shooting::<M>(plain, &groups.net(net), contraction, from, (ending, Way::Quadrature))?;
-    Ok(Outcome {
-        force: groups.expand(&found.force),
-        volume: groups.expand(&found.volume),
-        mid_radius: groups.expand(&found.mid_radius),
-        tension: found.tension,
-        end_slope: found.end_slope,
-        method: found.method,
-        convergence: found.convergence,
-        solution: found.solution,
-        follow: Some(Follow {
-            by_contraction: [follow[0].by_contraction, follow[1].by_contraction],
-            by_number: follow.map(|unknown| groups.by_number(&unknown)),
-        }),
-    })
+    let by_some = |first: usize, from: Option<Unknowns>| -> Result<Outcome<N>, FibreError> {
+        let moving = groups.net(net, first);
+        let (found, follow) = by_shooting::<M>(plain, &moving, contraction, from, (ending, Way::Quadrature))?;
+        Ok(Outcome {
+            force: groups.expand(&found.force, first),
+            volume: groups.expand(&found.volume, first),
+            mid_radius: groups.expand(&found.mid_radius, first),
+            tension: found.tension,
+            end_slope: found.end_slope,
+            method: found.method,
+            convergence: found.convergence,
+            solution: found.solution,
+            follow: Some(Follow {
+                by_contraction: [follow[0].by_contraction, follow[1].by_contraction],
+                by_number: follow.map(|unknown| groups.by_number(&unknown, first)),
+            }),
+        })
+    };
+    let mut outcome = by_some(0, from)?;
+    // Groups for which there is no room take another integration, at the same equilibrium.
+    for first in (M - 2..groups.count()).step_by(M - 2) {
+        let from = if let Solution::Shooting(unknowns) = outcome.solution { Some(unknowns) } else { from };
+        outcome.add_derivatives(&by_some(first, from)?);
+    }
+    Ok(outcome)
 }
