@@ -307,8 +307,9 @@ pub trait ShapeEffect: Debug + Sync {
     /// Changes the parts. `theta` are the parameters of the effect in SI, and numbers that depend on them
     /// carry their derivatives.
     ///
-    /// At the parameters `off` the parts must stay unchanged, whatever they state. Any other value replaces
-    /// the stated one. An effect without parameters has no `off`: it is either present or absent.
+    /// At the parameters `off` the parts must stay unchanged, whatever they state. Any other value replaces the
+    /// stated one (a depth), or is added to it (an error of a stated number). An effect without parameters has
+    /// no `off`: it is either present or absent.
     ///
     /// If a part is absent when the effect is off (the rubber of a bladder), the effect may add it with size
     /// 0 when `theta` carries derivatives. If no part depends on a parameter at `off` to first order because
