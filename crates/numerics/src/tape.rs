@@ -151,56 +151,71 @@ impl Step {
     #[inline]
     fn values<D: Real, const L: usize>(
         self,
-        input: impl Fn(usize) -> [D; L],
-        at: impl Fn(Place) -> [D; L],
+        input: &dyn Fn(usize) -> [D; L],
+        registers: &[[D; L]],
     ) -> [D; L] {
+        let at = |place: Place| registers[place];
         match self {
             Self::Constant(value) => [D::from(value); L],
             Self::Input(index) => input(index),
-            Self::Negate(a) => at(a).map(|a| -a),
-            Self::WholePower(a, exponent) => at(a).map(|a| a.powi(exponent)),
-            Self::RealPower(a, exponent) => at(a).map(|a| real_power(a, exponent)),
-            Self::Operate(operator, operands) => match operator {
-                Operator::Add => both(operands.map(at), |a, b| a + b),
-                Operator::Subtract => both(operands.map(at), |a, b| a - b),
-                Operator::Multiply => both(operands.map(at), |a, b| a * b),
-                Operator::Divide => both(operands.map(at), |a, b| a / b),
-                Operator::Power => both(operands.map(at), power),
+            Self::Negate(a) => each(at(a), |a| -a),
+            Self::WholePower(a, exponent) => each(at(a), |a| a.powi(exponent)),
+            Self::RealPower(a, exponent) => each(at(a), |a| real_power(a, exponent)),
+            Self::Operate(operator, [a, b]) => match operator {
+                Operator::Add => both(at(a), &at(b), |a, b| a + b),
+                Operator::Subtract => both(at(a), &at(b), |a, b| a - b),
+                Operator::Multiply => both(at(a), &at(b), |a, b| a * b),
+                Operator::Divide => both(at(a), &at(b), |a, b| a / b),
+                Operator::Power => both(at(a), &at(b), power),
             },
-            Self::Compare(comparison, [a, b]) => {
-                let (a, b) = (at(a), at(b));
-                std::array::from_fn(|i| {
-                    let (a, b) = (a[i].value(), b[i].value());
-                    D::from(match comparison.holds(a, b) {
-                        _ if a.is_nan() || b.is_nan() => f64::NAN,
-                        true => 1.0,
-                        false => 0.0,
-                    })
+            Self::Compare(comparison, [a, b]) => both(at(a), &at(b), |a, b| {
+                let (a, b) = (a.value(), b.value());
+                D::from(match comparison.holds(a, b) {
+                    _ if a.is_nan() || b.is_nan() => f64::NAN,
+                    true => 1.0,
+                    false => 0.0,
+                })
+            }),
+            Self::Call(Function::Min, [a, b, _]) => both(at(a), &at(b), minimum),
+            Self::Call(Function::Max, [a, b, _]) => both(at(a), &at(b), maximum),
+            Self::Call(Function::Clamp, [x, low, high]) => all(at(x), &at(low), &at(high), clamp),
+            // Both values were computed; the other one is dropped with all that is wrong with it.
+            Self::Call(Function::If, [condition, yes, no]) => {
+                all(at(condition), &at(yes), &at(no), |condition, yes, no| match condition.value() {
+                    1.0 => yes,
+                    0.0 => no,
+                    _ => condition,
                 })
             }
-            Self::Call(Function::Min, [a, b, _]) => both([at(a), at(b)], minimum),
-            Self::Call(Function::Max, [a, b, _]) => both([at(a), at(b)], maximum),
-            Self::Call(Function::Clamp, operands) => {
-                let [x, low, high] = operands.map(at);
-                std::array::from_fn(|i| clamp(x[i], low[i], high[i]))
-            }
-            Self::Call(Function::If, operands) => {
-                let [condition, yes, no] = operands.map(at);
-                // Both values were computed; the other one is dropped with all that is wrong with it.
-                std::array::from_fn(|i| match condition[i].value() {
-                    1.0 => yes[i],
-                    0.0 => no[i],
-                    _ => condition[i],
-                })
-            }
-            Self::Call(function, [x, ..]) => at(x).map(|x| single(function, x)),
+            Self::Call(function, [x, ..]) => each(at(x), |x| single(function, x)),
         }
     }
 }
 
+// Loops in place: with `array::map` and `array::from_fn` half of all code that the compiler sees would be these functions.
+
 #[inline]
-fn both<D: Real, const L: usize>([a, b]: [[D; L]; 2], f: impl Fn(D, D) -> D) -> [D; L] {
-    std::array::from_fn(|i| f(a[i], b[i]))
+fn each<D: Real, const L: usize>(mut x: [D; L], f: impl Fn(D) -> D) -> [D; L] {
+    for x in &mut x {
+        *x = f(*x);
+    }
+    x
+}
+
+#[inline]
+fn both<D: Real, const L: usize>(mut a: [D; L], b: &[D; L], f: impl Fn(D, D) -> D) -> [D; L] {
+    for (a, b) in a.iter_mut().zip(b) {
+        *a = f(*a, *b);
+    }
+    a
+}
+
+#[inline]
+fn all<D: Real, const L: usize>(mut a: [D; L], b: &[D; L], c: &[D; L], f: impl Fn(D, D, D) -> D) -> [D; L] {
+    for (a, (b, c)) in a.iter_mut().zip(b.iter().zip(c)) {
+        *a = f(*a, *b, *c);
+    }
+    a
 }
 
 fn single<D: Real>(function: Function, x: D) -> D {
@@ -254,7 +269,10 @@ impl Builder {
         let operands = step.operands();
         let are_constant = !operands.is_empty() && operands.iter().all(|a| self.constant_at(*a).is_some());
         let step = if are_constant {
-            let [value] = step.values(|_| [f64::NAN], |a| [self.constant_at(a).unwrap_or(f64::NAN)]);
+            let constants: ArrayVec<[f64; 1], 3> =
+                operands.iter().map(|a| [self.constant_at(*a).unwrap_or(f64::NAN)]).collect();
+            let alone = step.moved(|a| operands.iter().position(|other| *other == a).unwrap_or(0));
+            let [value] = alone.values(&|_| [f64::NAN], &constants);
             Step::Constant(value)
         } else {
             step
@@ -468,28 +486,32 @@ impl Tape {
         &self,
         input: impl Fn(usize) -> [D; L],
     ) -> [[D; L]; OUTPUTS] {
+        let mut outputs = [[D::from(f64::NAN); L]; OUTPUTS];
         match self.used {
-            0..=8 => self.run_in::<D, 8, OUTPUTS, L>(input),
-            9..=32 => self.run_in::<D, 32, OUTPUTS, L>(input),
-            _ => self.run_in::<D, MOST_REGISTERS, OUTPUTS, L>(input),
+            0..=8 => self.run_in::<D, 8, L>(&input, &mut outputs),
+            9..=32 => self.run_in::<D, 32, L>(&input, &mut outputs),
+            _ => self.run_in::<D, MOST_REGISTERS, L>(&input, &mut outputs),
         }
+        outputs
     }
 
-    fn run_in<D: Real, const REGISTERS: usize, const OUTPUTS: usize, const L: usize>(
+    fn run_in<D: Real, const REGISTERS: usize, const L: usize>(
         &self,
-        input: impl Fn(usize) -> [D; L],
-    ) -> [[D; L]; OUTPUTS] {
+        input: &dyn Fn(usize) -> [D; L],
+        outputs: &mut [[D; L]],
+    ) {
         // Registers come into use one after the other: nothing is filled that isn't needed.
         let mut registers: ArrayVec<[D; L], REGISTERS> = ArrayVec::new();
         for (into, step) in &self.steps {
-            let values = step.values(&input, |place| registers[place]);
+            let values = step.values(input, &registers);
             match registers.get_mut(*into) {
                 Some(register) => *register = values,
                 None => registers.push(values),
             }
         }
-        let output = |i: usize| self.outputs.get(i).and_then(|register| registers.get(*register)).copied();
-        std::array::from_fn(|i| output(i).unwrap_or([D::from(f64::NAN); L]))
+        for (output, register) in outputs.iter_mut().zip(&self.outputs) {
+            *output = registers[*register];
+        }
     }
 }
 
