@@ -245,7 +245,10 @@ impl ParameterDocument {
         let is_off = self.typical.to_bits() == self.off.to_bits();
         let usual = if is_off { String::new() } else { format!(", usually {}", digits(self.typical)) };
         let mut parts = vec![format!("{} to {}{times}{usual}", digits(self.low), digits(self.high))];
-        parts.push(format!("off at {}", digits(self.off)));
+        // The numbers of a user's formula may have no value at which it does nothing.
+        if self.off == 0.0 || self.off.to_bits() != self.low.to_bits() {
+            parts.push(format!("off at {}", digits(self.off)));
+        }
         parts.extend(self.prior.map(|[mean, sd]| format!("prior {} +- {}", digits(mean), digits(sd))));
         let outside =
             |[low, high]: [f64; 2]| format!("implausible outside {} to {}", digits(low), digits(high));

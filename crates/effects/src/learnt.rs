@@ -86,7 +86,8 @@ fn value(stated: &Learnt, card: &ParameterCard<'_>) -> Result<f64, FileError> {
         if card.may_be_absent {
             return Ok(card.off);
         }
-        let what = format!("the effect `{}` needs `{}`, {}", stated.name(), card.key, card.about);
+        let about = if card.about.is_empty() { String::new() } else { format!(", {}", card.about) };
+        let what = format!("the effect `{}` needs `{}`{about}", stated.name(), card.key);
         return Err(stated.error(what, example));
     };
     if value.dimension != card.dimension() {

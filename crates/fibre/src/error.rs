@@ -67,6 +67,34 @@ pub enum FibreError {
         /// The value that it gives.
         value: f64,
     },
+    /// A user's own formula has no value or slope at a radius that the wall may take.
+    #[error(
+        "no equilibrium was found at contraction {:.4} %: the formula for `{what}` or its slope isn't finite at l1 = {along:.4}, l2 = {around:.4}, and the wall may be stretched so far; write one that is finite there", 100.0 * contraction
+    )]
+    FormulaEnds {
+        /// Asked contraction.
+        contraction: f64,
+        /// Which formula.
+        what: &'static str,
+        /// The stretch along the meridian.
+        along: f64,
+        /// The stretch around the axis.
+        around: f64,
+    },
+    /// The slope of a user's own formula jumps.
+    #[error(
+        "no equilibrium was found at contraction {:.4} %: the slope of the formula for `{what}` jumps at l1 = {along:.4}, l2 = {around:.4}. The wall would keep that radius over a length, which isn't computed; write a kink whose slope is continuous, such as max(l2 - 1.2, 0)^2", 100.0 * contraction
+    )]
+    FormulaJumps {
+        /// Asked contraction.
+        contraction: f64,
+        /// Which formula.
+        what: &'static str,
+        /// The stretch along the meridian.
+        along: f64,
+        /// The stretch around the axis.
+        around: f64,
+    },
     /// A formula gives the area, and so does the cloth.
     #[error("a formula for `area` says the area, and so does `{other}`: leave one of them out")]
     AreaTwice {
@@ -229,6 +257,8 @@ impl FibreError {
             | Self::ClothTooNarrow { .. }
             | Self::FittingTooWide { .. }
             | Self::FormulaWithoutValue { .. }
+            | Self::FormulaEnds { .. }
+            | Self::FormulaJumps { .. }
             | Self::AreaTwice { .. }
             | Self::NoLength { .. }
             | Self::NoClosedForm { .. }

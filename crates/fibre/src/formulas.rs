@@ -11,6 +11,9 @@ use crate::net::{EVEN_POWERS, Wall};
 /// Largest number of parameters of one formula.
 pub const MOST_PARAMETERS: usize = 6;
 
+/// Largest number of gaps of one formula.
+pub const MOST_GAPS: usize = 8;
+
 /// A formula of one quantity, with its parameters.
 ///
 /// The tape takes the inputs in the order of [`FormulaInput`], then the parameters. For an energy it gives W,
@@ -23,6 +26,9 @@ pub struct Formula<D = f64> {
     /// For an energy that is a sum of [`EVEN_POWERS`] of the stretches: the tape that computes their factors
     /// \[N/m\], which depend on neither stretch nor radius. Such an energy is solved with in closed form.
     pub even: Option<Arc<Tape>>,
+    /// For a formula with kinks: the tape of its gaps, at most [`MOST_GAPS`]. Where one vanishes, derivatives
+    /// of the formula may jump.
+    pub gaps: Option<Arc<Tape>>,
     /// Its parameters in SI, at most [`MOST_PARAMETERS`].
     pub parameters: Vec<D>,
 }
@@ -61,6 +67,12 @@ impl<D: Real> Formula<D> {
         Some(tape.run_on(|index| inputs.get(index).copied().unwrap_or_else(|| self.parameter(index))))
     }
 
+    /// The gaps, those that it has; the others are not numbers.
+    fn gaps(&self, inputs: [D; INPUTS]) -> [D; MOST_GAPS] {
+        let input = |index: usize| inputs.get(index).copied().unwrap_or_else(|| self.parameter(index));
+        self.gaps.as_ref().map_or([D::from(f64::NAN); MOST_GAPS], |tape| tape.run_on(input))
+    }
+
     /// The parameter at a place of the tape.
     fn parameter(&self, index: usize) -> D {
         self.parameters.get(index - INPUTS).copied().unwrap_or(D::from(f64::NAN))
@@ -89,6 +101,7 @@ impl<D: Real> Formula<D> {
         Formula {
             tape: Arc::clone(&self.tape),
             even: self.even.clone(),
+            gaps: self.gaps.clone(),
             parameters: self.parameters.iter().copied().map(f).collect(),
         }
     }
@@ -118,6 +131,24 @@ impl<D> Formulas<D> {
 impl<D: Real> Formulas<D> {
     fn inputs(&self, l1: D, l2: D) -> [D; INPUTS] {
         [l1, l2, l2 * self.radius, self.radius, self.pressure, self.angle, self.length]
+    }
+
+    /// The gaps of the energy and those of the area.
+    pub(crate) fn gaps(&self, sigma: D, r: D, cos_rest: D) -> [D; 2 * MOST_GAPS] {
+        let of = |formula: &Option<Formula<D>>, l1: D| {
+            formula.as_ref().map(|formula| formula.gaps(self.inputs(l1, r)))
+        };
+        let mut all = [D::from(f64::NAN); 2 * MOST_GAPS];
+        let both = [of(&self.energy, sigma / cos_rest), of(&self.area, D::from(1.0))];
+        for (all, gaps) in all.chunks_mut(MOST_GAPS).zip(both) {
+            all.iter_mut().zip(gaps.into_iter().flatten()).for_each(|(all, gap)| *all = gap);
+        }
+        all
+    }
+
+    /// Whether one of them has kinks.
+    pub(crate) fn have_branches(&self) -> bool {
+        [&self.energy, &self.area].into_iter().flatten().any(|formula| formula.gaps.is_some())
     }
 
     /// The energy of the wall at a radius, if a formula gives it.
@@ -167,7 +198,7 @@ impl<D: Real> Formulas<D> {
     #[inline]
     fn energies<const L: usize>(&self, sigma: [D; L], r: [D; L], per_cos: D) -> Option<[[D; L]; 6]> {
         let energy = self.energy.as_ref()?;
-        Some(energy.run_at(|index| {
+        let mut outputs: [[D; L]; 6] = energy.run_at(|index| {
             Some(match index {
                 0 => sigma.map(|sigma| sigma * per_cos),
                 1 => r,
@@ -178,7 +209,14 @@ impl<D: Real> Formulas<D> {
                 6 => [self.length; L],
                 _ => return None,
             })
-        }))
+        });
+        // The slope of ln(x) is finite where x is negative and the energy has no value.
+        for i in 0..L {
+            if !outputs[0][i].value().is_finite() {
+                outputs.iter_mut().for_each(|output| output[i] = D::from(f64::NAN));
+            }
+        }
+        Some(outputs)
     }
 
     /// The cross-section over R^2, if a formula gives it.
@@ -186,7 +224,10 @@ impl<D: Real> Formulas<D> {
     #[inline(never)]
     pub(crate) fn section(&self, r: D) -> Option<Section<D>> {
         let area = self.area.as_ref()?;
-        let [area, area_r, area_rr]: [D; 3] = area.run(self.inputs(D::from(1.0), r));
+        let [area, mut area_r, area_rr]: [D; 3] = area.run(self.inputs(D::from(1.0), r));
+        if !area.value().is_finite() {
+            area_r = area;
+        }
         let per_radius = D::from(1.0) / self.radius;
         Some(Section { area: area * per_radius * per_radius, area_r: area_r * per_radius, area_rr })
     }

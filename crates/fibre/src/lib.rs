@@ -1,5 +1,6 @@
 //! Shape, force and volume of pressurised fibre nets: one meridian equation for pleated and braided pneumatic
 //! muscles.
+mod branches;
 pub mod closed_form;
 mod continuation;
 mod cylinder;
@@ -27,7 +28,7 @@ mod unknowns;
 mod volume;
 pub use draw::PleatedNumbers;
 pub use error::FibreError;
-pub use formulas::{Formula, FormulaInput, MOST_PARAMETERS};
+pub use formulas::{Formula, FormulaInput, MOST_GAPS, MOST_PARAMETERS};
 pub use isobars::{Isobar, isobars};
 pub use linearised::{Linear, Linearised, Repeated, Start};
 pub use net::EVEN_POWERS;

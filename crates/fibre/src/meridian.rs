@@ -18,9 +18,11 @@
 //! rounding. As states, k and sin(chi) keep their *relative* accuracy however small they are. The first
 //! integral `N cos(chi) = F + A(r)` is not used by the integration and so measures its error.
 
+use arrayvec::ArrayVec;
 use bulge_numerics::Real;
 use bulge_numerics::dop853::{self, Dop853};
 
+use crate::branches::{self, MOST_BRANCHES};
 use crate::net::Net;
 
 /// Indices of the state.
@@ -39,6 +41,13 @@ const MAX_STEPS: u32 = 1500;
 /// Part of the way that one crossing step may cover. With rho as the independent variable a step is affected
 /// by the square root at mid-length. Its error is about (this)^9.
 const CROSSING: f64 = 0.04;
+
+/// Part of the way to a place where a formula changes its branch that a step aims at. A step too far would meet
+/// the other branch; the remainder is crossed in rho.
+const SHORT: f64 = 0.9;
+
+/// Distance from such a place, over R, at which its branch is certain: a hundred times the rounding.
+const MARGIN: f64 = 1e-13;
 
 pub(crate) type State<D> = [D; STATES];
 
@@ -64,13 +73,18 @@ pub(crate) struct Trajectory<D> {
 struct Flow<D> {
     net: Net<D>,
     mid_radius: D,
+    /// The radii of a piece on which every formula keeps its branches, if a formula has kinks.
+    piece: Option<[f64; 2]>,
 }
 
 impl<D: Real> Flow<D> {
     fn slope(&self, y: &State<D>) -> State<D> {
         let net = &self.net;
         let (sin, cos, k, tension) = (y[SIN], y[COS], y[CURVATURE], y[TENSION]);
-        let r = self.mid_radius - y[RHO];
+        let mut r = self.mid_radius - y[RHO];
+        if let Some([low, high]) = self.piece {
+            r = r + (r.value().clamp(low, high) - r.value());
+        }
         let l = net.local(r, tension);
         let section = net.section(r);
         let out = l.sigma * sin;
@@ -200,7 +214,7 @@ impl<D: Real> Middle<D> {
         if self.straight.value() == 0.0 {
             return end;
         }
-        let middle = Flow { net: net.clone(), mid_radius: net.end_radius + self.bulge };
+        let middle = Flow { net: net.clone(), mid_radius: net.end_radius + self.bulge, piece: None };
         let rates = middle.slope(&self.state());
         end[SHORTENING] += rates[SHORTENING] * self.straight;
         end[VOLUME] += rates[VOLUME] * self.straight;
@@ -223,12 +237,16 @@ pub(crate) fn trajectory<D: Real>(
     let mid_radius = net.end_radius + bulge;
     let mut y = middle.state();
     let at_middle = net.acting_at(mid_radius.value());
-    let mut flow = Flow { net: at_middle.as_ref().clone(), mid_radius };
+    let targets = targets(net, &middle);
+    let piece = |next: usize| {
+        let from = if next == 0 { D::from(0.0) } else { targets[next - 1] };
+        net.has_branches().then(|| within(mid_radius.value(), from.value(), targets[next].value()))
+    };
+    let mut flow = Flow { net: at_middle.as_ref().clone(), mid_radius, piece: piece(0) };
     let mut slope = flow.slope(&y);
     let mid = at_middle.local(mid_radius, mid_tension);
     let force = mid.force - at_middle.area(mid_radius);
     let (sign, size) = (bulge.value().signum(), bulge.value().abs());
-    let (targets, last) = targets(net, mid_radius, bulge);
     let mut next = 0;
     let parabola = (2.0 * size / (curvature.value().abs())).sqrt() / mid.sigma.value();
     let mut run = Dop853::new((0.5 * parabola).min(1.0 + 0.1 * net.half_fibre.value()), tolerance);
@@ -237,7 +255,8 @@ pub(crate) fn trajectory<D: Real>(
     let far = 10.0 * net.half_fibre.value();
     loop {
         let target = targets[next];
-        let limit = D::from(flow.distance_to(&y, &slope, target.value()).map_or(far, |h| h.min(far)));
+        let aim = if flow.piece.is_some() { SHORT } else { 1.0 };
+        let limit = D::from(flow.distance_to(&y, &slope, target.value()).map_or(far, |h| (aim * h).min(far)));
         let stepped = run.advance(
             &mut |y: &State<D>| flow.slope(y),
             |a, b| scale(a, b, mid_radius.value(), floor),
@@ -255,12 +274,13 @@ pub(crate) fn trajectory<D: Real>(
             let pieces = (1..100).find(|pieces| part.abs() <= CROSSING * f64::from(*pieces)).unwrap_or(100);
             fibre += flow.cross_to(&mut y, target, pieces);
             run.evaluations += 12 * pieces;
-            if next == last {
+            next += 1;
+            if next == targets.len() {
                 break;
             }
-            next += 1;
             let between = 0.5 * (target.value() + targets[next].value());
             flow.net = net.acting_at(mid_radius.value() - between).into_owned();
+            flow.piece = piece(next);
             slope = flow.slope(&y);
         }
         if run.accepted > MAX_STEPS || y[COS].value() < -0.999 {
@@ -277,20 +297,26 @@ pub(crate) fn trajectory<D: Real>(
 }
 
 /// The places on the way to the fitting at which the law changes, and the fitting itself, as values of rho in
-/// the order in which they are met. The law is smooth between them, and each is hit exactly. Also returns the
-/// index of the fitting among them.
-fn targets<D: Real>(net: &Net<D>, mid_radius: D, bulge: D) -> ([D; 3], usize) {
+/// the order in which they are met. The law is smooth between them, and each is hit exactly.
+fn targets<D: Real>(net: &Net<D>, middle: &Middle<D>) -> ArrayVec<D, { MOST_BRANCHES + 3 }> {
+    let (bulge, mid_radius) = (middle.bulge, net.end_radius + middle.bulge);
     let (sign, size) = (bulge.value().signum(), bulge.value().abs());
-    let on_the_way = |radius: D| {
-        let rho = mid_radius - radius;
-        (rho.value() * sign > 0.0 && rho.value() * sign < size).then_some(rho)
-    };
-    match net.kinks().map(|radius| radius.and_then(on_the_way)) {
-        [Some(a), Some(b)] if a.value().abs() <= b.value().abs() => ([a, b, bulge], 2),
-        [Some(a), Some(b)] => ([b, a, bulge], 2),
-        [Some(a), None] | [None, Some(a)] => ([a, bulge, bulge], 1),
-        [None, None] => ([bulge; 3], 0),
-    }
+    let mut targets: ArrayVec<D, { MOST_BRANCHES + 3 }> = ArrayVec::new();
+    let radii = net.kinks().into_iter().flatten().chain(branches::radii(net, middle));
+    targets.extend(radii.map(|radius| mid_radius - radius).filter(|rho| {
+        let way = rho.value() * sign;
+        way > 0.0 && way < size
+    }));
+    targets.sort_by(|a, b| a.value().abs().total_cmp(&b.value().abs()));
+    targets.push(bulge);
+    targets
+}
+
+/// The radii between two values of rho, less a margin. The ends of a piece are computed only up to rounding, and
+/// beyond them other branches count.
+fn within(mid_radius: f64, from: f64, to: f64) -> [f64; 2] {
+    let [low, high] = [mid_radius - from.max(to) + MARGIN, mid_radius - from.min(to) - MARGIN];
+    if low < high { [low, high] } else { [0.5 * (low + high); 2] }
 }
 
 /// A point of the meridian, from mid-length outwards; dimensionless.
@@ -317,7 +343,11 @@ pub(crate) fn stations(
     pieces: usize,
 ) -> Result<(Vec<Station>, f64), NoTrajectory> {
     let (mut y, mid_radius, tension) = (middle.state(), net.end_radius + middle.bulge, middle.tension);
-    let flow_at = |y: &State<f64>| Flow { net: net.acting_at(mid_radius - y[RHO]).into_owned(), mid_radius };
+    let flow_at = |y: &State<f64>| Flow {
+        net: net.acting_at(mid_radius - y[RHO]).into_owned(),
+        mid_radius,
+        piece: None,
+    };
     let mut f = |y: &State<f64>| flow_at(y).slope(y);
     let mut slope = f(&y);
     let mid_force = flow_at(&y).net.local(mid_radius, tension).force;

@@ -30,6 +30,7 @@ use std::borrow::Cow;
 use std::f64::consts::PI;
 
 use crate::formulas::Formulas;
+use crate::formulas::MOST_GAPS;
 use crate::lobes::{Lobes, Section};
 
 /// Place of the first coefficient of the rubber, and that of the cloth after it.
@@ -173,11 +174,17 @@ impl<D: Real> Net<D> {
         self.formulas.as_ref().is_some_and(|formulas| formulas.energy.is_some())
     }
 
-    /// Whether that formula has a kink. Quantities that follow from it are then no smooth functions of the
-    /// radius.
-    pub(crate) fn has_kinked_energy(&self) -> bool {
-        let energy = self.formulas.as_ref().and_then(|formulas| formulas.energy.as_ref());
-        energy.is_some_and(|energy| energy.tape.has_kinks())
+    /// Whether a user's own formula has kinks. Quantities that follow from it are then no smooth functions of
+    /// the radius.
+    pub(crate) fn has_branches(&self) -> bool {
+        self.formulas.as_ref().is_some_and(|formulas| formulas.have_branches())
+    }
+
+    /// The numbers whose signs decide which branches of the formulas count; not numbers where there are none.
+    pub(crate) fn gaps(&self, r: D, tension: D) -> [D; 2 * MOST_GAPS] {
+        let none = [D::from(f64::NAN); 2 * MOST_GAPS];
+        let formulas = self.formulas.as_ref();
+        formulas.map_or(none, |formulas| formulas.gaps(self.sigma(r, tension), r, self.cos_rest))
     }
 
     /// Whether a user's own formula gives the area.

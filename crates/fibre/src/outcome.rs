@@ -3,6 +3,7 @@
 use bulge_numerics::{Dual, Real};
 
 use crate::FibreError;
+use crate::branches;
 use crate::closed_form::{self, ClosedForm, Graded};
 use crate::cylinder;
 use crate::groups::Groups;
@@ -200,6 +201,9 @@ impl Problem {
             }
             Err(FibreError::NotConverged { .. }) if self.net.undulates(contraction) => {
                 Err(FibreError::Undulates { contraction })
+            }
+            Err(unsolved @ FibreError::NotConverged { .. }) => {
+                Err(branches::obstacle(&self.net, self.is_cylinder(), contraction).unwrap_or(unsolved))
             }
             Ok(outcome)
                 if group > 0.0 && self.net.compliance * outcome.tension > 1.0 && contraction > -0.5 =>

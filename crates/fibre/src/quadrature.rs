@@ -38,6 +38,7 @@ mod formula;
 
 use chebyshev::GRIDS;
 use elastic::{Elastic, Tensions};
+pub(crate) use elastic::{slope_of_energy, tension_at};
 use formula::Bend;
 
 use crate::meridian::{Middle, NoTrajectory, State, Trajectory};
@@ -74,9 +75,9 @@ const LEAST_RATIO: f64 = 0.1;
 const MOST_TURNED: f64 = 1.999;
 
 /// Whether the meridians of a net are quadratures. The net must have no lobes, no formula for the area and no
-/// kink in a formula for the energy.
+/// kink in a formula.
 pub(crate) fn suits<D: Real>(net: &Net<D>) -> bool {
-    net.lobes.is_none() && !net.has_area() && !net.has_kinked_energy()
+    net.lobes.is_none() && !net.has_area() && !net.has_branches()
 }
 
 /// Makes the grids on which the meridians of a net are interpolated, once in a process. A solve then

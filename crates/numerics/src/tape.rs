@@ -367,6 +367,43 @@ impl Builder {
         self.push(Step::Call(function, std::array::from_fn(argument)))
     }
 
+    /// The gaps of a value: numbers whose signs decide which branches count in its functions with kinks, such as
+    /// `a - b` for `max(a, b)`. Where one vanishes, derivatives of the value may jump.
+    pub fn gaps(&mut self, of: Place) -> Vec<Place> {
+        let mut needed = vec![false; of + 1];
+        needed[of] = true;
+        let mut pairs = Vec::new();
+        for place in (0..=of).rev() {
+            if !needed[place] {
+                continue;
+            }
+            let step = self.steps[place];
+            for operand in step.operands() {
+                needed[operand] = true;
+            }
+            match step {
+                Step::Compare(_, [a, b]) | Step::Call(Function::Min | Function::Max, [a, b, _]) => {
+                    pairs.push((a, Some(b)));
+                }
+                Step::Call(Function::Abs | Function::Sign | Function::Step, [x, ..]) => pairs.push((x, None)),
+                Step::Call(Function::Clamp, [x, low, high]) => {
+                    pairs.extend([(x, Some(low)), (x, Some(high))])
+                }
+                _ => {}
+            }
+        }
+        let mut gaps = Vec::new();
+        for (a, b) in pairs {
+            let gap = b.map_or(a, |b| self.operate(Operator::Subtract, a, b));
+            if self.constant_at(gap).is_none() {
+                gaps.push(gap);
+            }
+        }
+        gaps.sort_unstable();
+        gaps.dedup();
+        gaps
+    }
+
     /// The same steps where some inputs are known, with the place of each value; what changes nothing with these
     /// is dropped.
     #[must_use]
@@ -450,19 +487,6 @@ impl Tape {
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.steps.is_empty()
-    }
-
-    /// Whether it has a function with a kink, so that its derivatives may jump.
-    #[must_use]
-    pub fn has_kinks(&self) -> bool {
-        use Function::{Abs, Clamp, If, Max, Min, Sign};
-        let is_kink = |step: &Step| match step {
-            Step::Call(function, _) => {
-                matches!(function, Abs | Sign | Function::Step | Min | Max | Clamp | If)
-            }
-            _ => false,
-        };
-        self.steps.iter().any(|(_, step)| is_kink(step))
     }
 
     /// How many numbers it needs at a time.

@@ -5,7 +5,7 @@ use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature
 use crate::effect::{Action, Balance, Effect, Jet, LoadEffect, Moment, Row, Setting, ShapeEffect};
 use crate::expression::{VARIABLES, variable_index};
 use crate::user::{ShapeFormula, ShapeQuantity, UserEffect, UserFormula, UserParameter};
-use bulge_fibre::Parts;
+use bulge_fibre::{FormulaInput, Parts};
 use bulge_muscles::MuscleError;
 
 /// The data that a variable needs.
@@ -23,6 +23,18 @@ impl UserEffect {
         match &self.formula {
             UserFormula::Force(force) => variable_index(name).is_some_and(|i| force.uses_variable(i)),
             UserFormula::Shape(_) => false,
+        }
+    }
+
+    /// How the force follows the pressure, as cards say it.
+    fn power_of_pressure(&self) -> &'static str {
+        let UserFormula::Shape(shape) = &self.formula else {
+            return if self.uses("p") { "1" } else { "0" };
+        };
+        match shape.quantity {
+            _ if shape.expression.uses_variable(FormulaInput::Pressure as usize) => "any",
+            ShapeQuantity::Energy => "0",
+            ShapeQuantity::Area | ShapeQuantity::Twist => "1",
         }
     }
 }
@@ -72,7 +84,7 @@ impl Effect for UserEffect {
             },
             kind: None,
             signature: Signature {
-                pressure: if self.uses("p") { "1" } else { "0" },
+                pressure: self.power_of_pressure(),
                 parity: if odd { Parity::Odd } else { Parity::Even },
                 shape: "as its expression",
             },

@@ -130,7 +130,7 @@ impl Tensions {
 }
 
 /// The tension at which H has the value `energy`.
-fn tension_at(net: &Net<f64>, r: f64, energy: f64, near: f64) -> Option<f64> {
+pub(crate) fn tension_at(net: &Net<f64>, r: f64, energy: f64, near: f64) -> Option<f64> {
     let mut tension = near;
     for _ in 0..STEPS {
         let slope = slope_of_energy(net, r, tension);
@@ -153,7 +153,7 @@ fn is_inextensible(net: &Net<f64>) -> bool {
 }
 
 /// dH/dT = sigma dN/dT.
-fn slope_of_energy(net: &Net<f64>, r: f64, tension: f64) -> f64 {
+pub(crate) fn slope_of_energy(net: &Net<f64>, r: f64, tension: f64) -> f64 {
     let local = net.local(r, tension);
     local.sigma * local.force_t
 }

@@ -11,6 +11,8 @@ use crate::fit::problem::FitProblem;
 pub(crate) struct Interval {
     pub(crate) ends: [f64; 2],
     pub(crate) method: &'static str,
+    /// Whether no value within the bounds is excluded.
+    pub(crate) is_everything: bool,
 }
 
 /// Scales unit covariances to intervals.
@@ -72,8 +74,9 @@ pub(crate) fn of(
     } else {
         None
     };
+    let is_everything = |ends: [f64; 2]| ends[0] <= bounds.lower[place] && ends[1] >= bounds.upper[place];
     if let Some(ends) = profiled {
-        return Interval { ends: ends.map(back), method: "profile" };
+        return Interval { ends: ends.map(back), method: "profile", is_everything: is_everything(ends) };
     }
     let x = minimum.theta[place];
     let sd = minimum.standard_deviations(scale.variance)[place];
@@ -82,7 +85,7 @@ pub(crate) fn of(
         None => [bounds.lower[place], bounds.upper[place]],
     };
     let ends = [ends[0].max(bounds.lower[place]), ends[1].min(bounds.upper[place])];
-    Interval { ends: ends.map(back), method: "covariance" }
+    Interval { ends: ends.map(back), method: "covariance", is_everything: is_everything(ends) }
 }
 
 /// The ends of the profile; none if the minimisations over the other parameters fail.
