@@ -1,7 +1,7 @@
 //! `bulge plan`: before measuring, what a test would show and which effects it could not distinguish.
 
 use bulge_effects::known;
-use bulge_inference::{ConfusedPair, CorrelationTime, Plan, PlannedEffect, Protocol, plan};
+use bulge_inference::{ConfusedPair, CorrelationTime, Plan, PlannedEffect, Protocol, SEPARATION, plan};
 use bulge_measurements::{ColumnMap, Data};
 use bulge_model::read_options;
 use bulge_muscles::{Muscle, Quantity};
@@ -18,9 +18,8 @@ use crate::files;
 use crate::text::{table, three};
 use bulge_report::shell_word;
 
-/// Sigmas at which an effect is detected, and from which two are distinguished.
+/// Sigmas at which an effect is detected.
 const SEEN: f64 = 3.3;
-const APART: f64 = 3.29;
 /// Compensations above this are mentioned.
 const MUCH: f64 = 0.5;
 /// Most lines of a kind; JSON has all.
@@ -226,14 +225,14 @@ fn pairs(out: &mut String, plan: &Plan) {
     // Confusion only matters for effects that are detected.
     let is_seen = |name: &str| plan.effects.iter().any(|e| e.effect == name && e.usual_sigma >= SEEN);
     let (never, others): (Vec<&ConfusedPair>, Vec<&ConfusedPair>) =
-        plan.confused.iter().filter(|pair| pair.sigma < APART).partition(|pair| pair.cosine >= SAME);
+        plan.confused.iter().filter(|pair| pair.sigma < SEPARATION).partition(|pair| pair.cosine >= SAME);
     let some: Vec<&ConfusedPair> =
         others.into_iter().filter(|pair| pair.effects.iter().all(|name| is_seen(name))).collect();
     if never.is_empty() && some.is_empty() {
         out.push_str("\n  all effects that are seen at their usual size can be told apart\n");
         return;
     }
-    let _ = writeln!(out, "\n  could not be told apart (less than {APART} sigma at the usual size)");
+    let _ = writeln!(out, "\n  could not be told apart (less than {SEPARATION} sigma at the usual size)");
     if !some.is_empty() {
         let mut rows = vec![["pair", "cosine", "sigma", "tests that would"].map(str::to_owned).to_vec()];
         rows.extend(some.iter().take(MOST_PAIRS).map(|pair| {

@@ -1,6 +1,6 @@
 //! A diagnosis as text: the verdict first, then its evidence, in about forty lines.
 
-use bulge_inference::{CandidateResult, Diagnosis, LadderStep, Level, Missing, Verdict};
+use bulge_inference::{CandidateResult, Diagnosis, LadderStep, Level, Missing, SEPARATION, Verdict};
 use bulge_report::diagnosis::{
     bending_says, chance, forms_says, further, headlines, is_significant, noise_says, once_in,
     others_in_class, remains_says, step_name,
@@ -197,7 +197,13 @@ fn rivals(out: &mut String, diagnosis: &Diagnosis) {
     for missing in diagnosis.added() {
         let mut nearest: Vec<_> = missing.rivals.iter().collect();
         nearest.sort_by(|a, b| a.separation.total_cmp(&b.separation));
-        let named = nearest.iter().take(MOST_RIVALS).map(|r| format!("{} {}", r.effect, three(r.separation)));
+        let class: Vec<&str> = others_in_class(missing).collect();
+        let named = nearest.iter().take(MOST_RIVALS).map(|r| {
+            // Members of the class can be far off as their formulas stand, and near once these may err.
+            let is_near = r.separation <= SEPARATION || !class.contains(&r.effect.as_str());
+            let errs = if is_near { "" } else { " (not told apart if its formula may be a little wrong)" };
+            format!("{} {}{errs}", r.effect, three(r.separation))
+        });
         let named: Vec<String> = named.collect();
         if !named.is_empty() {
             lines.push(format!("    {}: {}", missing.effect, named.join(", ")));
@@ -206,7 +212,7 @@ fn rivals(out: &mut String, diagnosis: &Diagnosis) {
     if !lines.is_empty() {
         let _ = writeln!(
             out,
-            "  nearest rivals, by sigmas between them (told apart from 3.29 on)\n{}",
+            "  nearest rivals, by sigmas between them (told apart from {SEPARATION} on)\n{}",
             lines.join("\n")
         );
     }

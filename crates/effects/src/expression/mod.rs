@@ -121,7 +121,12 @@ impl Expression {
         let (builder, place) = compile::compile(text, &nodes, variables.len(), dimension, result)?;
         let tape = builder.finish(&[place]).ok_or_else(|| {
             let what = format!("the formula needs more than {MOST_REGISTERS} numbers at a time");
-            ExpressionError::new(text, 0..0, what, "write a shorter formula (of forces, several effects with a part each)")
+            ExpressionError::new(
+                text,
+                0..0,
+                what,
+                "write a shorter formula (of forces, several effects with a part each)",
+            )
         })?;
         let parameters = names.into_iter().map(str::to_owned).collect();
         let text = text.to_owned();

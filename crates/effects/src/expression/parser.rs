@@ -74,7 +74,11 @@ impl Parser<'_> {
     fn push(&mut self, part: Part, start: usize) -> Parsed {
         if self.nodes.len() >= MAX_NODES {
             let what = format!("the formula has more than {MAX_NODES} parts");
-            return Err(self.error(start..self.end, what, "write a shorter formula (of forces, several effects with a part each)"));
+            return Err(self.error(
+                start..self.end,
+                what,
+                "write a shorter formula (of forces, several effects with a part each)",
+            ));
         }
         self.nodes.push(Node { part, span: start..self.end });
         Ok(())

@@ -153,6 +153,9 @@ pub(crate) struct DecisionRule {
     pub(crate) another_muscle: f64,
 }
 
+/// Sigmas from which two effects are told apart: one false claim in a thousand.
+pub const SEPARATION: f64 = 3.29;
+
 /// The constants of every diagnosis.
 pub(crate) const RULE: DecisionRule = DecisionRule {
     screen: 0.03,
@@ -189,7 +192,7 @@ pub(crate) const RULE: DecisionRule = DecisionRule {
     slow: 3.0,
     rival: 3.0,
     rival_bent: 0.02,
-    separation: 3.29,
+    separation: SEPARATION,
     decided: 6.0,
     same: 1.0,
     swap: 1.0,

@@ -1,6 +1,6 @@
 //! Distance of each missing effect to its nearest rivals, in standard deviations.
 
-use bulge_inference::{Diagnosis, Missing, RivalResult};
+use bulge_inference::{Diagnosis, Missing, RivalResult, SEPARATION};
 
 use crate::PlotError;
 use crate::axis::Axis;
@@ -12,8 +12,6 @@ use crate::comparison::{Plot, WIDTH};
 use crate::diagnosis::headline::others_in_class;
 use crate::palette::{ALERT, FIRST, GRID, INK, SOFT_INK};
 
-/// Two effects nearer than this can't be distinguished (method: one false claim in a thousand).
-const SEPARATION: f64 = 3.29;
 /// Most rivals drawn per effect.
 const MOST: usize = 8;
 /// Bars end here; the numbers are beside them.
