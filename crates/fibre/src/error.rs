@@ -69,7 +69,7 @@ pub enum FibreError {
     },
     /// A user's own formula has no value or slope at a radius that the wall may take.
     #[error(
-        "no equilibrium was found at contraction {:.4} %: the formula for `{what}` or its slope isn't finite at l1 = {along:.4}, l2 = {around:.4}, and the wall may be stretched so far; write one that is finite there", 100.0 * contraction
+        "at contraction {:.4} % the wall may be stretched to l1 = {along:.4}, l2 = {around:.4}, where the formula for `{what}` or its slope isn't finite; write one that is finite there", 100.0 * contraction
     )]
     FormulaEnds {
         /// Asked contraction.
@@ -83,7 +83,7 @@ pub enum FibreError {
     },
     /// The slope of a user's own formula jumps.
     #[error(
-        "no equilibrium was found at contraction {:.4} %: the slope of the formula for `{what}` jumps at l1 = {along:.4}, l2 = {around:.4}. The wall would keep that radius over a length, which isn't computed; write a kink whose slope is continuous, such as max(l2 - 1.2, 0)^2", 100.0 * contraction
+        "no equilibrium is computed at contraction {:.4} %: the slope of the formula for `{what}` jumps at l1 = {along:.4}, l2 = {around:.4}, so that the wall would keep that radius over a length; write a kink whose slope is continuous, such as max(l2 - 1.2, 0)^2", 100.0 * contraction
     )]
     FormulaJumps {
         /// Asked contraction.
