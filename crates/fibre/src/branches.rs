@@ -47,31 +47,24 @@ pub(crate) fn radii<D: Real>(net: &Net<D>, middle: &Middle<D>) -> ArrayVec<D, MO
         let Some((here, gaps)) = way.gaps(r, tension) else { break };
         tension = here;
         if let Some((last, old)) = before {
-            for k in 0..gaps.len() {
-                if !(old[k].value() * gaps[k].value() < 0.0) {
-                    continue;
-                }
-                // Newton's method goes from positive to negative.
+            let crossed = (0..gaps.len()).filter(|k| changes_sign(old[*k].value(), gaps[*k].value()));
+            let roots = crossed.filter_map(|k| {
                 let is_falling = (old[k].value() > 0.0) == (last < r);
-                let sign = if is_falling { 1.0 } else { -1.0 };
-                let value = |r: f64| -> Result<_, ()> {
-                    let (_, gaps) = way.gaps(r, tension).ok_or(())?;
-                    Ok((sign * gaps[k].value(), sign * gaps[k].gradient()[0]))
-                };
-                let middle = 0.5 * (last + r);
-                let Ok(root) = newton_bracketed(value, last.min(r), last.max(r), middle, [ACCURACY, 0.0])
-                else {
-                    continue;
-                };
-                if let Some(radius) = way.moving(net, k, root, tension, energy) {
-                    // More branches than there is room for are passed as they are.
-                    let _ = found.try_push(radius);
-                }
-            }
+                let root = way.root(k, [last.min(r), last.max(r)], is_falling, tension)?;
+                way.moving(net, k, root, tension, energy)
+            });
+            // More branches than there is room for are passed as they are.
+            let room = MOST_BRANCHES - found.len();
+            found.extend(roots.take(room));
         }
         before = Some((r, gaps));
     }
     found
+}
+
+/// Whether a gap vanishes between two places; where it is exactly 0 counts once.
+fn changes_sign(one: f64, other: f64) -> bool {
+    one.is_finite() && other.is_finite() && (one > 0.0) != (other > 0.0)
 }
 
 /// What in a formula may keep an equilibrium from being found: no finite value or slope, or a slope that jumps, at
@@ -103,7 +96,7 @@ pub(crate) fn obstacle(net: &Net<f64>, is_cylinder: bool, contraction: f64) -> O
         }
         let gaps = net.gaps(r, 0.0);
         if let Some((last, old)) = before {
-            for k in (0..gaps.len()).filter(|k| old[*k] * gaps[*k] <= 0.0) {
+            for k in (0..gaps.len()).filter(|k| changes_sign(old[*k], gaps[*k])) {
                 let is_left = |at: f64| (net.gaps(at, 0.0)[k] > 0.0) == (old[k] > 0.0);
                 let (mut left, mut right) = (last, r);
                 while right - left > STEP {
@@ -146,6 +139,17 @@ impl Way<'_> {
         let tension = tension_at(&net, r, self.energy, near)?;
         let slope = net.local(r, tension).tension_r;
         Some((tension, self.lifted.gaps(radius, Dual::new(tension, [slope]))))
+    }
+
+    /// The radius between two at which the gap `k` vanishes. It falls or grows with the radius.
+    fn root(&self, k: usize, [low, high]: [f64; 2], is_falling: bool, near: f64) -> Option<f64> {
+        // Newton's method goes from positive to negative.
+        let sign = if is_falling { 1.0 } else { -1.0 };
+        let gap = |r: f64| {
+            let (_, gaps) = self.gaps(r, near).ok_or(())?;
+            Ok::<_, ()>((sign * gaps[k].value(), sign * gaps[k].gradient()[0]))
+        };
+        newton_bracketed(gap, low, high, 0.5 * (low + high), [ACCURACY, 0.0]).ok()
     }
 
     /// The radius at which the gap `k` vanishes, with its derivatives.

@@ -213,7 +213,9 @@ impl<D: Real> Formulas<D> {
         // The slope of ln(x) is finite where x is negative and the energy has no value.
         for i in 0..L {
             if !outputs[0][i].value().is_finite() {
-                outputs.iter_mut().for_each(|output| output[i] = D::from(f64::NAN));
+                for output in &mut outputs {
+                    output[i] = D::from(f64::NAN);
+                }
             }
         }
         Some(outputs)

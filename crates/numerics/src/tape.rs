@@ -387,7 +387,7 @@ impl Builder {
                 }
                 Step::Call(Function::Abs | Function::Sign | Function::Step, [x, ..]) => pairs.push((x, None)),
                 Step::Call(Function::Clamp, [x, low, high]) => {
-                    pairs.extend([(x, Some(low)), (x, Some(high))])
+                    pairs.extend([(x, Some(low)), (x, Some(high))]);
                 }
                 _ => {}
             }

@@ -241,29 +241,7 @@ impl<'a> Comparing<'a> {
         effects: &[Arc<dyn Effect>],
         restrictions: &[Restriction],
     ) -> Result<Fitting, InferenceError> {
-        self.asking(effects, restrictions, |own, analysis, ladder| own.fitted(analysis, ladder))
-    }
-
-    fn fitted(&self, analysis: &Analysis<'_>, ladder: &[Arc<Step>]) -> Result<Fitting, InferenceError> {
-        let (base, last) = (&self.base, &ladder[ladder.len() - 1]);
-        let Climbed { prepared, theta, fit, force, failed } = &last.climbed;
-        if let Some(error) = failed {
-            let what = "nothing was fitted, and nothing is written: with the numbers that the fit starts from there is ";
-            return Err(InferenceError::Model { what: what.to_owned(), source: Box::new(error.clone()) });
-        }
-        let mut fit = fit.clone().unwrap_or_else(|| nothing_fitted(analysis, theta.clone(), force));
-        fit.warnings.extend(last.rung.without_state.as_ref().map(|left| without_state("the fit", left)));
-        fit.warnings.extend(note(&analysis.data, analysis.muscle));
-        fit.warnings.splice(0..0, analysis.findings.iter().map(ToString::to_string));
-        Ok(Fitting {
-            held: held(&prepared.model, &fit.theta),
-            model: prepared.model.clone(),
-            fit,
-            data: analysis.summary(),
-            before_rmse_n: base.rung.rmse_n,
-            rmse_n: last.rung.rmse_n,
-            noise_floor: self.floor.clone(),
-        })
+        self.asking(effects, restrictions, fitted)
     }
 
     fn asked_with_rows(&self) -> Result<(Comparison, Rows), InferenceError> {
@@ -387,9 +365,34 @@ pub struct Fitting {
 /// As [`compare`]; also if some rows have no state with the numbers that the fit starts from.
 pub fn fit_effects(data: &Data, muscle: &Muscle, options: &Options) -> Result<Fitting, InferenceError> {
     let options = Options { held_out: false, ..options.clone() };
-    rayon::scope(|_| {
-        Comparing::of(Analysis::new(data, muscle, &options)?)?
-            .asked(|own, analysis, ladder| own.fitted(analysis, ladder))
+    rayon::scope(|_| Comparing::of(Analysis::new(data, muscle, &options)?)?.asked(fitted))
+}
+
+/// The last rung alone.
+fn fitted(
+    own: &Comparing<'_>,
+    analysis: &Analysis<'_>,
+    ladder: &[Arc<Step>],
+) -> Result<Fitting, InferenceError> {
+    let (base, last) = (&own.base, &ladder[ladder.len() - 1]);
+    let Climbed { prepared, theta, fit, force, failed } = &last.climbed;
+    if let Some(error) = failed {
+        let what =
+            "nothing was fitted, and nothing is written: with the numbers that the fit starts from there is ";
+        return Err(InferenceError::Model { what: what.to_owned(), source: Box::new(error.clone()) });
+    }
+    let mut fit = fit.clone().unwrap_or_else(|| nothing_fitted(analysis, theta.clone(), force));
+    fit.warnings.extend(last.rung.without_state.as_ref().map(|left| without_state("the fit", left)));
+    fit.warnings.extend(note(&analysis.data, analysis.muscle));
+    fit.warnings.splice(0..0, analysis.findings.iter().map(ToString::to_string));
+    Ok(Fitting {
+        held: held(&prepared.model, &fit.theta),
+        model: prepared.model.clone(),
+        fit,
+        data: analysis.summary(),
+        before_rmse_n: base.rung.rmse_n,
+        rmse_n: last.rung.rmse_n,
+        noise_floor: own.floor.clone(),
     })
 }
 
