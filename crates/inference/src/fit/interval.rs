@@ -54,6 +54,10 @@ pub(crate) fn quantile(freedom: f64) -> f64 {
         .clamp(1.959_964, 12.71)
 }
 
+/// Cosine between two columns of the Jacobian from which a bound that holds one parameter narrows the interval of the
+/// other by more than a seventh.
+const LEANING: f64 = 0.5;
+
 /// Most rows for which a profile is affordable: it costs about forty more fits.
 const MOST_ROWS: usize = 20_000;
 
@@ -108,4 +112,15 @@ fn profiled(
         | ProfileEnd::Undefined { value, .. } => value,
     };
     Some([end(found.lower), end(found.upper)])
+}
+
+/// Whether a parameter would move with another one that a bound holds, as the factors of a product do. Its
+/// covariance takes the other one as known.
+pub(crate) fn leans_on_a_bound(minimum: &Minimum, place: usize) -> bool {
+    let count = minimum.theta.len();
+    let column = |j: usize| (0..count).map(move |i| minimum.r[i * count + j]);
+    let product = |i: usize, j: usize| column(i).zip(column(j)).map(|(a, b)| a * b).sum::<f64>();
+    let cosine = |j: usize| product(place, j).abs() / (product(place, place) * product(j, j)).sqrt();
+    let at_bound = &minimum.certificate.at_bound;
+    (0..count).any(|j| j != place && at_bound[j].is_some() && cosine(j) > LEANING)
 }

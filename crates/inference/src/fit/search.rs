@@ -22,9 +22,6 @@ const FEW_ROWS: usize = 400;
 const COARSE: f64 = 0.5;
 /// Most starts: the given one, one nearly without effects, 2 n - 1 scattered ones for n unknown parameters.
 const STARTS: usize = 8;
-/// Cosine between two columns of the Jacobian from which a bound that holds one parameter narrows the interval of the
-/// other by more than a seventh.
-const LEANING: f64 = 0.5;
 /// A rig error within so many standard deviations of its data sheet counts as noise.
 const SHEET: f64 = 4.0;
 /// Fraction of the plausible box at either end in which no start lies.
@@ -396,7 +393,7 @@ fn report(
             Side::Upper => "upper",
         });
         let implausible = !fitted.plausible && !fitted.nuisance;
-        let leans = leans_on_a_bound(minimum, place);
+        let leans = interval::leans_on_a_bound(minimum, place);
         let flagged = fitted.at_bound.is_some() || implausible || !fitted.determined || leans;
         let found = interval::of(problem, minimum, place, &scale, flagged);
         fitted.interval = found.method;
@@ -407,17 +404,6 @@ fn report(
     }
     fit.warnings = warnings(&fit);
     fit
-}
-
-/// Whether a parameter would move with another one that a bound holds, as the factors of a product do. Its
-/// covariance takes the other one as known.
-fn leans_on_a_bound(minimum: &Minimum, place: usize) -> bool {
-    let count = minimum.theta.len();
-    let column = |j: usize| (0..count).map(move |i| minimum.r[i * count + j]);
-    let product = |i: usize, j: usize| column(i).zip(column(j)).map(|(a, b)| a * b).sum::<f64>();
-    let cosine = |j: usize| product(place, j).abs() / (product(place, place) * product(j, j)).sqrt();
-    let at_bound = &minimum.certificate.at_bound;
-    (0..count).any(|j| j != place && at_bound[j].is_some() && cosine(j) > LEANING)
 }
 
 fn fitted(prepared: &Prepared, index: usize, value: f64) -> Fitted {
