@@ -1,7 +1,7 @@
 //! `compare` and `fit` as seen by a user: ladders on data with a known truth, output files as further input,
 //! and messages for bad input.
 
-use crate::support::{Folder, has_parts, json, line, refused, stdout};
+use crate::support::{Folder, PROTOCOL, failure, has_parts, json, line, refused, simulated, stdout};
 use bulge_effects::{Catalogue, Moment};
 use bulge_model::{Model, Record, Wanted};
 use bulge_muscles::from_toml;
@@ -146,6 +146,24 @@ fn a_users_own_effect_is_one_of_all() {
     refused(&["compare", &data, "--muscle", &learnt], 1, &["my-drag", "--effects"]);
     let next = json(&["compare", &data, "--muscle", &learnt, "--effects", &own, "--json"]);
     assert!(rmse(&next, 0) < 0.01);
+}
+
+/// A formula without a value at any row: the fit can't begin, says where, and writes nothing.
+#[test]
+fn a_fit_that_can_not_begin_writes_nothing() {
+    let folder = Folder::new("no-beginning");
+    let [data, muscle] = simulated(&folder, "trial", [PROTOCOL, "7"], &[]);
+    let own = folder.write(
+        "own.toml",
+        "[effects.ends]\ntitle = \"Ends\"\nenergy = \"k*ln(1.001 - l2)\"\n\
+         parameters.k = { unit = \"N/m\", typical = \"100 N/m\", low = \"0 N/m\", high = \"1e4 N/m\" }\n",
+    );
+    let learnt = folder.path("learnt.toml");
+    let call = ["fit", &data, "--muscle", &muscle, "--effects", &own, "--with", "ends", "--out", &learnt];
+    let (status, message) = failure(&call);
+    assert_eq!(status, 1, "{message}");
+    has_parts(&message, &["nothing was fitted", "the formula for `energy`", "l2 = 1.", "finite"]);
+    assert!(!Path::new(&learnt).exists());
 }
 
 #[test]

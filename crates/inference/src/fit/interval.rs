@@ -124,3 +124,58 @@ pub(crate) fn leans_on_a_bound(minimum: &Minimum, place: usize) -> bool {
     let at_bound = &minimum.certificate.at_bound;
     (0..count).any(|j| j != place && at_bound[j].is_some() && cosine(j) > LEANING)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bulge_numerics::least_squares::{Residuals, minimise};
+    use std::ops::Range;
+
+    /// x + y = 3 twice, with a little curvature, and z = 1.
+    struct Sum;
+
+    impl Residuals for Sum {
+        type Error = ();
+
+        fn rows(&self) -> usize {
+            3
+        }
+
+        fn parameters(&self) -> usize {
+            3
+        }
+
+        fn evaluate(
+            &self,
+            theta: &[f64],
+            rows: Range<usize>,
+            residuals: &mut [f64],
+            mut jacobian: Option<&mut [f64]>,
+        ) -> Result<(), ()> {
+            let all = [[1.0, 1.0, 0.0, 3.0], [1.0, 1.1, 0.0, 3.2], [0.0, 0.0, 1.0, 1.0]];
+            for (place, row) in rows.enumerate() {
+                let [a, b, c, sum] = all[row];
+                residuals[place] = a * theta[0] + b * theta[1] + c * theta[2] - sum;
+                if let Some(jacobian) = jacobian.as_deref_mut() {
+                    jacobian[3 * place..3 * place + 3].copy_from_slice(&[a, b, c]);
+                }
+            }
+            Ok(())
+        }
+    }
+
+    /// Unbounded, y is 2. A bound that holds y narrows the interval of x, and not that of z.
+    #[test]
+    fn a_bound_narrows_what_moves_with_it() {
+        let at = |most: f64| {
+            let bounds = Bounds { lower: vec![-10.0; 3], upper: vec![10.0, most, 10.0] };
+            minimise(&Sum, &[0.0; 3], &bounds, &Options::default()).unwrap()
+        };
+        let (held, free) = (at(1.0), at(5.0));
+        assert!(held.certificate.at_bound[1].is_some() && free.certificate.at_bound[1].is_none());
+        assert!(leans_on_a_bound(&held, 0) && !leans_on_a_bound(&held, 2));
+        assert!((0..3).all(|place| !leans_on_a_bound(&free, place)));
+        let sd = |minimum: &Minimum| minimum.standard_deviations(1.0)[0].unwrap();
+        assert!(sd(&held) < 0.1 * sd(&free), "{} {}", sd(&held), sd(&free));
+    }
+}
