@@ -14,7 +14,7 @@ use crate::data::{DataArguments, told};
 use crate::failure::Failure;
 use crate::files;
 use crate::restricted::RestrictedArguments;
-use crate::text::{significant, three, with_interval};
+use crate::text::{counted, significant, three, with_interval};
 
 /// Model against measurement. Effects are fitted only if you name them with `--with`.
 #[derive(Debug, Args)]
@@ -115,7 +115,7 @@ pub(crate) fn text(comparison: &Comparison, effects: &[Arc<dyn Effect>]) -> Stri
     let _ = writeln!(out, "{} against {}\n", comparison.muscle, data.files.join(", "));
     out.push_str(&told(&data.reading));
     let kind = if data.is_path { "along paths" } else { "in a static map" };
-    let _ = writeln!(out, "  {} rows {kind}: {}", data.rows, spans(data));
+    let _ = writeln!(out, "  {} {kind}: {}", counted(data.rows, "row"), spans(data));
     for held in &comparison.isotonic {
         let _ = writeln!(
             out,
@@ -127,7 +127,7 @@ pub(crate) fn text(comparison: &Comparison, effects: &[Arc<dyn Effect>]) -> Stri
         );
     }
     for left in &data.left_out {
-        let _ = writeln!(out, "  left out {} rows (line {}): {}", left.rows, left.lines, left.why);
+        let _ = writeln!(out, "  left out {} (line {}): {}", counted(left.rows, "row"), left.lines, left.why);
     }
     for finding in &comparison.quality {
         let _ = writeln!(out, "  {}", finding.says);

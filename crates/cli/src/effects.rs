@@ -1,6 +1,6 @@
 //! `bulge effects`: reference of the catalogue of physical effects and force laws.
 
-use bulge_effects::law::{LAWS, PAPERS, reference};
+use bulge_effects::law::{LAWS, PAPERS, S1_VOLUME, reference};
 use bulge_effects::{CardDocument, Catalogue, describe, overview};
 use clap::Args;
 use serde_json::json;
@@ -43,6 +43,10 @@ impl EffectsCommand {
         if let Some(law) = bulge_effects::law::Law::find(name) {
             let document = json!({"schema": "bulge.law/1", "law": law});
             return self.json.or(&document, || law.to_string());
+        }
+        if name.eq_ignore_ascii_case(S1_VOLUME.name) {
+            let document = json!({"schema": "bulge.volume-law/1", "law": S1_VOLUME});
+            return self.json.or(&document, || S1_VOLUME.to_string());
         }
         let effect = catalogue.find(name)?;
         let document = json!({"schema": "bulge.effect/1", "effect": CardDocument::of(effect.as_ref())});

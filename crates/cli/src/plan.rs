@@ -15,7 +15,7 @@ use crate::diagnose::paragraph::paragraph;
 use crate::diagnose::untested::reasons;
 use crate::failure::Failure;
 use crate::files;
-use crate::text::{table, three};
+use crate::text::{counted, table, three};
 use bulge_report::shell_word;
 
 /// Sigmas at which an effect is detected.
@@ -134,10 +134,10 @@ fn test(out: &mut String, plan: &Plan) {
     let [short, long] = plan.contraction.map(|e| three(100.0 * e));
     let _ = writeln!(
         out,
-        "{}, before measuring\n\n  {} rows in {}: {low} to {high} bar, contraction {short} to {long} %",
+        "{}, before measuring\n\n  {} in {}: {low} to {high} bar, contraction {short} to {long} %",
         plan.muscle,
-        plan.rows,
-        if plan.sweeps == 1 { "1 sweep".to_owned() } else { format!("{} sweeps", plan.sweeps) }
+        counted(plan.rows, "row"),
+        counted(plan.sweeps, "sweep")
     );
     let noise = &plan.noise;
     let correlated = match noise.time.filter(|_| noise.correlated_n > 0.0) {

@@ -10,7 +10,7 @@ use crate::arguments::{self, Json};
 use crate::data::{DataArguments, told};
 use crate::failure::Failure;
 use crate::files;
-use crate::text::significant;
+use crate::text::{counted, significant};
 
 /// The force of new rows: the muscle with the effects that its file states (`bulge fit` writes one), with intervals, and with residuals where a force was measured.
 #[derive(Debug, Args)]
@@ -58,7 +58,13 @@ fn text(found: &Predicted) -> String {
     let range = if with > 0 { format!(", {} to {} N", three(low), three(high)) } else { String::new() };
     let _ = writeln!(out, "  {with} of {} rows have a state{range}", found.rows);
     if let Some(left) = &found.without_state {
-        let _ = writeln!(out, "  without a state: {} rows (line {}): {}", left.rows, left.lines, left.why);
+        let _ = writeln!(
+            out,
+            "  without a state: {} (line {}): {}",
+            counted(left.rows, "row"),
+            left.lines,
+            left.why
+        );
     }
     if let Some(sd) = found.reading_sd_n {
         let _ = writeln!(
@@ -81,7 +87,13 @@ fn text(found: &Predicted) -> String {
         );
     }
     for left in &found.left_out {
-        let _ = writeln!(out, "  not compared: {} rows (line {}): {}", left.rows, left.lines, left.why);
+        let _ = writeln!(
+            out,
+            "  not compared: {} (line {}): {}",
+            counted(left.rows, "row"),
+            left.lines,
+            left.why
+        );
     }
     match &found.against {
         Some(against) => {

@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 use crate::arguments::{self, pretty};
 use crate::failure::Failure;
 use crate::files;
-use crate::text::significant;
+use crate::text::{counted, significant};
 
 /// Names of the files written.
 const FILES: [&str; 3] = ["data.csv", "muscle.toml", "truth.json"];
@@ -116,8 +116,8 @@ fn text(found: &Simulation, [data, muscle, truth]: &[PathBuf; 3]) -> String {
         [force.iter().copied().fold(f64::INFINITY, f64::min), force.iter().copied().fold(0.0, f64::max)];
     let _ = writeln!(
         out,
-        "  {} rows {kind}: force {} to {} N",
-        hidden.rows,
+        "  {} {kind}: force {} to {} N",
+        counted(hidden.rows, "row"),
         significant(low, 3),
         significant(high, 3)
     );
@@ -170,33 +170,25 @@ fn ended_text(out: &mut String, truth: &Truth, is_path: bool) {
             format!("{} to {} %", significant(100.0 * low, 4), significant(100.0 * high, 4))
         };
         let planned = percent(ended.planned);
-        let what = match (is_path, ended.count) {
-            (true, 1) => "sweep",
-            (true, _) => "sweeps",
-            (false, 1) => "row",
-            (false, _) => "rows",
-        };
+        let done = counted(ended.count, if is_path { "sweep" } else { "row" });
         if let Some(reached) = ended.pressure_reached_pa {
             let [low, high] = reached.map(|p| significant(p / 1e5, 4));
             let _ = writeln!(
                 out,
-                "  at {} % only {low} to {high} bar were done ({} {what}): at lower pressures the muscle would push or has no equilibrium",
-                significant(100.0 * ended.planned[0], 4),
-                ended.count
+                "  at {} % only {low} to {high} bar were done ({done}): at lower pressures the muscle would push or has no equilibrium",
+                significant(100.0 * ended.planned[0], 4)
             );
             continue;
         }
         let _ = match (ended.reached, is_path) {
             (Some(reached), true) => writeln!(
                 out,
-                "  at {bar} bar {} of {planned} was done ({} {what}): beyond, the muscle would push or has no equilibrium",
-                percent(reached),
-                ended.count
+                "  at {bar} bar {} of {planned} was done ({done}): beyond, the muscle would push or has no equilibrium",
+                percent(reached)
             ),
             _ => writeln!(
                 out,
-                "  left out {} {what} at {bar} bar, {planned}: the muscle would push or has no equilibrium",
-                ended.count
+                "  left out {done} at {bar} bar, {planned}: the muscle would push or has no equilibrium"
             ),
         };
     }

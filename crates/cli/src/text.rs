@@ -7,6 +7,11 @@ pub(crate) fn three(value: f64) -> String {
     significant(value, 3)
 }
 
+/// A count with its word: `1 row`, `3 rows`.
+pub(crate) fn counted(count: usize, what: &str) -> String {
+    format!("{count} {what}{}", if count == 1 { "" } else { "s" })
+}
+
 /// A value and the ends of its interval, so that the interval can be seen.
 pub(crate) fn with_interval(value: f64, low: f64, high: f64) -> [String; 3] {
     bulge_report::with_interval(value, [low, high])

@@ -51,6 +51,7 @@ pub(crate) use {
 };
 
 use bulge_model::MuscleWithEffectsError;
+use bulge_muscles::Pressure;
 
 /// Specific gas constant of dry air \[J/(kg K)\].
 pub const R_AIR: f64 = 287.05;
@@ -77,7 +78,7 @@ pub enum GasError {
         instead: &'static str,
     },
     /// The muscle has no equilibrium at this pressure.
-    #[error("at the gauge pressure {pressure_pa} Pa: {error}")]
+    #[error("at the gauge pressure {}: {error}", Pressure::pa(*pressure_pa))]
     Muscle {
         /// Gauge pressure \[Pa\].
         pressure_pa: f64,
@@ -88,7 +89,7 @@ pub enum GasError {
     #[error("{0}")]
     NoBalance(String),
     /// The integration over time stopped.
-    #[error("the filling stopped after {time_s} s at the gauge pressure {pressure_pa} Pa: {reason}")]
+    #[error("the filling stopped after {time_s} s at the gauge pressure {}: {reason}", Pressure::pa(*pressure_pa))]
     Stopped {
         /// Time \[s\].
         time_s: f64,

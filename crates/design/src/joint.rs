@@ -40,7 +40,7 @@ type Cause = Box<dyn std::error::Error + Send + Sync>;
 #[derive(Debug, thiserror::Error)]
 pub enum JointError {
     /// A muscle has no equilibrium.
-    #[error("the {} at the angle {:.4} deg and {pressure_pa} Pa: {error}", side.name(), angle.to_degrees())]
+    #[error("the {} at the angle {:.4} deg and {}: {error}", side.name(), angle.to_degrees(), Pressure::pa(*pressure_pa))]
     Muscle {
         /// The muscle.
         side: Side,
@@ -82,8 +82,8 @@ pub enum JointError {
     },
     /// The muscles turn the joint beyond an end of its range.
     #[error(
-        "no rest at {} Pa and {} Pa: the torque of all is {:.4} N m at {:.4} deg and {:.4} N m at {:.4} deg; choose pressures closer to each other, less torque from outside, or a wider range",
-        pressures[0], pressures[1], torques[0], range[0].to_degrees(), torques[1], range[1].to_degrees()
+        "no rest at {} and {}: the torque of all is {:.4} N m at {:.4} deg and {:.4} N m at {:.4} deg; choose pressures closer to each other, less torque from outside, or a wider range",
+        Pressure::pa(pressures[0]), Pressure::pa(pressures[1]), torques[0], range[0].to_degrees(), torques[1], range[1].to_degrees()
     )]
     NoRest {
         /// Pressures of agonist and antagonist \[Pa\].

@@ -254,6 +254,7 @@ impl ParameterDocument {
             |[low, high]: [f64; 2]| format!("implausible outside {} to {}", digits(low), digits(high));
         parts.extend(self.plausible.map(outside));
         parts.extend(self.reciprocal.as_ref().map(|[name, unit]| format!("also shown as {name} in {unit}")));
+        parts.extend((self.key != self.name).then(|| format!("`{}` in a muscle file", self.key)));
         parts.extend(self.logarithmic.then(|| "fitted over its logarithm".to_owned()));
         parts.join("; ")
     }

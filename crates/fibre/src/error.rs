@@ -1,6 +1,6 @@
 //! Errors of an equilibrium, with their numbers.
 
-use bulge_muscles::Fault;
+use bulge_muscles::{Fault, Pressure};
 
 use crate::problem::{MOST_STRAIN, WIDEST_FITTING};
 
@@ -8,7 +8,7 @@ use crate::problem::{MOST_STRAIN, WIDEST_FITTING};
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum FibreError {
     /// Without gauge pressure nothing balances the fibres.
-    #[error("the gauge pressure is {pressure_pa} Pa: it must be greater than 0")]
+    #[error("the gauge pressure is {}: it must be greater than 0", Pressure::pa(*pressure_pa))]
     PressureNotPositive {
         /// Asked pressure \[Pa\].
         pressure_pa: f64,

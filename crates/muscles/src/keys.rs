@@ -2,7 +2,9 @@
 
 use crate::construction::Kind;
 use crate::parameter::Parameter;
+use crate::quantity::Length;
 use crate::settings::Keys;
+use crate::units;
 
 /// The table of a specimen, and that of its fibres.
 pub(crate) const SPECIMEN: &str = "specimens.*";
@@ -13,7 +15,7 @@ const TABLES: &[(&str, Keys)] = &[
     (
         "",
         &[
-            ("name", "name = \"second-generation PPAM\""),
+            ("name", "name = \"my muscle\""),
             ("kind", "kind = \"pleated\""),
             ("length", "length = \"110 mm\""),
             ("radius", "radius = \"16 mm\""),
@@ -168,9 +170,12 @@ pub(crate) fn example(path: &str) -> String {
 }
 
 /// How to write a key that stands at the top of the file under another name, or that belongs in a table.
-pub(crate) fn elsewhere(unknown: &str) -> Option<String> {
+pub(crate) fn elsewhere(unknown: &str, value: Option<&str>) -> Option<String> {
     let plain = |text: &str| text.to_lowercase().replace('-', "_");
     let is_it = |name: &str| plain(name) == plain(unknown);
+    if let Some(radius) = is_it("diameter").then(|| value.and_then(half)).flatten() {
+        return Some(format!("write `radius = \"{radius}\"`, half of it"));
+    }
     if let Some((_, path)) = SYNONYMS.iter().find(|(other, _)| is_it(other)) {
         return Some(format!("write {}", example(path)));
     }
@@ -181,6 +186,13 @@ pub(crate) fn elsewhere(unknown: &str) -> Option<String> {
             .map(|(key, _)| format!("write {}", example(&join(table, key))))
     };
     TABLES.iter().filter(of_muscle).find_map(of_table)
+}
+
+/// Half a length, in its own unit; `None` if it is none, or has a width.
+fn half(length: &str) -> Option<String> {
+    let (number, unit) = length.split_at(length.find(char::is_alphabetic)?);
+    let number: f64 = number.trim().parse().ok()?;
+    units::parse::<Length>(length).ok().map(|_| format!("{} {unit}", number / 2.0))
 }
 
 #[cfg(test)]
@@ -217,9 +229,13 @@ mod tests {
             ("pleat_depth", "pleat-depth = "),
             ("stiffness", "`[fibre]`"),
         ] {
-            let found = elsewhere(unknown).unwrap();
+            let found = elsewhere(unknown, None).unwrap();
             assert!(found.contains(part), "{unknown}: {found}");
         }
-        assert_eq!((elsewhere("colour"), elsewhere("lenght"), elsewhere("")), (None, None, None));
+        assert!(["colour", "lenght", ""].into_iter().all(|unknown| elsewhere(unknown, None).is_none()));
+        assert_eq!(elsewhere("Diameter", Some("21 mm")).unwrap(), "write `radius = \"10.5 mm\"`, half of it");
+        for other in ["21 mm +- 1 mm", "21 N", "21"] {
+            assert!(elsewhere("diameter", Some(other)).unwrap().contains("16 mm"), "{other}");
+        }
     }
 }

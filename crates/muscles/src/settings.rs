@@ -123,19 +123,24 @@ impl<'a> Settings<'a> {
     /// # Errors
     /// Names the first one in the file, with the nearest key that there is.
     pub fn check_keys(&self) -> Result<(), FileError> {
-        self.check_keys_or(|_| None)
+        self.check_keys_or(|_, _| None)
     }
 
-    /// The same. `elsewhere` may know what to write instead of a key that resembles none of the table.
-    pub(crate) fn check_keys_or(&self, elsewhere: fn(&str) -> Option<String>) -> Result<(), FileError> {
+    /// The same. `elsewhere` may know what to write instead of a key, with the text of its value, that resembles none of the
+    /// table.
+    pub(crate) fn check_keys_or(
+        &self,
+        elsewhere: fn(&str, Option<&str>) -> Option<String>,
+    ) -> Result<(), FileError> {
         let known = || self.keys.iter().map(|(key, _)| *key);
         let stranger = self.names().into_iter().find(|(name, _)| known().all(|key| key != *name));
         let Some((name, span)) = stranger else { return Ok(()) };
         let near = nearest(name, known()).map(|near| format!("did you mean `{near}`?"));
-        let instead = near.or_else(|| elsewhere(name)).unwrap_or_else(|| {
-            let known = known().collect::<Vec<_>>().join(", ");
-            format!("known here: {known}; leave the rest out, or write it behind a `#`")
-        });
+        let instead =
+            near.or_else(|| elsewhere(name, self.get(name).and_then(Setting::text))).unwrap_or_else(|| {
+                let known = known().collect::<Vec<_>>().join(", ");
+                format!("known here: {known}; leave the rest out, or write it behind a `#`")
+            });
         Err(self.error(span, format!("unknown key `{}` in {}", shortened(name), self.title), instead))
     }
 

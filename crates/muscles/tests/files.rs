@@ -246,7 +246,7 @@ fn numbers_of_fibres() {
 #[test]
 fn keys_that_are_missing_or_unknown() {
     for (text, missing, example) in [
-        (PLEATED, "name", "name = \"second-generation PPAM\""),
+        (PLEATED, "name", "name = \"my muscle\""),
         (PLEATED, "length", "length = \"110 mm\""),
         (PLEATED, "radius", "radius = \"16 mm\""),
         (PLEATED, "fibres", "fibres = 40"),

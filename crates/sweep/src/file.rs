@@ -13,7 +13,7 @@ pub(crate) use axes::quantity;
 use bulge_effects::Catalogue;
 use bulge_fibre::Approach;
 use bulge_muscles::settings::{Document, FileKind, Keys, Settings};
-use bulge_muscles::{Dimension, FileError, Muscle};
+use bulge_muscles::{Dimension, FileError, Muscle, Pressure};
 use std::path::Path;
 
 use axes::Placed;
@@ -208,7 +208,7 @@ fn pressure(settings: &Settings<'_>, axes: &[Placed<'_>]) -> Result<f64, FileErr
     if pressure > 0.0 {
         return Ok(pressure);
     }
-    let what = format!("the pressure {pressure} Pa is not possible: it must be > 0");
+    let what = format!("the pressure {} is not possible: it must be > 0", Pressure::pa(pressure));
     Err(settings.error(settings.value_span("pressure"), what, "write such as `pressure = \"1 bar\"`"))
 }
 

@@ -10,7 +10,7 @@ use std::fmt::Write;
 use crate::compare::spans;
 use crate::diagnose::paragraph::paragraph;
 use crate::diagnose::untested::reasons;
-use crate::text::{three, with_interval};
+use crate::text::{counted, three, with_interval};
 use bulge_report::Call;
 
 /// Most lines of a kind; JSON has all.
@@ -54,9 +54,9 @@ fn measured(out: &mut String, diagnosis: &Diagnosis) {
     let _ = writeln!(out, "{} diagnosed on {}\n", diagnosis.muscle, data.files.join(", "));
     let sweeps =
         if data.is_path { format!(" in {} sweeps", data.sweeps) } else { " in a static map".to_owned() };
-    let _ = writeln!(out, "  {} rows{sweeps}: {}", data.rows, spans(data));
+    let _ = writeln!(out, "  {}{sweeps}: {}", counted(data.rows, "row"), spans(data));
     for left in &data.left_out {
-        let _ = writeln!(out, "  left out {} rows (line {}): {}", left.rows, left.lines, left.why);
+        let _ = writeln!(out, "  left out {} (line {}): {}", counted(left.rows, "row"), left.lines, left.why);
     }
     let found = &diagnosis.data.quality;
     for finding in found.iter().take(MOST_FINDINGS) {

@@ -84,7 +84,7 @@ fn mistakes_are_named() {
         ("--angle '40 deg' --stiffness '100 N m/rad'", 3, "outside the range of the joint"),
         ("--angle '0 deg' --stiffness '100 N m/rad' --torque '9 kN m'", 1, "can't be read"),
         ("--angle '0 deg' --stiffness '100 N m/rad' --torque '900 N m'", 3, "they can hold"),
-        ("--pressure '3 bar,0.5 bar' --torque '900 N m'", 3, "no rest at 300000 Pa and 50000 Pa"),
+        ("--pressure '3 bar,0.5 bar' --torque '900 N m'", 3, "no rest at 3 bar and 0.5 bar"),
         (
             "--pressure '0.1 bar,0.1 bar' --torque '1 N m' --closed isothermal --dead-volume '-1 ml'",
             1,

@@ -331,7 +331,8 @@ impl<'a> Chamber<'a> {
         }
         let no_balance = |e: f64| {
             GasError::NoBalance(format!(
-                "at the gauge pressure {pressure_pa} Pa the pull equals the load at no contraction (last tried: {:.4} %, load {} N): give the load a support, or one that the muscle can carry",
+                "at the gauge pressure {} the pull equals the load at no contraction (last tried: {:.4} %, load {} N): give the load a support, or one that the muscle can carry",
+                Pressure::pa(pressure_pa),
                 100.0 * e,
                 load_at(load, muscle, e)
             ))
@@ -419,7 +420,8 @@ pub(super) fn with_gas(
     }
     let pressure_pa = (u + step).exp() - ambient_pa;
     Err(GasError::NoBalance(format!(
-        "no gauge pressure above 0 satisfies the law of the enclosed gas (last tried: {pressure_pa} Pa): start with a higher pressure, or ask for a contraction nearer to that of the filling ({reason})"
+        "no gauge pressure above 0 satisfies the law of the enclosed gas (last tried: {}): start with a higher pressure, or ask for a contraction nearer to that of the filling ({reason})",
+        Pressure::pa(pressure_pa)
     )))
 }
 

@@ -264,7 +264,8 @@ fn range<Q: Quantity>(settings: &Settings<'_>, key: &'static str) -> Result<[f64
 /// Refuses ranges that leave the domain of the linkage.
 fn check(settings: &Settings<'_>, joint: &Joint) -> Result<(), FileError> {
     if joint.pressure[0] <= 0.0 {
-        let what = format!("the pressure {} Pa is not possible: it must be > 0", joint.pressure[0]);
+        let what =
+            format!("the pressure {} is not possible: it must be > 0", Pressure::pa(joint.pressure[0]));
         let instead = "write such as `pressure = \"0.5 bar..3 bar\"`";
         return Err(settings.error(settings.value_span("pressure"), what, instead));
     }
@@ -357,13 +358,19 @@ fn check_muscle(settings: &Settings<'_>, joint: &Joint, muscle: &JointMuscle) ->
         let limit = muscle.extended.contraction_limit(Pressure::pa(pressure), Approach::Auto);
         let limit = match limit {
             Ok(limit) => limit,
-            Err(error) => return refused(format!("the {name} at {pressure} Pa: {error}"), OTHER.to_owned()),
+            Err(error) => {
+                return refused(
+                    format!("the {name} at {}: {error}", Pressure::pa(pressure)),
+                    OTHER.to_owned(),
+                );
+            }
         };
         if contraction(shortest) > limit {
             // If the muscle is too short even at the other end, no angle helps.
             let angle = angle_at(limit).to_degrees();
             let what = format!(
-                "the {name} reaches its contraction limit at {pressure} Pa, {:.4} %, at the angle {angle:.4} deg: beyond it the muscle doesn't pull",
+                "the {name} reaches its contraction limit at {}, {:.4} %, at the angle {angle:.4} deg: beyond it the muscle doesn't pull",
+                Pressure::pa(pressure),
                 100.0 * limit
             );
             let instead =

@@ -1,6 +1,7 @@
 //! States of a joint: under a load, at an angle, for a wanted angle and stiffness, and with closed valves.
 
 use bulge_fibre::Approach;
+use bulge_muscles::Pressure;
 use serde::Serialize;
 use std::cell::Cell;
 
@@ -275,10 +276,10 @@ impl Closed<'_> {
             let state = gas.state(inside, self.joint.pressure[1]).map_err(|error| match error {
                 GasError::Muscle { pressure_pa, error } => muscle.failed(angle, pressure_pa, error),
                 _ => JointError::Outside(format!(
-                    "the closed {} has no pressure left at {:.4} deg: {:.0} Pa below the air around it; fill it more",
+                    "the closed {} has no pressure left at {:.4} deg: {:.4} below the air around it; fill it more",
                     muscle.side.name(),
                     angle.to_degrees(),
-                    empty.get().unwrap_or_default()
+                    Pressure::pa(empty.get().unwrap_or_default())
                 )),
             })?;
             *found = state.pressure_pa;

@@ -10,7 +10,7 @@ pub enum SensingError {
     #[error("{0}")]
     Input(String),
     /// The muscle has no equilibrium in this state.
-    #[error("the winding has no resistance at {pressure_pa} Pa and contraction {:.4} %: {error}", 100.0 * contraction)]
+    #[error("the winding has no resistance at {} and contraction {:.4} %: {error}", Pressure::pa(*pressure_pa), 100.0 * contraction)]
     Equilibrium {
         /// Gauge pressure \[Pa\].
         pressure_pa: f64,
