@@ -1,0 +1,297 @@
+#!/usr/bin/env python3
+"""Builds the book: the pages of this folder, those that the program writes, and what they link to elsewhere in the repository.
+
+    python3 docs/build.py --bulge target/release/bulge --out target/book
+
+Needs mkdocs and matplotlib. Nothing is fetched: the site below OUT/site reads without a network. A link that leads nowhere is an error.
+"""
+
+import argparse
+import csv
+import json
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import tomllib
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import matplotlib
+
+matplotlib.use("Agg")
+matplotlib.rcParams["svg.hashsalt"] = "bulge"
+matplotlib.rcParams["svg.fonttype"] = "none"
+from matplotlib.figure import Figure  # noqa: E402
+
+ROOT = Path(__file__).resolve().parent.parent
+LINK = re.compile(r"\]\(([^)#\s]+)(#[^)\s]*)?\)")
+
+# The muscles on which effects are shown, and the test: loops at two pressures, without noise.
+MUSCLES = {"braided": "dmsp-20-250", "pleated": "ppam-2-r16"}
+PROTOCOL = """
+rig = "none"
+pause = "10 s"
+{extra}
+[[block]]
+pressures = ["2 bar", "4 bar"]
+contraction = "{range}"
+shape = "loops"
+wave = "triangle"
+cycles = {cycles}
+period = "50 s"
+rows = 80
+specimens = {specimens}
+"""
+PRESSURES = """
+pause = "10 s"
+[[block]]
+shape = "isometric"
+contractions = ["3 %", "12 %"]
+pressure = "1 bar..5 bar"
+wave = "triangle"
+cycles = 1
+period = "50 s"
+rows = 80
+"""
+RANGES = {"braided": "1 %..20 %", "pleated": "4 %..32 %"}
+
+
+class Program:
+    """The command `bulge`."""
+
+    def __init__(self, path):
+        self.path = Path(path).resolve()
+
+    def says(self, *arguments):
+        done = subprocess.run([self.path, *map(str, arguments)], capture_output=True, text=True, check=False)
+        if done.returncode != 0:
+            raise SystemExit(f"bulge {' '.join(map(str, arguments))}: {done.stderr}")
+        return done.stdout
+
+
+def commands(program):
+    """Every command with its help."""
+    help_text = program.says("--help")
+    listed = help_text.split("Commands:\n", 1)[1].split("\n\n", 1)[0]
+    names = [line.split()[0] for line in listed.splitlines() if re.match(r"  \w", line)]
+    text = "# Commands\n\nAs the program prints them (`bulge help COMMAND`).\n"
+    for name in [name for name in names if name != "help"]:
+        shown = program.says(name, "--help").replace(f"{program.path.name} ", "bulge ")
+        text += f"\n## bulge {name}\n\n```text\n{shown.rstrip()}\n```\n"
+    return text
+
+
+def laws(program):
+    return f"# Force laws of the papers\n\nAs `bulge effects --laws` prints them.\n\n```text\n{program.says('effects', '--laws').rstrip()}\n```\n"
+
+
+def schemas():
+    text = "# JSON documents\n\nWhat commands print with `--json` and write into files: one schema for each name that stands in `schema`.\n\n"
+    text += "| schema | of |\n|---|---|\n"
+    for path in sorted((ROOT / "docs/schemas").glob("*.json")):
+        schema = json.loads(path.read_text())
+        says = schema.get("description") or schema.get("title") or ""
+        text += f"| [{path.stem}](schemas/{path.name}) | {says.splitlines()[0] if says else ''} |\n"
+    return text
+
+
+def shown(number):
+    return f"{number:.4g}"
+
+
+def value_of(parameter, muscle):
+    """A number at which the effect shows: its usual one, or one standard deviation of its prior from where it does nothing."""
+    value, off = parameter["typical"], parameter["off"]
+    if value == off:
+        prior = parameter["prior"]
+        value = off + prior[1] if prior else 0.5 * (off + parameter["high"])
+    if parameter["multiple_of"]:
+        value *= muscle[parameter["multiple_of"]]
+    return f"{shown(value)} {parameter['unit']}" if parameter["unit"] != "1" else shown(value)
+
+
+def rows(folder):
+    with open(folder / "data.csv", newline="", encoding="utf-8") as file:
+        lines = [line for line in file if not line.startswith("#")]
+    read = list(csv.DictReader(lines))
+    return [{key: float(value) for key, value in row.items() if key is not None and re.match(r"^-?[\d.]", value)} for row in read]
+
+
+def difference(program, effect, kind, protocol, temporary):
+    """The change of the force by an effect, row by row of the same test, and the numbers that it had."""
+    stated = tomllib.loads(program.says("muscle", MUSCLES[kind]))
+    sizes = {"radius": float(stated["radius"].split()[0]), "fibres": stated.get("fibres", 1)}
+    sizes["fitting_radius"] = sizes["radius"]
+    numbers = [f"{effect['name']}.{p['key']}={value_of(p, sizes)}" for p in effect["parameters"]] or [effect["name"]]
+    path = temporary / f"{effect['name']}.toml"
+    path.write_text(protocol)
+    found = []
+    for name, hidden in [("with", ["--with", ",".join(numbers)]), ("without", [])]:
+        folder = temporary / f"{effect['name']}-{name}"
+        program.says("simulate", MUSCLES[kind], "--protocol", path, "--out", folder, "--seed", 1, *hidden)
+        found.append(rows(folder))
+    return found, numbers
+
+
+def signature(program, effect, temporary):
+    """A picture of what the effect does to the force, and the sentence below it."""
+    kind = effect["kind"] or "braided"
+    held = effect["needs"] == "pressure-path"
+    cycles = 3 if effect["needs"] == "cycles" else 1
+    specimens = 3 if effect["needs"] == "specimens" else 1
+    extra = 'warming = "20 K"' if effect["needs"] == "temperature" else ""
+    protocol = PRESSURES if held else PROTOCOL.format(extra=extra, range=RANGES[kind], cycles=cycles, specimens=specimens)
+    (changed, base), numbers = difference(program, effect, kind, protocol, temporary)
+    figure = Figure(figsize=(5.4, 2.6), layout="constrained")
+    axes = figure.add_subplot()
+    across = "pressure [bar]" if held else "contraction [%]"
+    colours = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"]
+    sweeps = sorted({row.get("sweep", 1) for row in base})
+    for sweep, colour in zip(sweeps, colours):
+        one = {row["time [s]"]: row for row in base if row.get("sweep", 1) == sweep}
+        other = [row for row in changed if row.get("sweep", 1) == sweep and row["time [s]"] in one]
+        points = [(row[across], row["force [N]"] - one[row["time [s]"]]["force [N]"]) for row in other]
+        if points:
+            middle = next(iter(one.values()))
+            label = f"at {middle['contraction [%]']:.0f} %" if held else f"at {round(middle['pressure [bar]'])} bar"
+            axes.plot(*zip(*points), color=colour, linewidth=1.4, label=label)
+    axes.axhline(0, color="#888888", linewidth=0.7)
+    axes.set_xlabel(across)
+    axes.set_ylabel("change of force [N]")
+    axes.legend(frameon=False, fontsize=8)
+    command = f"bulge simulate {MUSCLES[kind]} --with \"{','.join(numbers)}\""
+    return figure, f"Force with the effect less that without, in {'filling and venting at held length' if held else 'loops'}: `{command}`."
+
+
+def effects(program, pages):
+    """The catalogue: each effect with its card and a picture of its signature."""
+    listed = json.loads(program.says("effects", "--json"))["effects"]
+    pictures = pages / "signatures"
+    pictures.mkdir(parents=True)
+    with tempfile.TemporaryDirectory() as folder, ThreadPoolExecutor(2) as pool:
+        drawn = list(pool.map(lambda effect: signature(program, effect, Path(folder)), listed))
+    text = "# Catalogue of effects\n\nEvery effect that a diagnosis looks for: what it does, its numbers with their bounds, what is confused with it and what tells\n"
+    text += "them apart. Written from the cards of the program (`bulge effects NAME`).\n"
+    group = None
+    for effect, (figure, caption) in zip(listed, drawn):
+        figure.savefig(pictures / f"{effect['name']}.svg", metadata={"Date": None})
+        if effect["group"] != group:
+            group = effect["group"]
+            text += f"\n## {group.capitalize()}\n"
+        text += f"\n### {effect['name']}\n\n**{effect['title']}.** {effect['about']}\n\n```text\n{effect['equation']}\n```\n\n"
+        text += f"![Signature of {effect['name']}](signatures/{effect['name']}.svg)\n\n{caption}\n\n"
+        if effect["parameters"]:
+            text += "| number | unit | bounds | usually | is |\n|---|---|---|---|---|\n"
+        for p in effect["parameters"]:
+            of = f" times the {p['multiple_of'].replace('_', ' ')}" if p["multiple_of"] else ""
+            text += f"| `{p['key']}` | {p['unit']} | {shown(p['low'])} to {shown(p['high'])}{of} | {shown(p['typical'])} | {p['about']} |\n"
+        twins = "; ".join(f"[{twin['name']}](#{twin['name']}) ({twin['how']})" for twin in effect["twins"])
+        facts = [("Looks like", twins), ("Told apart by", effect["separate"]), ("Muscles", effect["kind"] or "pleated and braided"),
+                 ("Needs", effect["needs"]), ("Source", effect["source"])]
+        text += "\n" + "".join(f"- {name}: {says}\n" for name, says in facts if says)
+    return text
+
+
+def staged(pages):
+    """Copies the pages, and whatever they link to outside of this folder, with the links moved along."""
+    waiting, done = [], {}
+
+    def place(path):
+        """Where a file of the repository lies in the book."""
+        docs = ROOT / "docs"
+        inside = path.relative_to(docs) if path.is_relative_to(docs) else Path("repository") / path.relative_to(ROOT)
+        return pages / inside
+
+    def link(page, match):
+        target, anchor = match.group(1), match.group(2) or ""
+        if "://" in target or target.startswith("mailto:"):
+            return match.group(0)
+        path = (page.parent / target).resolve()
+        if not path.exists():
+            raise SystemExit(f"{page.relative_to(ROOT)}: the link to {target} leads nowhere")
+        if path == ROOT / "docs/schemas":
+            return "](json.md)"
+        if path not in done:
+            done[path] = place(path)
+            waiting.append(path)
+        there = Path(*([".."] * len(place(page).parent.relative_to(pages).parts))) / done[path].relative_to(pages)
+        return f"]({there}{anchor})"
+
+    for page in sorted((ROOT / "docs").glob("*.md")):
+        done[page] = place(page)
+        waiting.append(page)
+    while waiting:
+        path = waiting.pop()
+        done[path].parent.mkdir(parents=True, exist_ok=True)
+        if path.suffix == ".md":
+            done[path].write_text(LINK.sub(lambda match: link(path, match), path.read_text()))
+        else:
+            shutil.copyfile(path, done[path])
+
+
+CONFIG = {
+    "site_name": "Bulge",
+    "site_description": "Shape, force and volume of pneumatic artificial muscles",
+    "use_directory_urls": False,
+    "theme": {"name": "readthedocs", "highlightjs": False, "include_homepage_in_sidebar": True},
+    "plugins": ["search"],
+    "validation": {"links": {"anchors": "warn", "absolute_links": "warn", "not_found": "warn"}, "nav": {"omitted_files": "info"}},
+    "nav": [
+        {"Contents": "README.md"},
+        {"Tutorials": [
+            {"The workbench": "workbench.md"},
+            {"Shapes": "muscles.md"},
+            {"From a CSV to the ladder": "compare.md"},
+            {"Which effect is missing": "diagnose.md"},
+            {"A formula from the drawn form": "drawn-form.md"},
+            {"Isometric and isotonic tests": "what-moves.md"},
+            {"Sizing, joints, air, sensing, heat": "design.md"},
+            {"A table for a controller": "tables.md"},
+            {"A sweep on a cluster": "sweeps.md"},
+            {"Membranes": "membranes.md"},
+            {"Python": "python.md"},
+        ]},
+        {"Data": [{"Files": "data-files.md"}, {"Sweeps and rows": "sweeps-and-rows.md"}, {"Specimens": "specimens.md"}]},
+        {"Theory and method": [
+            {"Theory": "theory.md"},
+            {"Shape effects": "catalogue-shape-effects.md"},
+            {"Noise": "noise.md"},
+            {"Domain": "domain.md"},
+        ]},
+        {"Reference": [
+            {"Commands": "commands.md"},
+            {"Catalogue of effects": "effects.md"},
+            {"Force laws": "laws.md"},
+            {"JSON documents": "json.md"},
+        ]},
+        {"How right, how fast": [{"Verification": "verification.md"}, {"Speed": "speed.md"}]},
+        {"Contributing": [{"Architecture": "architecture.md"}]},
+    ],
+}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--bulge", default="target/release/bulge", help="the program")
+    parser.add_argument("--out", default="target/book", type=Path, help="folder of the book")
+    arguments = parser.parse_args()
+    program = Program(arguments.bulge)
+    pages = arguments.out / "pages"
+    shutil.rmtree(arguments.out, ignore_errors=True)
+    pages.mkdir(parents=True)
+    staged(pages)
+    written = {"commands.md": commands(program), "laws.md": laws(program), "json.md": schemas(), "effects.md": effects(program, pages)}
+    for name, text in written.items():
+        (pages / name).write_text(text)
+    shutil.copytree(ROOT / "docs/schemas", pages / "schemas", dirs_exist_ok=True)
+    config = arguments.out / "mkdocs.yml"
+    # JSON is YAML.
+    config.write_text(json.dumps({**CONFIG, "docs_dir": "pages", "site_dir": "site"}, indent=1))
+    subprocess.run([sys.executable, "-m", "mkdocs", "build", "--quiet", "--strict", "--config-file", config], check=True)
+    print(f"{len(list(pages.rglob('*.md')))} pages, {len(list((arguments.out / 'site').rglob('*.html')))} of them built below {arguments.out / 'site'}")
+
+
+if __name__ == "__main__":
+    main()
