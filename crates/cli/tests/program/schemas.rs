@@ -52,6 +52,7 @@ fn documents(folder: &Folder) -> Vec<Value> {
         &["effects", "end-taper"],
         &["effects", "--laws"],
         &["effects", "s2-cylinder"],
+        &["effects", "s1-volume"],
         &["muscle"],
         &["muscle", "ppam-2-r16"],
         &["size", "--force", "500 N", "--stroke", "50 mm"],
