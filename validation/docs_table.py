@@ -1,11 +1,12 @@
 """Writes the tables of README.md and docs/ that a command prints, between their markers.
 
     bulge validate --json | python validation/docs_table.py verification [--check]
-    python validation/docs_table.py diagnosis SEED-1/score.json SEED-2/score.json      # of prove.py, one for each seed
-    python validation/docs_table.py forms score.json AMONG/score.json      # of the forms suite: with the whole catalogue, and with the truth as the only candidate
+    python validation/docs_table.py diagnosis [--check]      # from validation/hidden-effects/answers, scored anew
+    python validation/docs_table.py forms [--check]          # the same for the forms suite: with the whole catalogue, and with the truth as the only candidate
+    python validation/docs_table.py ratios [--check]         # from benches/ratios.json, which benches/ratios.py measures
 
 A table stands between `<!-- table: NAME ... -->` and `<!-- end of table -->`; all else in the file is kept. `--check` writes nothing: its status is 1 if
-the page has other checks, cases or tolerances than the program. Errors at the level of rounding differ between machines and aren't compared.
+the page differs. Errors of `verification` at the level of rounding differ between machines and aren't compared. The tables of suites need NumPy and SciPy.
 """
 
 import argparse
@@ -15,7 +16,8 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-PAGES = ("README.md", "docs/diagnose.md", "docs/verification.md")
+PAGES = ("README.md", "docs/diagnose.md", "docs/speed.md", "docs/verification.md")
+ANSWERS = ROOT / "validation/hidden-effects/answers"
 PEERS = {"AICc": "aicc", "BIC": "bic", "largest drop": "largest-drop", "lasso": "lasso"}
 
 DIAGNOSIS = (
@@ -96,9 +98,8 @@ FORMS_FRONT = (
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("what", choices=("verification", "diagnosis", "forms"))
-    parser.add_argument("scores", type=Path, nargs="*", help="score.json of seed 1 and of seed 2, for `diagnosis`")
-    parser.add_argument("--check", action="store_true", help="compare the page with the program (`verification` alone)")
+    parser.add_argument("what", choices=("verification", "diagnosis", "forms", "ratios"))
+    parser.add_argument("--check", action="store_true", help="compare the pages, and write nothing")
     parser.add_argument("--root", type=Path, default=ROOT, help="folder of README.md and docs")
     arguments = parser.parse_args()
     if arguments.what == "verification":
@@ -106,22 +107,15 @@ def main():
         if not checks:
             parser.error("standard input holds no check: give it the output of `bulge validate --json`")
         tables = {"verification": verification(checks)}
+    elif arguments.what == "ratios":
+        measured = json.loads((ROOT / "benches/ratios.json").read_text(encoding="utf-8"))
+        tables = {"ratios": ratios(measured, True), "ratios-front": ratios(measured, False)}
     elif arguments.what == "forms":
-        if len(arguments.scores) != 2:
-            parser.error("`forms` needs two files: score.json of the forms suite, and that of `run.py --among-truth`")
-        scores = [json.loads(path.read_text(encoding="utf-8")) for path in arguments.scores]
+        scores = scored("forms-79", "forms-79-among-truth")
         tables = {"forms": forms(scores), "forms-front": forms_front(scores[0])}
     else:
-        if len(arguments.scores) != 2:
-            parser.error("`diagnosis` needs two files: score.json of seed 1 and of seed 2")
-        scores = [json.loads(path.read_text(encoding="utf-8")) for path in arguments.scores]
-        for seed, (score, path) in enumerate(zip(scores, arguments.scores), start=1):
-            if score.get("seed") != seed or score.get("only"):
-                parser.error(f"{path} isn't the score of the whole suite of seed {seed}: write it by prove.py --seed {seed}, without --only")
-        seeds = [score["methods"] for score in scores]
+        seeds = [score["methods"] for score in scored("seed-1", "seed-2")]
         tables = {"diagnosis": diagnosis(seeds), "diagnosis-front": front(seeds)}
-    if arguments.check and arguments.what != "verification":
-        parser.error("`--check` is for `verification`: the scores of a suite take half an hour")
     texts = {}
     for name, table in tables.items():
         paths = [arguments.root / page for page in PAGES if f"<!-- table: {name} " in (arguments.root / page).read_text(encoding="utf-8")]
@@ -137,10 +131,36 @@ def main():
     return 0
 
 
+def scored(*names):
+    """Scores of the committed answers of suites."""
+    sys.path.insert(0, str(ANSWERS.parent))
+    from answers import score
+
+    return [score(ANSWERS / f"{name}.jsonl.gz") for name in names]
+
+
+def ratios(measured, whole):
+    """What each question costs here and with a peer, in one run."""
+    lines = [f"| {measured['machine']}, {measured['date']} | Bulge | peer | times |", "|---|---|---|---|"]
+    for row in measured["rows"]:
+        peer = f"{row['peer_is']}: {_time(row['peer_s'])}"
+        lines.append(f"| {row['question']} | {_time(row['own_s'])} | {peer} | {row['ratio']:.2g} |" if row["ratio"] < 99.5 else f"| {row['question']} | {_time(row['own_s'])} | {peer} | {float(f'{row['ratio']:.2g}'):.0f} |")
+    return "\n".join(lines)
+
+
+def _time(seconds):
+    for size, unit in ((1.0, "s"), (1e-3, "ms"), (1e-6, "us"), (1e-9, "ns")):
+        if seconds >= size:
+            return f"{seconds / size:.2g} {unit}" if seconds < 99.5 * size else f"{seconds / size:.0f} {unit}"
+    return f"{seconds:.2g} s"
+
+
 def _compared(texts):
     """Status 1 and the lines that differ, errors aside, if a page is not what would be written."""
     status = 0
     for path, text in texts.items():
+        if path.read_text(encoding="utf-8") == text:
+            continue
         stands, belongs = ([_without_error(line) for line in lines.splitlines()] for lines in (path.read_text(encoding="utf-8"), text))
         for sign, lines, others in (("-", stands, belongs), ("+", belongs, stands)):
             for line in lines:
@@ -148,7 +168,7 @@ def _compared(texts):
                     print(f"{path}: {sign} {line}", file=sys.stderr)
                     status = 1
     if status:
-        print("write it anew: bulge validate --json | python validation/docs_table.py verification", file=sys.stderr)
+        print("write it anew by the same command without --check", file=sys.stderr)
     return status
 
 

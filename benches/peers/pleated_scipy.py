@@ -59,5 +59,6 @@ def report(name, solve):
     print(f"{name}\t{each:.4f}\t{total:.12f}")
 
 
-report("SciPy, fsolve on the closed form", closed_form)
-report("SciPy, fsolve on DOP853 shooting", shooting)
+if __name__ == "__main__":
+    report("SciPy, fsolve on the closed form", closed_form)
+    report("SciPy, fsolve on DOP853 shooting", shooting)

@@ -13,7 +13,7 @@ use crate::arguments::{self, Json, pretty};
 use crate::data::{DataArguments, told};
 use crate::failure::Failure;
 use crate::files;
-use crate::restricted::RestrictedArguments;
+use crate::restricted::{LossArgument, RestrictedArguments};
 use crate::text::{counted, significant, three, with_interval};
 
 /// Model against measurement. Effects are fitted only if you name them with `--with`.
@@ -29,6 +29,8 @@ pub(crate) struct CompareCommand {
     with: Vec<String>,
     #[command(flatten)]
     restricted: RestrictedArguments,
+    #[command(flatten)]
+    loss: LossArgument,
     /// Your own effects, as expressions in a TOML file
     #[arg(long, value_name = "FILE")]
     effects: Option<PathBuf>,
@@ -64,7 +66,8 @@ impl CompareCommand {
                 .with_law(name, &muscle, self.fit_law)
                 .map_err(|what| Failure::Value { option: "--law", what })?;
         }
-        let options = self.restricted.apply(options, &data, &muscle)?;
+        let mut options = self.restricted.apply(options, &data, &muscle)?;
+        options.loss = self.loss.loss();
         if let Some(path) = &self.rows {
             self.data.can_write(("--rows", path), &self.muscle, self.effects.as_deref())?;
         }

@@ -18,6 +18,8 @@ use bulge_sweep::{BuildError, SweepError, TabulateError};
 use bulge_table::TableError;
 use bulge_vtk::VtkError;
 use bulge_workbench::WorkbenchError;
+use serde_json::json;
+use std::ffi::OsStr;
 use std::path::PathBuf;
 
 /// Why a command fails.
@@ -51,9 +53,15 @@ pub(crate) enum Failure {
 
 impl Failure {
     /// The answer on standard output in spite of the failure: a script that requested JSON reads there that
-    /// nothing was found.
-    pub(crate) fn answer(&self) -> &str {
-        if let Self::NoneFound { answer, .. } = self { answer } else { "" }
+    /// nothing was found, or what failed, as `{"schema": "bulge.failure/1", "message": "...", "status": 1}`.
+    pub(crate) fn answer(&self) -> String {
+        if let Self::NoneFound { answer, .. } = self {
+            return answer.clone();
+        }
+        if !wants_json() {
+            return String::new();
+        }
+        document(&self.to_string(), self.status())
     }
 
     /// Exit status: 1 the input is wrong, 3 no solution exists, 4 it did not converge.
@@ -77,6 +85,16 @@ impl Failure {
             _ => 1,
         }
     }
+}
+
+/// What failed, as a document.
+pub(crate) fn document(message: &str, status: u8) -> String {
+    format!("{:#}\n", json!({ "schema": "bulge.failure/1", "message": message, "status": status }))
+}
+
+/// Whether a document was requested, by whatever command.
+pub(crate) fn wants_json() -> bool {
+    std::env::args_os().any(|argument| argument == OsStr::new("--json"))
 }
 
 /// Exit status of a kind of error.

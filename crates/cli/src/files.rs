@@ -1,13 +1,12 @@
 //! Files that appear whole or not at all.
 
 use bulge_muscles::output;
-use std::ffi::OsStr;
 use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use crate::failure::Failure;
+use crate::failure::{Failure, wants_json};
 
 /// Names of standard output.
 const STDOUT: [&str; 4] = ["-", "/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"];
@@ -27,7 +26,7 @@ pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
 
 /// Writes one file to standard output, which then takes nothing else.
 fn take_stdout(bytes: &[u8]) -> io::Result<()> {
-    let wants_json = std::env::args_os().any(|argument| argument == OsStr::new("--json"));
+    let wants_json = wants_json();
     if wants_json || IS_TAKEN.swap(true, Ordering::Relaxed) {
         let what = if wants_json { "a file or JSON, not both" } else { "one file, not several" };
         let what = format!("standard output can take {what}; give the name of a file");

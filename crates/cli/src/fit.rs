@@ -1,9 +1,11 @@
 //! `bulge fit`: effects fitted to measurements, and the muscle file that contains them.
 
-use bulge_inference::{DrawnForms, Options, drawn_forms, fit_effects};
+use bulge_inference::{
+    DrawnForms, Options, Posterior, PosteriorParameter, drawn_forms, fit_effects, posterior,
+};
 use bulge_measurements::Data;
 use bulge_muscles::Muscle;
-use bulge_report::Learnt;
+use bulge_report::{Learnt, posterior_svg};
 use clap::Args;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -13,7 +15,11 @@ use crate::compare::parameters;
 use crate::data::{DataArguments, told};
 use crate::failure::Failure;
 use crate::files::{self, Named};
-use crate::restricted::RestrictedArguments;
+use crate::restricted::{LossArgument, RestrictedArguments};
+use crate::text::{table, with_interval};
+
+/// Potential scale reduction from which draws are said to be too few.
+const MIXED: f64 = 1.05;
 
 /// Fits the named effects, and writes the muscle with what was learnt: a file for `shape`, `curve` and the next `compare`.
 #[derive(Debug, Args)]
@@ -28,12 +34,23 @@ pub(crate) struct FitCommand {
     with: Vec<String>,
     #[command(flatten)]
     restricted: RestrictedArguments,
+    #[command(flatten)]
+    loss: LossArgument,
     /// Your own effects, as expressions in a TOML file
     #[arg(long, value_name = "FILE")]
     effects: Option<PathBuf>,
     /// Draw the form that the data want of each effect, and write it to FILE as an effect of your own, for `--effects FILE --with EFFECT-bent` in the place of EFFECT
     #[arg(long, value_name = "FILE")]
     form_error: Option<PathBuf>,
+    /// Draw how sure the numbers are: draws of the posterior, alone and in pairs, and profile likelihoods
+    #[arg(long, value_name = "FILE.svg")]
+    posterior: Option<PathBuf>,
+    /// Write the draws of the posterior, a column for each number
+    #[arg(long, value_name = "FILE.csv")]
+    draws: Option<PathBuf>,
+    /// Seed of the draws
+    #[arg(long, default_value_t = 1, value_name = "N")]
+    seed: u64,
     /// The muscle file to write [default: on standard output]
     #[arg(long, value_name = "MODEL.toml")]
     out: Option<PathBuf>,
@@ -50,7 +67,8 @@ impl FitCommand {
         let data = self.data.read(&muscle)?;
         let options = self.data.options(&data, &muscle, catalogue, effects)?;
         let options = self.restricted.apply(options, &data, &muscle)?;
-        let learnt = learn(&data, &muscle, &options)?;
+        let options = Options { loss: self.loss.loss(), ..options };
+        let (learnt, posterior) = self.learn(&data, &muscle, &options)?;
         let drawn = match &self.form_error {
             Some(path) => Some(drawn(&data, &muscle, &options, path)?),
             None => None,
@@ -60,6 +78,7 @@ impl FitCommand {
         }
         if self.json.wanted {
             let document = learnt.document().with_drawn(drawn.as_ref().map(|(drawn, _)| drawn));
+            let document = document.with_posterior(posterior.as_ref().map(|(posterior, _)| posterior));
             return pretty(&document);
         }
         if self.out.is_none() {
@@ -67,6 +86,7 @@ impl FitCommand {
             // comments.
             eprint!("{}", told(data.reading()));
             eprint!("{}", drawn.map_or_else(String::new, |(_, says)| says));
+            eprint!("{}", posterior.map_or_else(String::new, |(_, says)| says));
             return Ok(learnt.model);
         }
         let mut text = format!("{} fitted to {}\n\n", muscle.name(), learnt.fitting.data.files.join(", "));
@@ -76,10 +96,33 @@ impl FitCommand {
             let _ = writeln!(text, "  {name} is not in the file: {why}");
         }
         text.push_str(&drawn.map_or_else(String::new, |(_, says)| says));
+        text.push_str(&posterior.map_or_else(String::new, |(_, says)| says));
         if let Some(path) = &self.out {
             let _ = writeln!(text, "\n  wrote {}", path.display());
         }
         Ok(text)
+    }
+
+    /// The fit, and the posterior with the text about it if one is wanted.
+    fn learn(
+        &self,
+        data: &Data,
+        muscle: &Muscle,
+        options: &Options,
+    ) -> Result<(Learnt, Option<(Posterior, String)>), Failure> {
+        let wanted = [self.posterior.as_deref(), self.draws.as_deref()];
+        // A fit with `--json` alone costs no draws.
+        if wanted.iter().all(Option::is_none) {
+            return Ok((learn(data, muscle, options)?, None));
+        }
+        let (fitting, posterior) = posterior(data, muscle, options, self.seed)?;
+        let learnt = Learnt::of(fitting)?;
+        let [picture, draws] = wanted;
+        let title = format!("{}: what the data leave open", muscle.name());
+        let mut says = surely(&posterior);
+        says.push_str(&files::wrote(picture, || Ok(posterior_svg(&title, &posterior)?))?);
+        says.push_str(&files::wrote(draws, || Ok(table_of_draws(&posterior)))?);
+        Ok((learnt, Some((posterior, says))))
     }
 
     /// Rejects files that could not be written or would be overwritten: before hours of work, and before one
@@ -92,10 +135,56 @@ impl FitCommand {
         // Without a name and without JSON the fitted muscle goes to standard output.
         let out = self.out.as_deref().or((!self.json.wanted).then_some(Path::new("-")));
         let out = out.map(|path| ("--out", path));
-        let written: Vec<Named<'_>> = form_error.into_iter().chain(out).collect();
+        let posterior = self.posterior.as_deref().map(|path| ("--posterior", path));
+        let draws = self.draws.as_deref().map(|path| ("--draws", path));
+        let written: Vec<Named<'_>> =
+            form_error.into_iter().chain(out).chain(posterior).chain(draws).collect();
         files::are_apart(&written, &read)?;
         written.iter().try_for_each(|(_, path)| files::can_be_written(path))
     }
+}
+
+/// The quantiles of the posterior as text, and a warning where the draws are too few.
+fn surely(posterior: &Posterior) -> String {
+    let mut text = format!("\n  posterior: {} draws\n", posterior.count);
+    let heading = ["", "median", "68 %", "95 %", "r-hat"].map(str::to_owned).to_vec();
+    let rows = posterior.parameters.iter().map(|p| {
+        let [low, below, middle, above, high] = p.quantiles;
+        let [middle, low, high] = with_interval(middle, low, high);
+        let [_, below, above] = with_interval(p.quantiles[2], below, above);
+        let unit = if p.unit == "1" { "" } else { &p.unit };
+        vec![
+            format!("{} {}", p.effect, p.name),
+            format!("{middle} {unit}").trim_end().to_owned(),
+            format!("{below} to {above}"),
+            format!("{low} to {high}"),
+            format!("{:.3}", p.r_hat),
+        ]
+    });
+    text.push_str(&table(&std::iter::once(heading).chain(rows).collect::<Vec<_>>()));
+    for p in posterior.parameters.iter().filter(|p| p.r_hat > MIXED) {
+        let _ = writeln!(
+            text,
+            "  ! the chains of {} {} do not agree yet: its quantiles are rough",
+            p.effect, p.name
+        );
+    }
+    text
+}
+
+/// The draws as CSV.
+fn table_of_draws(posterior: &Posterior) -> String {
+    let name = |p: &PosteriorParameter| {
+        let specimen = p.specimen.as_ref().map_or_else(String::new, |name| format!("[{name}]"));
+        let unit = if p.unit == "1" { String::new() } else { format!(" [{}]", p.unit) };
+        format!("{}.{}{specimen}{unit}", p.effect, p.name)
+    };
+    let mut text = posterior.parameters.iter().map(name).collect::<Vec<_>>().join(",") + "\n";
+    for draw in &posterior.draws {
+        text.push_str(&draw.iter().map(|value| format!("{value}")).collect::<Vec<_>>().join(","));
+        text.push('\n');
+    }
+    text
 }
 
 /// Draws the form errors that the data suggest, and writes those that an expression can approximate. Returns

@@ -15,6 +15,7 @@ mod files;
 mod fit;
 mod heat;
 mod joint;
+mod keys;
 mod membrane;
 mod muscle;
 mod next;
@@ -27,6 +28,7 @@ mod restricted;
 mod schema;
 mod sense;
 mod shape;
+mod shell;
 mod simulate;
 mod size;
 mod sketch;
@@ -117,6 +119,12 @@ commands! {
     Muscle(muscle::MuscleCommand),
     /// The verification tables: every check, its error, its tolerance
     Validate(validate::Validate),
+    /// A file with every key, and what each means: muscle, data, sweep and others
+    Keys(keys::KeysCommand),
+    /// Completions for a shell
+    Completions(shell::CompletionsCommand),
+    /// Manual pages
+    Man(shell::ManCommand),
 }
 
 /// Exit status for a wrong command line, the same as clap's.
@@ -129,6 +137,9 @@ fn main() -> ExitCode {
             // Help and version arrive here too; they go to standard output with status 0.
             let status = if error.use_stderr() { USAGE } else { 0 };
             let _ = error.print();
+            if error.use_stderr() && failure::wants_json() {
+                let _ = print(&failure::document(error.to_string().trim_end(), status));
+            }
             return ExitCode::from(status);
         }
     };
@@ -141,7 +152,7 @@ fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
             // If this can't be written either, nothing more can be done.
-            let _ = said(failure.answer());
+            let _ = said(&failure.answer());
             let _ = writeln!(std::io::stderr(), "error: {failure}");
             ExitCode::from(failure.status())
         }

@@ -3,6 +3,7 @@
 use bulge_muscles::PRESETS;
 use bulge_workbench::{Choices, ChosenEffect, DataFile, MuscleFile, Start, serve};
 use clap::Args;
+use serde_json::json;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -44,6 +45,9 @@ pub(crate) struct OpenCommand {
     /// Folder that keeps the session: opened again, it goes on where it was
     #[arg(long, value_name = "DIR")]
     session: Option<PathBuf>,
+    /// The address as a JSON document, in one line
+    #[arg(long)]
+    json: bool,
 }
 
 impl OpenCommand {
@@ -70,7 +74,12 @@ impl OpenCommand {
         self.check(&choices)?;
         let start = Start { choices, is_stated, port: self.port, session: self.session.clone() };
         serve(start, |address| {
-            let _ = files::print(format!("{address}\n").as_bytes());
+            let said = if self.json {
+                json!({ "schema": "bulge.open/1", "address": address }).to_string()
+            } else {
+                address.to_owned()
+            };
+            let _ = files::print((said + "\n").as_bytes());
             eprintln!("Ctrl-C ends it.");
             if !self.no_browser && !browser(address) {
                 eprintln!("Open the address in a browser.");

@@ -1,6 +1,6 @@
 //! Parameters fixed, bounded or tied on the command line.
 
-use bulge_inference::{Options, Statements};
+use bulge_inference::{Loss, Options, Statements};
 use bulge_measurements::Data;
 use bulge_muscles::Muscle;
 use clap::Args;
@@ -19,6 +19,21 @@ pub(crate) struct RestrictedArguments {
     /// Give a number the value of another one, which is fitted: `--tie force-lag.time=pressure-lag.time`
     #[arg(long, value_name = "EFFECT.NUMBER=EFFECT.NUMBER")]
     tie: Vec<String>,
+}
+
+/// How much readings far off count in a fit.
+#[derive(Debug, Clone, Default, Args)]
+pub(crate) struct LossArgument {
+    /// What a reading contributes that lies r standard deviations of the noise off: r^2 (squares), or less than that beyond one or two (huber, soft-l1) or ever
+    /// less (cauchy), so that spikes pull less
+    #[arg(long, default_value = "squares", value_parser = Loss::ALL.map(Loss::name))]
+    loss: String,
+}
+
+impl LossArgument {
+    pub(crate) fn loss(&self) -> Loss {
+        Loss::named(&self.loss).unwrap_or_default()
+    }
 }
 
 impl RestrictedArguments {

@@ -31,7 +31,7 @@ mod vector;
 
 pub use bulge_model::{NumberName, Restriction, Says};
 pub use bulge_numerics::Random;
-pub use comparison::compare::{Comparing, Fitting, compare, compare_with_rows, fit_effects};
+pub use comparison::compare::{Comparing, Fitting, compare, compare_with_rows, fit_effects, posterior};
 pub use comparison::document::{
     Bin, Breakdown, Comparison, Curve, CurvePoint, DataSummary, HeldLoad, HeldLoadPoint, LeftOut, LoopGap,
     Mismatch, NoiseFloor, Part, ResidualMap, Rival, Rung, Stack,
@@ -54,6 +54,8 @@ pub use error::InferenceError;
 pub use fit::document::{Convergence, Fit, Fitted};
 pub use fit::extension::{Extension, extended};
 pub use fit::held::HeldNumber;
+pub use fit::loss::Loss;
+pub use fit::posterior::{Posterior, PosteriorParameter};
 pub use fit::restrictions::check_restrictions;
 pub use fit::weights::{Noise, effective_rows};
 pub use noise::error::NoiseError;

@@ -2,6 +2,7 @@
 
 use crate::cell;
 use crate::dimension::{Scale, Temperature};
+use crate::names;
 use bulge_muscles::units::{UnitError, Wanted};
 use bulge_muscles::{Force, Length, Pressure, Ratio, Time, Volume};
 
@@ -60,6 +61,26 @@ impl Field {
             Self::Diameter => "diameter [mm]",
             Self::Volume => "volume [ml]",
             Self::ForceSd => "force_sd [N]",
+        }
+    }
+
+    /// What its cells hold.
+    const fn about(self) -> &'static str {
+        match self {
+            Self::Pressure => "gauge pressure",
+            Self::Contraction => "shortening over the length without pressure",
+            Self::Length => "length between the end fittings",
+            Self::Displacement => "shortening from the length without pressure",
+            Self::Force => "pull of the muscle",
+            Self::Time => "time since any start, or a date with a time",
+            Self::Sweep => "label of the run; else runs are found by the time and the motion",
+            Self::Specimen => "name of the muscle under test, as in the muscle file",
+            Self::Cycle => "number of the cycle within its run",
+            Self::Direction => "whether the muscle shortens or lengthens",
+            Self::Temperature => "of the muscle or of the room",
+            Self::Diameter => "largest outer diameter",
+            Self::Volume => "volume of the gas",
+            Self::ForceSd => "standard deviation of the force reading",
         }
     }
 
@@ -136,4 +157,29 @@ impl Heading {
 /// All headings, for messages.
 pub(crate) fn known() -> String {
     Field::ALL.map(Field::example).join(", ")
+}
+
+/// A column that is read, and how it is recognised.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct RecognisedColumn {
+    /// The standard heading with a common unit: `pressure [bar]`.
+    pub heading: &'static str,
+    /// What its cells hold.
+    pub about: &'static str,
+    /// Units; empty for labels and counts.
+    pub units: Vec<&'static str>,
+    /// Words of headings that stand for it, in any case and with any unit.
+    pub words: Vec<&'static str>,
+}
+
+/// All columns that are read, the necessary ones first.
+#[must_use]
+pub fn recognised_columns() -> Vec<RecognisedColumn> {
+    let one = |field: Field| RecognisedColumn {
+        heading: field.example(),
+        about: field.about(),
+        units: field.symbols().collect(),
+        words: names::words_for(field).collect(),
+    };
+    Field::ALL.map(one).to_vec()
 }

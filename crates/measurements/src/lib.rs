@@ -60,6 +60,7 @@ pub use column_map::{ColumnEntry, ColumnMap};
 pub use columns::{Columns, Labels, Trace};
 pub use data::Data;
 pub use error::MeasurementError;
+pub use heading::{RecognisedColumn, recognised_columns};
 pub use history::History;
 pub use quality::{Disturbance, Finding, FindingKind, LineRange, Quality, QualityOptions, Severity};
 pub use reading::{ColumnUse, ReadOptions, Reading, SetApart};

@@ -162,6 +162,11 @@ const LENGTHENING: &[&str] = &["extension", "elongation"];
 /// Longest name that is analysed, in characters.
 const LONGEST: usize = 100;
 
+/// The words that stand for a column.
+pub(crate) fn words_for(field: Field) -> impl Iterator<Item = &'static str> {
+    WORDS.iter().filter(move |(_, meant, _)| *meant == field).map(|(word, _, _)| *word)
+}
+
 /// Possible meanings of a column from its heading and its unit in a row of units, if there is one; best
 /// first.
 pub(crate) fn guesses(heading: &str, unit_beneath: Option<&str>) -> Vec<Guess> {

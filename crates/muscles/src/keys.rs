@@ -146,6 +146,13 @@ pub(crate) fn of(path: &str) -> Keys {
     TABLES.iter().find(|(table, _)| *table == path).map_or(&[], |(_, keys)| *keys)
 }
 
+/// Dotted paths of all keys of a file, those of specimens aside.
+#[cfg(test)]
+pub(crate) fn paths() -> impl Iterator<Item = String> {
+    let plain = TABLES.iter().filter(|(table, _)| !table.contains('*'));
+    plain.flat_map(|(table, keys)| keys.iter().map(|(key, _)| join(table, key)))
+}
+
 /// The family that alone has this key or this table, if there is one.
 pub(crate) fn owner(path: &str) -> Option<Kind> {
     let has = |parameter: &Parameter| {

@@ -1,7 +1,9 @@
 //! The result of a fit: the muscle file that contains it, with the origin of its parameters, and the JSON
 //! document.
 
-use bulge_inference::{DataSummary, DrawnForms, Extension, Fit, Fitting, HeldNumber, NoiseFloor, extended};
+use bulge_inference::{
+    DataSummary, DrawnForms, Extension, Fit, Fitting, HeldNumber, NoiseFloor, Posterior, extended,
+};
 use bulge_model::ModelError;
 use bulge_muscles::{Fault, to_toml, units::significant};
 use serde::Serialize;
@@ -68,6 +70,8 @@ pub struct LearntDocument<'a> {
     model: &'a str,
     #[serde(skip_serializing_if = "Option::is_none")]
     drawn: Option<&'a DrawnForms>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    posterior: Option<&'a Posterior>,
 }
 
 impl<'a> LearntDocument<'a> {
@@ -75,6 +79,12 @@ impl<'a> LearntDocument<'a> {
     #[must_use]
     pub fn with_drawn(self, drawn: Option<&'a DrawnForms>) -> Self {
         Self { drawn, ..self }
+    }
+
+    /// Adds the posterior of the parameters, as `posterior`; nothing is added if none was requested.
+    #[must_use]
+    pub fn with_posterior(self, posterior: Option<&'a Posterior>) -> Self {
+        Self { posterior, ..self }
     }
 }
 
@@ -115,6 +125,7 @@ impl Learnt {
             left_out: &extension.left_out,
             model,
             drawn: None,
+            posterior: None,
         }
     }
 

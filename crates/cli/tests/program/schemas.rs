@@ -1,14 +1,14 @@
 //! The documents of `--json` against `docs/schemas`: required fields are there, and a missing one is noticed.
 
 use crate::schema::{self, holds};
-use crate::support::{Folder, json, line};
+use crate::support::{Folder, bulge, json, line};
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::Path;
 
 /// Kinds of documents that take long to create or are no documents of the command. They are checked next to
 /// the code that creates them, in `src/demo.rs`, `src/validate.rs`, and the tests of the workbench.
-const ELSEWHERE: [&str; 5] = ["demo", "validation", "session", "session-file", "surface"];
+const ELSEWHERE: [&str; 7] = ["demo", "validation", "session", "session-file", "surface", "open", "failure"];
 
 const KNEE: &str = "name = \"knee\"\nmuscle = \"ppam-2-r16\"\nkind = \"pulley\"\nradius = \"40 mm\"\ncontraction = \"20 %\"\n\
     angle = \"-25 deg..25 deg\"\npressure = \"0.5 bar..3 bar\"\n";
@@ -55,6 +55,8 @@ fn documents(folder: &Folder) -> Vec<Value> {
         &["effects", "s1-volume"],
         &["muscle"],
         &["muscle", "ppam-2-r16"],
+        &["keys"],
+        &["keys", "braided"],
         &["size", "--force", "500 N", "--stroke", "50 mm"],
         &["heat", "--pipe", "none"],
         &["sense", "ppam-2-r16", "--turns", "20"],
@@ -83,6 +85,23 @@ fn joints(folder: &Folder) -> Vec<Value> {
         of(&["--angle", "4.5 deg", "--stiffness", "150 N m/rad"]),
         of(&[&pressures[..], &["--torque", "3 N m", "--closed", "adiabatic"]].concat()),
     ]
+}
+
+/// A failure has a document too: of a muscle that isn't there, and of a command line that isn't one.
+#[test]
+fn what_fails_says_so_in_a_document() {
+    for (arguments, status) in [
+        (&["shape", "nix", "--pressure", "1 bar", "--contraction", "20 %", "--json"][..], 1),
+        (&["shape", "ppam-2-r16", "--pressure", "1 bar", "--contraction", "70 %", "--json"], 3),
+        (&["shape", "ppam-2-r16", "--presure", "1 bar", "--json"], 2),
+    ] {
+        let output = bulge(arguments);
+        let document: Value = serde_json::from_slice(&output.stdout).unwrap();
+        assert_eq!(holds(&document).0, "failure");
+        assert_eq!((output.status.code(), document["status"].as_i64()), (Some(status), Some(status.into())));
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert!(message.contains(document["message"].as_str().unwrap().lines().next().unwrap()));
+    }
 }
 
 /// Sweeps with and without a table, and the documents of the table.

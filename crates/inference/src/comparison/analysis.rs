@@ -179,6 +179,7 @@ impl<'a> Analysis<'a> {
                 record: &self.record,
                 used: &self.used.mask,
                 noise: self.noise,
+                loss: self.options.loss,
                 known: &known,
                 is_near: near.is_some(),
                 quick: false,
@@ -384,6 +385,12 @@ impl<'a> Analysis<'a> {
         }
     }
 
+    /// The noise of a fit: that of a robust one may be smaller than that of the data.
+    fn noise_of(&self, climbed: &Climbed) -> Noise {
+        let force_n = climbed.fit.as_ref().map_or(self.noise.force_n, |fit| fit.sd_n);
+        Noise { force_n, ..self.noise }
+    }
+
     /// RMS error on pressures (specimens, sweeps) that took no part in the fit, over the rows that have a
     /// state there; none if fewer than half have one.
     pub(crate) fn held_out(&self, climbed: &Climbed) -> Option<f64> {
@@ -401,7 +408,8 @@ impl<'a> Analysis<'a> {
                 let task = Task {
                     record: &thin,
                     used: &train,
-                    noise: self.noise,
+                    noise: self.noise_of(climbed),
+                    loss: self.options.loss,
                     known: &[],
                     is_near: true,
                     quick: true,

@@ -17,6 +17,7 @@ use crate::comparison::{isotonic, loops, residuals, rivals, stack};
 use crate::error::InferenceError;
 use crate::fit::document::{Convergence, Fit};
 use crate::fit::held::{HeldNumber, held};
+use crate::fit::posterior::{Posterior, posterior_of};
 
 /// Compares a muscle with data.
 ///
@@ -366,6 +367,27 @@ pub struct Fitting {
 pub fn fit_effects(data: &Data, muscle: &Muscle, options: &Options) -> Result<Fitting, InferenceError> {
     let options = Options { held_out: false, ..options.clone() };
     rayon::scope(|_| Comparing::of(Analysis::new(data, muscle, &options)?)?.asked(fitted))
+}
+
+/// The fit of [`fit_effects`], with the posterior of its parameters. The same seed gives the same draws.
+///
+/// # Errors
+/// As [`fit_effects`].
+pub fn posterior(
+    data: &Data,
+    muscle: &Muscle,
+    options: &Options,
+    seed: u64,
+) -> Result<(Fitting, Posterior), InferenceError> {
+    let options = Options { held_out: false, ..options.clone() };
+    rayon::scope(|_| {
+        Comparing::of(Analysis::new(data, muscle, &options)?)?.asked(|own, analysis, ladder| {
+            let fitting = fitted(own, analysis, ladder)?;
+            let climbed = &ladder[ladder.len() - 1].climbed;
+            let found = posterior_of(analysis, climbed, &fitting.fit, seed);
+            Ok((fitting, found.map_err(|error| analysis.about(error))?))
+        })
+    })
 }
 
 /// The last rung alone.

@@ -5,6 +5,8 @@ use bulge_effects::{Catalogue, Effect};
 use bulge_model::Restriction;
 use std::sync::Arc;
 
+use crate::fit::loss::Loss;
+
 /// Options of a comparison, besides muscle and data.
 #[derive(Debug, Clone)]
 pub struct Options {
@@ -22,6 +24,9 @@ pub struct Options {
     pub law: Option<(&'static Law, Vec<f64>, bool)>,
     /// Rows that the user leaves out.
     pub excluded: Vec<usize>,
+    /// What a reading contributes to the sum that fits minimise. A diagnosis has its own noise law and takes
+    /// squares.
+    pub loss: Loss,
     /// Whether errors on held-out data are computed.
     pub held_out: bool,
     /// Whether published force laws are fitted to the same data.
@@ -39,6 +44,7 @@ impl Options {
             restrictions: Vec::new(),
             law: None,
             excluded: Vec::new(),
+            loss: Loss::Squares,
             held_out: true,
             rivals: false,
         }

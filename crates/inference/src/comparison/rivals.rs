@@ -68,6 +68,7 @@ fn fitted(analysis: &Analysis<'_>, law: &'static Law, values: &[f64]) -> Result<
         record: &analysis.record,
         used: &analysis.used.mask,
         noise: analysis.noise,
+        loss: analysis.options.loss,
         known: &[],
         is_near: true,
         quick: true,

@@ -2,6 +2,8 @@
 
 use serde::Serialize;
 
+use crate::fit::loss::Loss;
+
 /// A fit of some parameters of a model.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct Fit {
@@ -20,6 +22,14 @@ pub struct Fit {
     pub effective_rows: f64,
     /// Correlation matrix of the fitted parameters, row by row.
     pub correlations: Vec<f64>,
+    /// Their covariance matrix, row by row, in products of the units of the parameters. It contains what the
+    /// intervals contain: the scatter of the residuals and their correlation. NaN (null in the document) where
+    /// a parameter isn't determined.
+    pub covariance: Vec<f64>,
+    /// The loss that was minimised.
+    pub loss: Loss,
+    /// Number of readings that keep less than half of their influence under this loss.
+    pub downweighted: usize,
     /// How the search ended.
     pub convergence: Convergence,
     /// Implausible values, parameters at a bound, and pairs that can't be separated, in sentences.

@@ -4,6 +4,7 @@
 use bulge_numerics::least_squares::{Bounds, Minimum, Options, ProfileEnd, profile};
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
+use crate::fit::loss::Loss;
 use crate::fit::problem::FitProblem;
 
 /// The 95 % interval of one parameter, in SI units.
@@ -26,14 +27,23 @@ pub(crate) struct Scale {
 
 impl Scale {
     /// For a minimum over `rows` rows, `effective` of which are independent.
-    pub(crate) fn new(minimum: &Minimum, rows: usize, effective: f64) -> Self {
+    pub(crate) fn new(minimum: &Minimum, rows: usize, effective: f64, loss: Loss) -> Self {
         let freedom = (rows as f64 - minimum.certificate.rank as f64).max(1.0);
-        // Sum over the rows alone: the priors behind them say nothing about the noise.
-        let cost: f64 = minimum.residuals.iter().take(rows).map(|r| r * r).sum();
-        let spread = (cost / freedom).max(1.0);
+        // Of the rows alone: the priors behind them say nothing about the noise.
+        let spread = loss.spread(&minimum.residuals[..rows.min(minimum.residuals.len())], freedom);
         let independent = (effective - minimum.certificate.rank as f64).max(1.0);
         let quantile = quantile(independent);
         Self { variance: spread * (rows as f64 / effective).max(1.0), quantile }
+    }
+
+    /// Variance of the residuals that stands behind the intervals.
+    pub(crate) fn variance(&self) -> f64 {
+        self.variance
+    }
+
+    /// Covariance in the coordinates of the search.
+    pub(crate) fn covariance(&self, minimum: &Minimum) -> Vec<f64> {
+        minimum.covariance(self.variance)
     }
 
     /// For known noise: `variance` is that of the whitened residuals, `freedom` the degrees of freedom of the

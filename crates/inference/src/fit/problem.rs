@@ -6,6 +6,7 @@ use rayon::prelude::*;
 use std::borrow::Cow;
 use std::ops::Range;
 
+use crate::fit::loss::Loss;
 use crate::noise::whitening::Whitening;
 
 /// Rows that one thread weights at a time.
@@ -28,6 +29,8 @@ pub(crate) struct FitProblem<'a> {
     logarithmic: Vec<bool>,
     /// Whitening of the residuals if the noise covariance is known; the standard deviations are then 1.
     whitening: Option<&'a Whitening>,
+    /// What a reading contributes; of whitened residuals always its square.
+    loss: Loss,
     /// Equilibria of the last evaluation, from which the next one starts.
     warm: Warm,
 }
@@ -52,7 +55,13 @@ impl<'a> FitProblem<'a> {
         let priors = free.iter().enumerate().filter_map(of_free).collect();
         let rows = (0..record.len()).filter(|row| used[*row]).collect();
         let warm = Warm::of_rows(used);
-        Self { model, record, rows, sd, free, base, priors, logarithmic, whitening: None, warm }
+        let loss = Loss::Squares;
+        Self { model, record, rows, sd, free, base, priors, logarithmic, whitening: None, loss, warm }
+    }
+
+    /// The same with another loss.
+    pub(crate) fn with_loss(self, loss: Loss) -> Self {
+        Self { loss, ..self }
     }
 
     /// The same for correlated noise: all rows of the record are used, and the noise law weights them.
@@ -111,7 +120,7 @@ impl<'a> FitProblem<'a> {
     pub(crate) fn force(&self, residuals: &[f64]) -> Vec<f64> {
         let mut force = vec![0.0; self.record.len()];
         for (row, residual) in self.rows.iter().zip(residuals) {
-            force[*row] = self.record.force()[*row] - residual * self.sd[*row];
+            force[*row] = self.record.force()[*row] - self.loss.straightened(*residual) * self.sd[*row];
         }
         force
     }
@@ -126,6 +135,26 @@ impl<'a> FitProblem<'a> {
         &self.sd
     }
 
+    /// Indices of the free parameters among all of the model.
+    pub(crate) fn places(&self) -> &[usize] {
+        &self.free
+    }
+
+    /// Coordinates of the parameters that the problem was made with.
+    pub(crate) fn coordinates_here(&self) -> Vec<f64> {
+        self.coordinates(&self.base)
+    }
+
+    /// Derivatives of the free parameters, in the units in which they are shown, by their coordinates.
+    pub(crate) fn shown_slopes(&self, coordinates: &[f64]) -> Vec<f64> {
+        let numbers = self.model.parameters();
+        let slope = |(place, index): (usize, &usize)| {
+            let si = if self.logarithmic[place] { coordinates[place].exp() } else { 1.0 };
+            si / numbers[*index].factor
+        };
+        self.free.iter().enumerate().map(slope).collect()
+    }
+
     /// Whether the coordinate of a free parameter is its logarithm.
     pub(crate) fn is_logarithmic(&self, place: usize) -> bool {
         self.logarithmic[place]
@@ -133,6 +162,20 @@ impl<'a> FitProblem<'a> {
 }
 
 impl FitProblem<'_> {
+    /// Puts residuals through the loss; returns the slopes if they are wanted and not all 1.
+    fn bend(&self, residuals: &mut [f64], wants_slopes: bool) -> Vec<f64> {
+        if self.loss == Loss::Squares {
+            return Vec::new();
+        }
+        let bend = |residual: &mut f64| {
+            let bent = self.loss.bent(*residual);
+            *residual = bent.value;
+            bent.slope
+        };
+        let slopes: Vec<f64> = residuals.iter_mut().map(bend).collect();
+        if wants_slopes { slopes } else { Vec::new() }
+    }
+
     fn whiten(&self, columns: &mut [f64]) -> Result<(), ModelError> {
         let Some(whitening) = self.whitening else { return Ok(()) };
         let what = "the noise law doesn't suit the record";
@@ -188,6 +231,7 @@ impl Residuals for FitProblem<'_> {
         });
         let n = self.rows.len();
         self.whiten(&mut residuals[..n])?;
+        let slopes = self.bend(&mut residuals[..n], jacobian.is_some());
         for (residual, (place, mean, sd)) in residuals[n..].iter_mut().zip(&self.priors) {
             *residual = (coordinates[*place] - mean) / sd;
         }
@@ -206,6 +250,9 @@ impl Residuals for FitProblem<'_> {
             }
         });
         self.whiten(used)?;
+        for (line, slope) in used.chunks_exact_mut(k).zip(&slopes) {
+            line.iter_mut().for_each(|entry| *entry *= slope);
+        }
         for (line, (place, _, sd)) in priors.chunks_exact_mut(k).zip(&self.priors) {
             line.fill(0.0);
             line[*place] = 1.0 / sd;

@@ -10,6 +10,7 @@ use rayon::prelude::*;
 use crate::fit::document::{Convergence, Fit, Fitted};
 use crate::fit::frozen::{NEAR, minimise_frozen};
 use crate::fit::interval;
+use crate::fit::loss::Loss;
 use crate::fit::nuisance::Prepared;
 use crate::fit::problem::{FitProblem, free};
 use crate::fit::states::{Minimised, is_of_rows, minimise_partly, of_start};
@@ -42,6 +43,9 @@ const OF_CYCLE: f64 = 40.0;
 const RIVAL: f64 = 0.05;
 /// Costs that differ by less than this fraction belong to the same minimum.
 const SAME: f64 = 1e-3;
+/// Most times that the noise of a robust fit is taken anew, and the fall below which it is not.
+const RESCALED: usize = 4;
+const STEADY: f64 = 0.95;
 /// Correlations beyond this lead to a warning.
 const INSEPARABLE: f64 = 0.98;
 
@@ -51,6 +55,7 @@ pub(crate) struct Task<'a> {
     pub(crate) record: &'a Record,
     pub(crate) used: &'a [bool],
     pub(crate) noise: Noise,
+    pub(crate) loss: Loss,
     /// For each parameter, whether a smaller fit found it, so that most starts keep it; empty if none.
     pub(crate) known: &'a [bool],
     /// Tries only the given start, which is known to be near the minimum.
@@ -65,7 +70,41 @@ pub(crate) fn fit(prepared: &Prepared, start: &[f64], task: &Task<'_>) -> Result
 }
 
 /// The fit, and its force \[N\]: 0 in rows that don't count, NaN in rows without a state.
+///
+/// A noise that was estimated from readings with spikes in them is too large for a loss that is to see the
+/// spikes: other losses than squares take that of the residuals' median if it is smaller, again and again
+/// until it no longer falls.
 pub(crate) fn fit_and_force(
+    prepared: &Prepared,
+    start: &[f64],
+    task: &Task<'_>,
+) -> Result<(Fit, Vec<f64>), ModelError> {
+    let (mut fit, mut force) = fit_with_noise(prepared, start, task)?;
+    if task.loss == Loss::Squares {
+        return Ok((fit, force));
+    }
+    for _ in 0..RESCALED {
+        let scale =
+            scatter(task, &force).max(prepared.model.muscle().instruments().force.map_or(0.0, |f| f.noise()));
+        if !(scale > 0.0 && scale < STEADY * fit.sd_n) {
+            break;
+        }
+        let noise = Noise { force_n: scale, ..task.noise };
+        let start = fit.theta.clone();
+        (fit, force) = fit_with_noise(prepared, &start, &Task { noise, is_near: true, ..*task })?;
+    }
+    Ok((fit, force))
+}
+
+/// Standard deviation of normal residuals that has their median absolute value \[N\].
+fn scatter(task: &Task<'_>, force: &[f64]) -> f64 {
+    let rows = (0..force.len()).filter(|row| task.used[*row] && force[*row].is_finite());
+    let mut off: Vec<f64> = rows.map(|row| (task.record.force()[row] - force[row]).abs()).collect();
+    off.sort_by(f64::total_cmp);
+    1.4826 * off.get(off.len() / 2).copied().unwrap_or(0.0)
+}
+
+fn fit_with_noise(
     prepared: &Prepared,
     start: &[f64],
     task: &Task<'_>,
@@ -152,7 +191,7 @@ fn of_long(
 ) -> Result<(Fit, Vec<f64>), ModelError> {
     let used: Vec<bool> = kept.iter().map(|row| task.used[*row]).collect();
     let some = Task { record: thin, used: &used, ..*task };
-    let (mut fit, _) = fit_and_force(prepared, start, &some)?;
+    let (mut fit, _) = fit_with_noise(prepared, start, &some)?;
     let counting = Warm::of_rows(task.used);
     let found = prepared.model.evaluate_partly(task.record, &fit.theta, &Wanted::default(), &counting)?;
     let force = found.prediction.force;
@@ -170,6 +209,7 @@ fn polished<'a>(prepared: &'a Prepared, theta: &[f64], task: &Task<'a>) -> Resul
     let sd = weights(model, theta, task)?;
     let problem = |used: &[bool], at: &[f64]| {
         FitProblem::new(model, task.record, used, sd.clone(), at.to_vec(), &prepared.priors)
+            .with_loss(task.loss)
     };
     minimise_partly((model, task.record), task.used, theta, problem, |problem, at| {
         settle(problem, at, task.quick)
@@ -191,7 +231,10 @@ fn search(prepared: &Prepared, start: &[f64], task: &Task<'_>) -> Result<Searche
     let few = Task { record: &thin, used: &used, ..*task };
     let sd = weights(model, start, &few)?;
     // One problem for each start, because each keeps its own equilibria and they run in parallel.
-    let problem_of = || FitProblem::new(model, &thin, &used, sd.clone(), start.to_vec(), &prepared.priors);
+    let problem_of = || {
+        FitProblem::new(model, &thin, &used, sd.clone(), start.to_vec(), &prepared.priors)
+            .with_loss(task.loss)
+    };
     let problem = problem_of();
     let bounds = problem.bounds();
     let options =
@@ -315,7 +358,7 @@ fn clamped(mut coordinates: Vec<f64>, lower: &[f64], upper: &[f64]) -> Vec<f64> 
     coordinates
 }
 
-fn weights(model: &Model, theta: &[f64], task: &Task<'_>) -> Result<Vec<f64>, ModelError> {
+pub(crate) fn weights(model: &Model, theta: &[f64], task: &Task<'_>) -> Result<Vec<f64>, ModelError> {
     let readings = task.noise.pressure_pa > 0.0 || task.noise.contraction > 0.0;
     let wanted = Wanted { parameters: Vec::new(), readings };
     let prediction = if readings {
@@ -332,7 +375,8 @@ fn weights(model: &Model, theta: &[f64], task: &Task<'_>) -> Result<Vec<f64>, Mo
     Ok(task.noise.of_rows(task.record, &prediction))
 }
 
-fn settle(problem: &FitProblem<'_>, theta: &[f64], quick: bool) -> Result<Minimum, ModelError> {
+/// The minimum near `theta`, over all rows of the problem.
+pub(crate) fn settle(problem: &FitProblem<'_>, theta: &[f64], quick: bool) -> Result<Minimum, ModelError> {
     let bounds = problem.bounds();
     let start = clamped(problem.coordinates(theta), &bounds.lower, &bounds.upper);
     // Parameters are then off by this fraction of sqrt(rows) standard deviations.
@@ -369,7 +413,8 @@ fn report(
     for (row, residual) in rows.zip(&minimum.residuals) {
         residuals[row] = *residual;
     }
-    let square: f64 = residuals.iter().zip(problem.sd()).map(|(r, sd)| (r * sd) * (r * sd)).sum();
+    let newtons = residuals.iter().zip(problem.sd()).map(|(r, sd)| task.loss.straightened(*r) * sd);
+    let square: f64 = newtons.map(|newtons| newtons * newtons).sum();
     let effective = if task.quick { n as f64 } else { effective_rows(task.record, &residuals, task.used) };
     let mut fit = Fit {
         theta,
@@ -378,13 +423,16 @@ fn report(
         sd_n: task.noise.force_n,
         effective_rows: effective,
         correlations: minimum.correlation(),
+        loss: task.loss,
         convergence,
         ..Fit::default()
     };
     if task.quick {
         return fit;
     }
-    let scale = interval::Scale::new(minimum, n, effective);
+    let scale = interval::Scale::new(minimum, n, effective, task.loss);
+    fit.covariance = covariance(problem, minimum, &scale);
+    fit.downweighted = downweighted(&residuals, task.loss);
     for (place, index) in free(model).into_iter().enumerate() {
         let mut fitted = fitted(prepared, index, fit.theta[index]);
         fitted.determined = minimum.certificate.flat.iter().all(|v| v[place].abs() < 0.5);
@@ -404,6 +452,25 @@ fn report(
     }
     fit.warnings = warnings(&fit);
     fit
+}
+
+/// Covariance of the fitted parameters in the units in which they are shown; NaN where one isn't determined.
+fn covariance(problem: &FitProblem<'_>, minimum: &Minimum, scale: &interval::Scale) -> Vec<f64> {
+    let count = minimum.theta.len();
+    let slopes = problem.shown_slopes(&minimum.theta);
+    let all = scale.covariance(minimum);
+    let is_known = |place: usize| minimum.certificate.is_determined(place);
+    (0..count * count)
+        .map(|at| {
+            let (i, j) = (at / count, at % count);
+            if is_known(i) && is_known(j) { all[at] * slopes[i] * slopes[j] } else { f64::NAN }
+        })
+        .collect()
+}
+
+/// Readings that keep less than half of their influence.
+fn downweighted(residuals: &[f64], loss: Loss) -> usize {
+    residuals.iter().filter(|bent| loss.weight(loss.straightened(**bent)) < 0.5).count()
 }
 
 fn fitted(prepared: &Prepared, index: usize, value: f64) -> Fitted {

@@ -6,7 +6,8 @@
 use crate::support::{effects, options};
 use bulge_effects::{Catalogue, Moment, known};
 use bulge_inference::{
-    Fit, Fitting, Options, PredictedColumns, check_restrictions, compare, extended, fit_effects, predict,
+    Fit, Fitting, Loss, Options, PredictedColumns, check_restrictions, compare, extended, fit_effects,
+    posterior, predict,
 };
 use bulge_measurements::{Data, ReadOptions};
 use bulge_model::{Model, Record, Wanted};
@@ -568,4 +569,96 @@ fn a_prediction_says_what_it_lacks() {
     let message = predict(&data, &muscle(&changed), &Catalogue::builtin(), &[]).unwrap_err().to_string();
     assert!(message.contains("`coulomb-friction.force` in the table `[fitted]`: it is"), "{message}");
     assert!(message.contains("20 N in its effect"), "{message}");
+}
+
+/// Spikes pull a fit by squares away; other losses see them off, and their intervals hold the truth.
+#[test]
+fn spikes_pull_less_under_other_losses() {
+    let muscle = muscle(PLEATED);
+    let stated = [("coulomb-friction", 12.0), ("force-offset", 3.0)];
+    let names = stated.map(|(name, _)| name);
+    let numbers = stated.map(|(_, value)| [value]);
+    let truth: Vec<(&str, &[f64])> =
+        names.iter().copied().zip(numbers.iter().map(|value| &value[..])).collect();
+    let (mut held, mut rounds) = ([0; 4], 0);
+    let mut worst = [0.0_f64; 4];
+    for seed in 1..=12 {
+        let clean = measured(&muscle, &truth, 1.0, seed);
+        let mut noise = Noise(1000 + seed);
+        let mut csv = String::from("time [s],sweep,pressure [Pa],contraction [-],force [N]\n");
+        for row in 0..clean.len() {
+            // Nine readings in a hundred lie some 40 N too high.
+            let spike = if noise.uniform() < 0.09 { 40.0 + 5.0 * noise.normal() } else { 0.0 };
+            let (pressure, contraction) = (clean.pressure()[row], clean.contraction()[row]);
+            let force = clean.force()[row] + spike;
+            let _ = writeln!(csv, "{row},{},{pressure},{contraction},{force}", row / 30 + 1);
+        }
+        let data = Data::from_csv(&csv, "spikes.csv").unwrap();
+        for (place, loss) in Loss::ALL.into_iter().enumerate() {
+            let options = Options { loss, ..options(&names) };
+            let fit = fit_effects(&data, &muscle, &options).unwrap().fit;
+            assert_eq!(fit.loss, loss);
+            for (name, value) in stated {
+                let (found, [low, high]) = self::value(&fit, name);
+                held[place] += i32::from((low..=high).contains(&value));
+                worst[place] = worst[place].max((found - value).abs());
+                rounds += 1;
+            }
+            let is_robust = loss != Loss::Squares;
+            assert_eq!(fit.downweighted > 5, is_robust, "{loss:?}: {}", fit.downweighted);
+        }
+    }
+    let each = f64::from(rounds / 4);
+    // The mean of the spikes is 3.6 N; a tenth of spikes on one side moves Huber's estimate by 0.2 sigma.
+    assert!(worst[0] > 3.0, "{worst:?}");
+    assert!(worst[1..].iter().all(|worst| *worst < 1.2), "{worst:?}");
+    assert!(f64::from(held[3]) > 0.8 * each, "{held:?} of {each}");
+}
+
+/// The covariance has the intervals on its diagonal and the correlations beside it, in the units that are shown.
+#[test]
+fn the_covariance_is_that_of_the_intervals() {
+    let muscle = muscle(BRAIDED);
+    let truth: [(&str, &[f64]); 2] = [("bladder-elasticity", &[0.3e6]), ("coulomb-friction", &[9.0])];
+    let data = measured(&muscle, &truth, 1.0, 3);
+    let fit = fitted(&data, &muscle, &["bladder-elasticity", "coulomb-friction"]).fit;
+    let count = fit.parameters.len();
+    for (i, p) in fit.parameters.iter().enumerate() {
+        let sd = fit.covariance[i * count + i].sqrt();
+        let half = 0.5 * (p.high - p.low);
+        // Student's quantile of many rows; over the logarithm an interval is a little lopsided.
+        assert!((half / sd - 1.98).abs() < 0.04, "{}: {half} {sd}", p.effect);
+        for j in 0..count {
+            let other = fit.covariance[j * count + j].sqrt();
+            let r = fit.covariance[i * count + j] / (sd * other);
+            assert!((r - fit.correlations[i * count + j]).abs() < 1e-9);
+        }
+    }
+}
+
+/// Of numbers on which the force depends nearly straight, posterior, profile and interval say the same.
+#[test]
+fn the_posterior_of_a_straight_model_is_normal() {
+    let muscle = muscle(PLEATED);
+    let truth: [(&str, &[f64]); 2] = [("coulomb-friction", &[12.0]), ("force-offset", &[3.0])];
+    let data = measured(&muscle, &truth, 2.0, 5);
+    let names = ["coulomb-friction", "force-offset"];
+    let (fitting, found) = posterior(&data, &muscle, &options(&names), 7).unwrap();
+    assert_eq!(found.count, found.draws.len());
+    for (p, fitted) in found.parameters.iter().zip(&fitting.fit.parameters) {
+        let half = 0.5 * (fitted.high - fitted.low);
+        let [low, _, middle, _, high] = p.quantiles;
+        assert!((middle - fitted.value).abs() < 0.1 * half, "{}", p.name);
+        assert!((low - fitted.low).abs() < 0.12 * half && (high - fitted.high).abs() < 0.12 * half, "{p:?}");
+        assert!(p.r_hat < 1.02, "{}", p.r_hat);
+        // Twice the fall of the log likelihood is the square of the distance in standard deviations.
+        let sd = half / 1.98;
+        for [value, rise] in &p.profile {
+            let z = (value - fitted.value) / sd;
+            assert!((z * z - rise).abs() < 0.05 * (1.0 + rise), "{}: {value} {rise} {z}", p.name);
+        }
+        assert!(p.profile.len() == 13, "{}", p.profile.len());
+    }
+    let again = posterior(&data, &muscle, &options(&names), 7).unwrap().1;
+    assert_eq!(again.draws, found.draws);
 }
