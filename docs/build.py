@@ -7,6 +7,7 @@ Needs mkdocs and matplotlib. Nothing is fetched: the site below OUT/site reads w
 """
 
 import argparse
+import base64
 import csv
 import json
 import re
@@ -194,6 +195,27 @@ def effects(program, pages):
     return text
 
 
+def notebook(path, folder, link):
+    """A notebook as a page: its text, its code, and the outputs that it holds. Pictures are written into the folder."""
+    lines = []
+    for at, cell in enumerate(json.loads(path.read_text(encoding="utf-8"))["cells"]):
+        source = "".join(cell["source"]).rstrip()
+        if cell["cell_type"] == "markdown":
+            # Formulas stay as they are written: nothing that sets them is fetched.
+            lines += [LINK.sub(link, source), ""]
+            continue
+        lines += ["```python", source, "```", ""]
+        for output in cell["outputs"]:
+            data = output.get("data", {})
+            if "image/png" in data:
+                picture = f"{path.stem}-{at}.png"
+                (folder / picture).write_bytes(base64.b64decode("".join(data["image/png"])))
+                lines += [f"![Output of the cell]({picture})", ""]
+            elif shown := "".join(output.get("text", data.get("text/plain", ""))).rstrip():
+                lines += ["```text", shown, "```", ""]
+    return "\n".join(lines)
+
+
 def staged(pages):
     """Copies the pages, and whatever they link to outside of this folder, with the links moved along."""
     waiting, done = [], {}
@@ -214,7 +236,7 @@ def staged(pages):
         if path == ROOT / "docs/schemas":
             return "](json.md)"
         if path not in done:
-            done[path] = place(path)
+            done[path] = place(path).with_suffix(".md") if path.suffix == ".ipynb" else place(path)
             waiting.append(path)
         there = Path(*([".."] * len(place(page).parent.relative_to(pages).parts))) / done[path].relative_to(pages)
         return f"]({there}{anchor})"
@@ -225,11 +247,21 @@ def staged(pages):
     while waiting:
         path = waiting.pop()
         done[path].parent.mkdir(parents=True, exist_ok=True)
-        if path.suffix == ".md":
+        if path.suffix == ".ipynb":
+            done[path].write_text(notebook(path, done[path].parent, lambda match: link(path, match)))
+        elif path.suffix == ".md":
             done[path].write_text(LINK.sub(lambda match: link(path, match), path.read_text()))
         else:
             shutil.copyfile(path, done[path])
 
+
+# Notebooks, in the order in which they are read, with their titles.
+NOTEBOOKS = [
+    {"Notebook: shapes": "repository/crates/python/notebooks/shape-study.md"},
+    {"Notebook: a hidden effect": "repository/crates/python/notebooks/hidden-effect.md"},
+    {"Notebook: a drawn form": "repository/crates/python/notebooks/drawn-form.md"},
+    {"Notebook: a table for a controller": "repository/crates/python/notebooks/controller-table.md"},
+]
 
 CONFIG = {
     "site_name": "Bulge",
@@ -241,20 +273,30 @@ CONFIG = {
     "nav": [
         {"Contents": "README.md"},
         {"Tutorials": [
+            {"The shape of a muscle": "tutorial-shape.md"},
+            {"A hidden effect": "tutorial-hidden-effect.md"},
+            {"An isometric test": "tutorial-isometric.md"},
+            {"Sizing a muscle and a joint": "tutorial-sizing.md"},
+            {"A table for a controller": "tutorial-table.md"},
+            {"A sweep on a cluster": "tutorial-cluster.md"},
+            *NOTEBOOKS,
+        ]},
+        {"Using it": [
             {"The workbench": "workbench.md"},
-            {"Shapes": "muscles.md"},
-            {"From a CSV to the ladder": "compare.md"},
-            {"Which effect is missing": "diagnose.md"},
+            {"Muscles": "muscles.md"},
+            {"Model against measurement": "compare.md"},
+            {"What is missing": "diagnose.md"},
             {"A formula from the drawn form": "drawn-form.md"},
-            {"Isometric and isotonic tests": "what-moves.md"},
-            {"Sizing, joints, air, sensing, heat": "design.md"},
-            {"A table for a controller": "tables.md"},
-            {"A sweep on a cluster": "sweeps.md"},
+            {"What moves": "what-moves.md"},
+            {"Design": "design.md"},
+            {"Tables": "tables.md"},
+            {"Sweeps on many machines": "sweeps.md"},
             {"Membranes": "membranes.md"},
             {"Python": "python.md"},
         ]},
         {"Data": [{"Files": "data-files.md"}, {"Sweeps and rows": "sweeps-and-rows.md"}, {"Specimens": "specimens.md"}]},
         {"Theory and method": [
+            {"How Bulge decides": "method.md"},
             {"Theory": "theory.md"},
             {"Shape effects": "catalogue-shape-effects.md"},
             {"Noise": "noise.md"},
@@ -267,7 +309,7 @@ CONFIG = {
             {"JSON documents": "json.md"},
         ]},
         {"How right, how fast": [{"Verification": "verification.md"}, {"Speed": "speed.md"}]},
-        {"Contributing": [{"Architecture": "architecture.md"}]},
+        {"Contributing": [{"How to contribute": "repository/CONTRIBUTING.md"}, {"Recipes": "contributing-recipes.md"}, {"Architecture": "architecture.md"}]},
     ],
 }
 
