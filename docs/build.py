@@ -25,6 +25,8 @@ matplotlib.use("Agg")
 matplotlib.rcParams["svg.hashsalt"] = "bulge"
 matplotlib.rcParams["svg.fonttype"] = "none"
 from matplotlib.figure import Figure  # noqa: E402
+from matplotlib.font_manager import FontProperties  # noqa: E402
+from matplotlib.mathtext import math_to_image  # noqa: E402
 
 ROOT = Path(__file__).resolve().parent.parent
 LINK = re.compile(r"\]\(([^)#\s]+)(#[^)\s]*)?\)")
@@ -195,14 +197,50 @@ def effects(program, pages):
     return text
 
 
+# What stands in formulas within lines of text, where no picture is drawn. Longer names come first.
+SIGNS = {
+    r"\varepsilon": "ε", r"\partial": "∂", r"\lambda": "λ", r"\alpha": "α", r"\kappa": "κ", r"\theta": "θ", r"\Delta": "Δ", r"\infty": "∞", r"\mathrm{d}": "d",
+    r"\tfrac12": "½", r"\qquad": " ", r"\bigl": "", r"\bigr": "", r"\sim": "~", r"\int": "∫", r"\sin": "sin ", r"\tan": "tan ", r"\cos": "cos ", r"\pi": "π",
+    r"\pm": "±", r"\to": "→", r"\,": " ", "<": "&lt;",
+}  # fmt: skip
+
+
+def inline(formula):
+    """A formula within a line, in HTML."""
+    text = formula
+    for name, sign in SIGNS.items():
+        text = text.replace(name, sign)
+    if "\\" in text:
+        raise SystemExit(f"SIGNS lacks something of ${formula}$")
+    for mark, tag in (("_", "sub"), ("^", "sup")):
+        text = re.sub(rf"\{mark}(?:{{([^}}]*)}}|(.))", lambda match: f"<{tag}>{match.group(1) or match.group(2)}</{tag}>", text)
+    return f"<em>{text.replace(' <su', '<su')}</em>"
+
+
+def formulas(text, name, folder):
+    """A text with its formulas: drawn where they stand alone, in HTML within lines. Nothing that sets them in the browser is fetched."""
+
+    def alone(match):
+        drawn = f"{name}-{alone.count}.svg"
+        alone.count += 1
+        formula = " ".join(match.group(1).split())
+        for has, takes in ((r"\tfrac", r"\frac"), (r"\Bigl(", "("), (r"\Bigr)", ")")):
+            formula = formula.replace(has, takes)
+        math_to_image(f"${formula}$", folder / drawn, prop=FontProperties(size=13), dpi=72, format="svg")
+        return f"![{match.group(1).strip()}]({drawn})"
+
+    alone.count = 0
+    text = re.sub(r"\$\$(.+?)\$\$", alone, text, flags=re.DOTALL)
+    return re.sub(r"\$([^$\n][^$]*)\$", lambda match: inline(match.group(1)), text)
+
+
 def notebook(path, folder, link):
     """A notebook as a page: its text, its code, and the outputs that it holds. Pictures are written into the folder."""
     lines = []
     for at, cell in enumerate(json.loads(path.read_text(encoding="utf-8"))["cells"]):
         source = "".join(cell["source"]).rstrip()
         if cell["cell_type"] == "markdown":
-            # Formulas stay as they are written: nothing that sets them is fetched.
-            lines += [LINK.sub(link, source), ""]
+            lines += [formulas(LINK.sub(link, source), f"{path.stem}-formula-{at}", folder), ""]
             continue
         lines += ["```python", source, "```", ""]
         for output in cell["outputs"]:
@@ -255,6 +293,9 @@ def staged(pages):
             shutil.copyfile(path, done[path])
 
 
+# Tables break their lines instead of running out of the page.
+STYLE = ".wy-table-responsive table td, .wy-table-responsive table th { white-space: normal }\n"
+
 # Notebooks, in the order in which they are read, with their titles.
 NOTEBOOKS = [
     {"Notebook: shapes": "repository/crates/python/notebooks/shape-study.md"},
@@ -268,6 +309,7 @@ CONFIG = {
     "site_description": "Shape, force and volume of pneumatic artificial muscles",
     "use_directory_urls": False,
     "theme": {"name": "readthedocs", "highlightjs": False, "include_homepage_in_sidebar": True},
+    "extra_css": ["book.css"],
     "plugins": ["search"],
     "validation": {"links": {"anchors": "warn", "absolute_links": "warn", "not_found": "warn"}, "nav": {"omitted_files": "info"}},
     "nav": [
@@ -328,6 +370,7 @@ def main():
     for name, text in written.items():
         (pages / name).write_text(text)
     shutil.copytree(ROOT / "docs/schemas", pages / "schemas", dirs_exist_ok=True)
+    (pages / "book.css").write_text(STYLE)
     config = arguments.out / "mkdocs.yml"
     # JSON is YAML.
     config.write_text(json.dumps({**CONFIG, "docs_dir": "pages", "site_dir": "site"}, indent=1))
