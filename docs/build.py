@@ -87,7 +87,7 @@ def commands(program):
 
 
 def laws(program):
-    return f"# Force laws of the papers\n\nAs `bulge effects --laws` prints them.\n\n```text\n{program.says('effects', '--laws').rstrip()}\n```\n"
+    return f"# Force laws of the papers\n\nAs `bulge effects --laws` prints them; S1 to S5 are papers ([sources](theory.md#sources)).\n\n```text\n{program.says('effects', '--laws').rstrip()}\n```\n"
 
 
 def schemas():
@@ -176,7 +176,7 @@ def effects(program, pages):
     with tempfile.TemporaryDirectory() as folder, ThreadPoolExecutor(2) as pool:
         drawn = list(pool.map(lambda effect: signature(program, effect, Path(folder)), listed))
     text = "# Catalogue of effects\n\nEvery effect that a diagnosis looks for: what it does, its numbers with their bounds, what is confused with it and what tells\n"
-    text += "them apart. Written from the cards of the program (`bulge effects NAME`).\n"
+    text += "them apart. Written from the cards of the program (`bulge effects NAME`). S1 to S5 are papers ([sources](theory.md#sources)).\n"
     group = None
     for effect, (figure, caption) in zip(listed, drawn):
         figure.savefig(pictures / f"{effect['name']}.svg", metadata={"Date": None})
