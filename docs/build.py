@@ -293,8 +293,8 @@ def staged(pages):
             shutil.copyfile(path, done[path])
 
 
-# Tables break their lines instead of running out of the page.
-STYLE = ".wy-table-responsive table td, .wy-table-responsive table th { white-space: normal }\n"
+# Tables break their lines instead of running out of the page, which is as wide as what the program prints.
+STYLE = ".wy-table-responsive table td, .wy-table-responsive table th { white-space: normal }\n.wy-nav-content { max-width: 1040px }\n"
 
 # Notebooks, in the order in which they are read, with their titles.
 NOTEBOOKS = [

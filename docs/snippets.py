@@ -17,7 +17,7 @@ What is done with a block
 - Blocks below `<!-- not run: REASON -->` are left alone.
 - `<!-- before: COMMAND -->` is a command that the page doesn't show. It stands alone on its line.
 
-Which blocks run: all of a tutorial. Of the reference pages, whose blocks are mostly fragments, those below `<!-- run -->`; and in docs/python.md and README.md
+Which blocks run: all of a tutorial. Of the reference pages, whose blocks are mostly fragments, those below `<!-- run -->` or `<!-- file: NAME -->`; and in docs/python.md and README.md
 all that are Python.
 
 What is compared
@@ -192,7 +192,7 @@ class Page:
     def wanted(self, block):
         if "not run" in block.marks or (block.lines and block.lines[0].startswith(FRAGMENTS.get(self.name, ()) or "\0")):
             return False
-        if self.path.name.startswith("tutorial-") or "run" in block.marks:
+        if self.path.name.startswith("tutorial-") or "run" in block.marks or "file" in block.marks:
             return True
         return block.language == "python" and self.name in ("docs/python.md", "README.md")
 
