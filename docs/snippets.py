@@ -12,7 +12,8 @@ What is done with a block
 - `sh` runs in bash; a command that fails ends the block, and the check fails.
 - `python` runs with the interpreter of --python, all blocks of a page one after the other in one process each, with the names of the blocks before them. Without
   --python it is skipped, and counted as such. So is an `sh` block below `<!-- needs: python -->`, which finds that interpreter as `python`.
-- A block of any other language below `<!-- file: NAME -->`, or whose first line is `# file: NAME`, is written into the folder as that file.
+- A block of any other language whose first line is the comment `# file: NAME` (in C `/* file: NAME */`), which readers see, or that stands below
+  `<!-- file: NAME -->`, is written into the folder as that file.
 - `text` right below a block that ran (nothing but blank lines between) is what that printed: standard output and errors together.
 - Blocks below `<!-- not run: REASON -->` are left alone.
 - `<!-- before: COMMAND -->` is a command that the page doesn't show. It stands alone on its line.
@@ -234,7 +235,7 @@ class Page:
 
     def write(self, block, folder):
         name, lines = block.marks.get("file"), block.lines
-        if name is None and lines and (match := re.match(r"#\s*file:\s*(\S+)\s*$", lines[0])):
+        if name is None and lines and (match := re.match(r"(?:#|//|/\*)\s*file:\s*(\S+)\s*(?:\*/)?\s*$", lines[0])):
             name = match.group(1)
         if name:
             file = folder / name
