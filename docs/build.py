@@ -7,6 +7,7 @@ Needs mkdocs and matplotlib. Nothing is fetched: the site below OUT/site reads w
 """
 
 import argparse
+import base64
 import csv
 import json
 import re
@@ -24,6 +25,8 @@ matplotlib.use("Agg")
 matplotlib.rcParams["svg.hashsalt"] = "bulge"
 matplotlib.rcParams["svg.fonttype"] = "none"
 from matplotlib.figure import Figure  # noqa: E402
+from matplotlib.font_manager import FontProperties  # noqa: E402
+from matplotlib.mathtext import math_to_image  # noqa: E402
 
 ROOT = Path(__file__).resolve().parent.parent
 LINK = re.compile(r"\]\(([^)#\s]+)(#[^)\s]*)?\)")
@@ -84,7 +87,7 @@ def commands(program):
 
 
 def laws(program):
-    return f"# Force laws of the papers\n\nAs `bulge effects --laws` prints them.\n\n```text\n{program.says('effects', '--laws').rstrip()}\n```\n"
+    return f"# Force laws of the papers\n\nAs `bulge effects --laws` prints them; S1 to S5 are papers ([sources](theory.md#sources)).\n\n```text\n{program.says('effects', '--laws').rstrip()}\n```\n"
 
 
 def schemas():
@@ -173,7 +176,7 @@ def effects(program, pages):
     with tempfile.TemporaryDirectory() as folder, ThreadPoolExecutor(2) as pool:
         drawn = list(pool.map(lambda effect: signature(program, effect, Path(folder)), listed))
     text = "# Catalogue of effects\n\nEvery effect that a diagnosis looks for: what it does, its numbers with their bounds, what is confused with it and what tells\n"
-    text += "them apart. Written from the cards of the program (`bulge effects NAME`).\n"
+    text += "them apart. Written from the cards of the program (`bulge effects NAME`). S1 to S5 are papers ([sources](theory.md#sources)).\n"
     group = None
     for effect, (figure, caption) in zip(listed, drawn):
         figure.savefig(pictures / f"{effect['name']}.svg", metadata={"Date": None})
@@ -192,6 +195,63 @@ def effects(program, pages):
                  ("Needs", effect["needs"]), ("Source", effect["source"])]
         text += "\n" + "".join(f"- {name}: {says}\n" for name, says in facts if says)
     return text
+
+
+# What stands in formulas within lines of text, where no picture is drawn. Longer names come first.
+SIGNS = {
+    r"\varepsilon": "ε", r"\partial": "∂", r"\lambda": "λ", r"\alpha": "α", r"\kappa": "κ", r"\theta": "θ", r"\Delta": "Δ", r"\infty": "∞", r"\mathrm{d}": "d",
+    r"\tfrac12": "½", r"\qquad": " ", r"\bigl": "", r"\bigr": "", r"\sim": "~", r"\int": "∫", r"\sin": "sin ", r"\tan": "tan ", r"\cos": "cos ", r"\pi": "π",
+    r"\pm": "±", r"\to": "→", r"\,": " ", "<": "&lt;",
+}  # fmt: skip
+
+
+def inline(formula):
+    """A formula within a line, in HTML."""
+    text = formula
+    for name, sign in SIGNS.items():
+        text = text.replace(name, sign)
+    if "\\" in text:
+        raise SystemExit(f"SIGNS lacks something of ${formula}$")
+    for mark, tag in (("_", "sub"), ("^", "sup")):
+        text = re.sub(rf"\{mark}(?:{{([^}}]*)}}|(.))", lambda match: f"<{tag}>{match.group(1) or match.group(2)}</{tag}>", text)
+    return f"<em>{text.replace(' <su', '<su')}</em>"
+
+
+def formulas(text, name, folder):
+    """A text with its formulas: drawn where they stand alone, in HTML within lines. Nothing that sets them in the browser is fetched."""
+
+    def alone(match):
+        drawn = f"{name}-{alone.count}.svg"
+        alone.count += 1
+        formula = " ".join(match.group(1).split())
+        for has, takes in ((r"\tfrac", r"\frac"), (r"\Bigl(", "("), (r"\Bigr)", ")")):
+            formula = formula.replace(has, takes)
+        math_to_image(f"${formula}$", folder / drawn, prop=FontProperties(size=13), dpi=72, format="svg")
+        return f"![{match.group(1).strip()}]({drawn})"
+
+    alone.count = 0
+    text = re.sub(r"\$\$(.+?)\$\$", alone, text, flags=re.DOTALL)
+    return re.sub(r"\$([^$\n][^$]*)\$", lambda match: inline(match.group(1)), text)
+
+
+def notebook(path, folder, link):
+    """A notebook as a page: its text, its code, and the outputs that it holds. Pictures are written into the folder."""
+    lines = []
+    for at, cell in enumerate(json.loads(path.read_text(encoding="utf-8"))["cells"]):
+        source = "".join(cell["source"]).rstrip()
+        if cell["cell_type"] == "markdown":
+            lines += [formulas(LINK.sub(link, source), f"{path.stem}-formula-{at}", folder), ""]
+            continue
+        lines += ["```python", source, "```", ""]
+        for output in cell["outputs"]:
+            data = output.get("data", {})
+            if "image/png" in data:
+                picture = f"{path.stem}-{at}.png"
+                (folder / picture).write_bytes(base64.b64decode("".join(data["image/png"])))
+                lines += [f"![Output of the cell]({picture})", ""]
+            elif shown := "".join(output.get("text", data.get("text/plain", ""))).rstrip():
+                lines += ["```text", shown, "```", ""]
+    return "\n".join(lines)
 
 
 def staged(pages):
@@ -214,7 +274,7 @@ def staged(pages):
         if path == ROOT / "docs/schemas":
             return "](json.md)"
         if path not in done:
-            done[path] = place(path)
+            done[path] = place(path).with_suffix(".md") if path.suffix == ".ipynb" else place(path)
             waiting.append(path)
         there = Path(*([".."] * len(place(page).parent.relative_to(pages).parts))) / done[path].relative_to(pages)
         return f"]({there}{anchor})"
@@ -225,36 +285,60 @@ def staged(pages):
     while waiting:
         path = waiting.pop()
         done[path].parent.mkdir(parents=True, exist_ok=True)
-        if path.suffix == ".md":
+        if path.suffix == ".ipynb":
+            done[path].write_text(notebook(path, done[path].parent, lambda match: link(path, match)))
+        elif path.suffix == ".md":
             done[path].write_text(LINK.sub(lambda match: link(path, match), path.read_text()))
         else:
             shutil.copyfile(path, done[path])
 
+
+# Tables break their lines instead of running out of the page, which is as wide as what the program prints.
+STYLE = ".wy-table-responsive table td, .wy-table-responsive table th { white-space: normal }\n.wy-nav-content { max-width: 1040px }\n"
+
+# Notebooks, in the order in which they are read, with their titles.
+NOTEBOOKS = [
+    {"Notebook: shapes": "repository/crates/python/notebooks/shape-study.md"},
+    {"Notebook: a hidden effect": "repository/crates/python/notebooks/hidden-effect.md"},
+    {"Notebook: a drawn form": "repository/crates/python/notebooks/drawn-form.md"},
+    {"Notebook: a table for a controller": "repository/crates/python/notebooks/controller-table.md"},
+]
 
 CONFIG = {
     "site_name": "Bulge",
     "site_description": "Shape, force and volume of pneumatic artificial muscles",
     "use_directory_urls": False,
     "theme": {"name": "readthedocs", "highlightjs": False, "include_homepage_in_sidebar": True},
+    "extra_css": ["book.css"],
     "plugins": ["search"],
     "validation": {"links": {"anchors": "warn", "absolute_links": "warn", "not_found": "warn"}, "nav": {"omitted_files": "info"}},
     "nav": [
         {"Contents": "README.md"},
         {"Tutorials": [
+            {"The shape of a muscle": "tutorial-shape.md"},
+            {"A hidden effect": "tutorial-hidden-effect.md"},
+            {"An isometric test": "tutorial-isometric.md"},
+            {"Sizing a muscle and a joint": "tutorial-sizing.md"},
+            {"A table for a controller": "tutorial-table.md"},
+            {"A sweep on a cluster": "tutorial-cluster.md"},
+            *NOTEBOOKS,
+        ]},
+        {"Using it": [
             {"The workbench": "workbench.md"},
-            {"Shapes": "muscles.md"},
-            {"From a CSV to the ladder": "compare.md"},
-            {"Which effect is missing": "diagnose.md"},
+            {"Muscles": "muscles.md"},
+            {"Model against measurement": "compare.md"},
+            {"What is missing": "diagnose.md"},
             {"A formula from the drawn form": "drawn-form.md"},
-            {"Isometric and isotonic tests": "what-moves.md"},
-            {"Sizing, joints, air, sensing, heat": "design.md"},
-            {"A table for a controller": "tables.md"},
-            {"A sweep on a cluster": "sweeps.md"},
+            {"What moves": "what-moves.md"},
+            {"Design": "design.md"},
+            {"Tables": "tables.md"},
+            {"Sweeps on many machines": "sweeps.md"},
             {"Membranes": "membranes.md"},
             {"Python": "python.md"},
         ]},
         {"Data": [{"Files": "data-files.md"}, {"Sweeps and rows": "sweeps-and-rows.md"}, {"Specimens": "specimens.md"}]},
         {"Theory and method": [
+            {"How Bulge decides": "method.md"},
             {"Theory": "theory.md"},
             {"Shape effects": "catalogue-shape-effects.md"},
             {"Noise": "noise.md"},
@@ -267,7 +351,7 @@ CONFIG = {
             {"JSON documents": "json.md"},
         ]},
         {"How right, how fast": [{"Verification": "verification.md"}, {"Speed": "speed.md"}]},
-        {"Contributing": [{"Architecture": "architecture.md"}]},
+        {"Contributing": [{"How to contribute": "repository/CONTRIBUTING.md"}, {"Recipes": "contributing-recipes.md"}, {"Architecture": "architecture.md"}]},
     ],
 }
 
@@ -286,6 +370,7 @@ def main():
     for name, text in written.items():
         (pages / name).write_text(text)
     shutil.copytree(ROOT / "docs/schemas", pages / "schemas", dirs_exist_ok=True)
+    (pages / "book.css").write_text(STYLE)
     config = arguments.out / "mkdocs.yml"
     # JSON is YAML.
     config.write_text(json.dumps({**CONFIG, "docs_dir": "pages", "site_dir": "site"}, indent=1))
