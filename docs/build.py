@@ -25,6 +25,8 @@ matplotlib.use("Agg")
 matplotlib.rcParams["svg.hashsalt"] = "bulge"
 matplotlib.rcParams["svg.fonttype"] = "none"
 from matplotlib.figure import Figure  # noqa: E402
+
+import figures  # noqa: E402
 from matplotlib.font_manager import FontProperties  # noqa: E402
 from matplotlib.mathtext import math_to_image  # noqa: E402
 
@@ -83,6 +85,16 @@ def commands(program):
     for name in [name for name in names if name != "help"]:
         shown = program.says(name, "--help").replace(f"{program.path.name} ", "bulge ")
         text += f"\n## bulge {name}\n\n```text\n{shown.rstrip()}\n```\n"
+    return text
+
+
+def files(program):
+    """Every file that the program reads, with every key."""
+    text = "# Files, with every key\n\nAs the program prints them (`bulge keys FILE`): what they hold, and what each key means.\n"
+    for file in json.loads(program.says("keys", "--json"))["files"]:
+        example = json.loads(program.says("keys", file["file"], "--json"))["example"]
+        language = "text" if file["file"] == "data" else "toml"
+        text += f"\n## {file['file'].capitalize()}\n\n{file['about']}.\n\n```{language}\n{example.rstrip()}\n```\n"
     return text
 
 
@@ -346,11 +358,12 @@ CONFIG = {
         ]},
         {"Reference": [
             {"Commands": "commands.md"},
+            {"Files, with every key": "files.md"},
             {"Catalogue of effects": "effects.md"},
             {"Force laws": "laws.md"},
             {"JSON documents": "json.md"},
         ]},
-        {"How right, how fast": [{"Verification": "verification.md"}, {"Speed": "speed.md"}]},
+        {"How right, how fast": [{"Verification": "verification.md"}, {"Speed": "speed.md"}, {"Where each figure comes from": "figures.md"}]},
         {"Contributing": [{"How to contribute": "repository/CONTRIBUTING.md"}, {"Recipes": "contributing-recipes.md"}, {"Architecture": "architecture.md"}]},
     ],
 }
@@ -366,7 +379,17 @@ def main():
     shutil.rmtree(arguments.out, ignore_errors=True)
     pages.mkdir(parents=True)
     staged(pages)
-    written = {"commands.md": commands(program), "laws.md": laws(program), "json.md": schemas(), "effects.md": effects(program, pages)}
+    rows, missing = figures.collected()
+    if missing:
+        raise SystemExit("\n".join(missing))
+    written = {
+        "commands.md": commands(program),
+        "files.md": files(program),
+        "laws.md": laws(program),
+        "json.md": schemas(),
+        "effects.md": effects(program, pages),
+        "figures.md": figures.page(rows),
+    }
     for name, text in written.items():
         (pages / name).write_text(text)
     shutil.copytree(ROOT / "docs/schemas", pages / "schemas", dirs_exist_ok=True)

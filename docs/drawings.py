@@ -10,6 +10,7 @@ import argparse
 import json
 import subprocess
 import tempfile
+import tomllib
 from pathlib import Path
 
 import matplotlib
@@ -20,7 +21,8 @@ import numpy as np  # noqa: E402
 from matplotlib.figure import Figure  # noqa: E402
 from matplotlib.patches import Arc, FancyBboxPatch, Polygon, Rectangle  # noqa: E402
 
-FOLDER = Path(__file__).resolve().parent / "drawings"
+ROOT = Path(__file__).resolve().parent.parent
+FOLDER = ROOT / "docs/drawings"
 INK, BLUE, RED, GREY, PALE, STEEL = "#1a1a1a", "#1f4e9c", "#c2410c", "#777777", "#dbe7f6", "#566473"
 
 
@@ -163,7 +165,7 @@ def draw_ends(bulge):
         text(axes, (length + 22, height), f"{answer['force_n']:.0f} N", RED, ha="left")
     arrow(axes, (-10, 52), (-10, 62), both=True)
     text(axes, (-15, 57), "r₀")
-    text(axes, (36, -24), "l₀ = 90 mm, r₀ = 10 mm, α₀ = 25°, 2 bar, contracted by 20 %", GREY, fontsize=9.5)
+    text(axes, (36, -24), "l₀ = 90 mm, r₀ = 10 mm, α₀ = 25°, 2 bar, contracted by 20 %", GREY, fontsize=10)
     saved(figure, "ends.svg")
 
 
@@ -192,7 +194,7 @@ def draw_free_body(bulge):
     text(axes, (x[0] - 17, r[0] + 6), "N", RED)
     text(axes, (end + 8, 44), "along the axis:  N cos ψ = F + p A", ha="left", fontsize=10)
     text(axes, (end + 8, 35), "over a small stroke:  p dV = −F dl", ha="left", fontsize=10)
-    text(axes, (end + 8, -38), "l grows to the right;\nthe gas does the work p dV,\nthe rod is pulled in by −dl", GREY, ha="left", fontsize=9.5)
+    text(axes, (end + 8, -38), "l grows to the right;\nthe gas does the work p dV,\nthe rod is pulled in by −dl", GREY, ha="left", fontsize=10)
     saved(figure, "free-body.svg")
 
 
@@ -246,6 +248,51 @@ def draw_decisions():
     saved(figure, "decisions.svg")
 
 
+def imports():
+    """Who imports whom, by the manifests; `bulge`, which only re-exports, and what measures and checks the others are left out."""
+    found = {}
+    for manifest in sorted(ROOT.glob("crates/*/Cargo.toml")):
+        name = manifest.parent.name
+        if name != "bulge":
+            used = tomllib.loads(manifest.read_text(encoding="utf-8")).get("dependencies", {})
+            found[name] = {other.removeprefix("bulge-") for other in used if other.startswith("bulge-")} - {"validation"}
+    return found
+
+
+# From the left, so that few arrows cross; the height comes from the imports.
+COLUMNS = {
+    "muscles": 1.0, "numerics": 2.1, "table": 5.1, "measurements": 0.0, "fibre": 2.1, "membrane": 4.0, "effects": 1.5, "vtk": 3.1,
+    "model": 1.5, "inference": 1.0, "design": 4.0, "report": 1.0, "sweep": 4.6, "workbench": 1.5, "python": 3.6, "cli": 2.6,
+}  # fmt: skip
+
+
+def draw_crates():
+    """The crates, those below that know nothing of those above; arrows to what is used directly."""
+    of = imports()
+    level = {}
+
+    def height_of(name):
+        if name not in level:
+            level[name] = 1 + max(map(height_of, of[name]), default=-1)
+        return level[name]
+
+    for name in of:
+        height_of(name)
+    top = max(level.values())
+    figure, axes = canvas(8.4, 0.6 * (top + 1), (-1.3, 2.6 * 5.2 + 1.3), (-0.6, 1.5 * top + 0.6))
+    places = {name: (2.6 * COLUMNS[name], 1.5 * height) for name, height in level.items()}
+    direct = {name: {other for other in used if not any(other in of[between] for between in used)} for name, used in of.items()}
+    for name, used in direct.items():
+        x, y = places[name]
+        for other in used:
+            there = places[other]
+            axes.annotate("", (there[0], there[1] + 0.38), (x, y - 0.3), arrowprops={"arrowstyle": "-|>", "color": GREY, "linewidth": 0.9, "shrinkA": 0, "shrinkB": 0}, zorder=1)
+    for name, (x, y) in places.items():
+        axes.add_patch(FancyBboxPatch((x - 1.12, y - 0.33), 2.24, 0.66, boxstyle="round,pad=0.03", facecolor=PALE, edgecolor=BLUE, linewidth=1, zorder=2))
+        text(axes, (x, y), name, fontsize=10, zorder=3)
+    saved(figure, "crates.svg")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--bulge", default="target/release/bulge", help="the program")
@@ -257,6 +304,7 @@ def main():
     draw_free_body(arguments.bulge)
     draw_ladder()
     draw_decisions()
+    draw_crates()
     print(", ".join(f"{path.name} {path.stat().st_size // 1000} kB" for path in sorted(FOLDER.glob("*.svg"))))
 
 

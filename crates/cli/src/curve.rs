@@ -174,7 +174,7 @@ impl CurveCommand {
         };
         if low >= high {
             let what = format!(
-                "the range {low}..{high} is empty: write the smaller contraction first, as in \"0 %..35 %\""
+                "the range {low}..{high} is empty: write the smaller contraction first, as in \"0 %..35 %\"; `bulge shape` has a single one"
             );
             return Err(Failure::Value { option: "--contraction", what });
         }

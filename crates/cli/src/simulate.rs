@@ -107,7 +107,7 @@ fn text(found: &Simulation, [data, muscle, truth]: &[PathBuf; 3]) -> String {
     let hidden = &found.truth;
     let mut out = format!("{}, simulated with seed {}\n\n", hidden.muscle, hidden.seed);
     let kind = if found.data.is_path() {
-        format!("in {} sweeps", hidden.sweeps)
+        format!("in {}", counted(hidden.sweeps, "sweep"))
     } else {
         "of a static map".to_owned()
     };

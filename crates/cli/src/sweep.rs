@@ -41,7 +41,7 @@ pub(crate) struct SweepCommand {
     /// These chunks only, such as 100..200: for several processes or machines that share the folder; `--resume` then completes it
     #[arg(long, value_name = "A..B", value_parser = range)]
     chunks: Option<Range<u64>>,
-    /// Take the finished chunks of the same sweep over from another folder
+    /// Take the finished chunks of the same sweep over from another folder; what then is missing is computed, with `--resume` beside what is here
     #[arg(long, value_name = "DIR")]
     merge: Vec<PathBuf>,
     /// Write every chunk as CSV as well (csv/*.csv)

@@ -52,8 +52,11 @@ pub(super) fn text(diagnosis: &Diagnosis, call: &Call) -> String {
 fn measured(out: &mut String, diagnosis: &Diagnosis) {
     let data = &diagnosis.comparison.data;
     let _ = writeln!(out, "{} diagnosed on {}\n", diagnosis.muscle, data.files.join(", "));
-    let sweeps =
-        if data.is_path { format!(" in {} sweeps", data.sweeps) } else { " in a static map".to_owned() };
+    let sweeps = if data.is_path {
+        format!(" in {}", counted(data.sweeps, "sweep"))
+    } else {
+        " in a static map".to_owned()
+    };
     let _ = writeln!(out, "  {}{sweeps}: {}", counted(data.rows, "row"), spans(data));
     for left in &data.left_out {
         let _ = writeln!(out, "  left out {} (line {}): {}", counted(left.rows, "row"), left.lines, left.why);

@@ -466,3 +466,31 @@ fn targets_that_are_no_regular_files_are_written_through() {
     let svg = bulge(&["curve", "dmsp-20-250", "--pressure", "1 bar", "--points", "5", "--plot", "-"]).stdout;
     assert!(svg.starts_with(b"<svg"), "{}", String::from_utf8_lossy(&svg[..60]));
 }
+
+/// What a shell and a manual know of every command; the examples of `keys` are files as commands read them.
+#[test]
+fn the_shell_is_served() {
+    let folder = Folder::new("shell");
+    for shell in ["bash", "zsh", "fish", "powershell"] {
+        has_parts(&stdout(&["completions", shell]), &["bulge", "diagnose", "--tolerance"]);
+    }
+    let man = folder.path("man");
+    stdout(&["man", &man]);
+    let pages: Vec<String> = std::fs::read_dir(&man)
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    for page in ["bulge.1", "bulge-compare.1", "bulge-air-fill.1"] {
+        assert!(pages.iter().any(|name| name == page), "{page} of {pages:?}");
+    }
+    let text = std::fs::read_to_string(Path::new(&man).join("bulge-compare.1")).unwrap();
+    has_parts(&text, &["bulge\\-compare", "rivals", "NAME"]);
+    for kind in ["braided", "pleated"] {
+        let muscle = folder.write(&format!("{kind}.toml"), &stdout(&["keys", kind]));
+        let shape = json(&["shape", &muscle, "--pressure", "2 bar", "--contraction", "10 %", "--json"]);
+        assert!(shape["force_n"].as_f64().unwrap() > 100.0);
+    }
+    let family = folder.write("sweep.toml", &stdout(&["keys", "sweep"]).replace("1e-6", "1e-2"));
+    assert!(Path::new(&family).exists());
+    refused(&["keys", "muscle"], 2, &["braided", "pleated", "joint"]);
+}

@@ -127,6 +127,52 @@ fn what_was_learnt_is_used() {
     assert_eq!(stdout(&["fit", &data, "--muscle", &muscle, "--with", with]), text);
 }
 
+/// The posterior as a picture and as draws, the covariance in the document, and a loss that sees a spike off.
+#[test]
+fn how_sure_a_fit_is_can_be_drawn_and_read() {
+    let (folder, [data, muscle]) = measured("sure");
+    let [picture, draws, learnt] = ["sure.svg", "draws.csv", "learnt.toml"].map(|name| folder.path(name));
+    let call =
+        ["fit", &data, "--muscle", &muscle, "--with", "fibre-stretch,coulomb-friction", "--out", &learnt];
+    let files = ["--posterior", &picture, "--draws", &draws, "--json"];
+    let fit = json(&[&call[..], &files].concat());
+    let parameters = fit["posterior"]["parameters"].as_array().unwrap();
+    assert_eq!(parameters.len(), 2);
+    assert_eq!(fit["fit"]["covariance"].as_array().unwrap().len(), 4);
+    assert_eq!((&fit["fit"]["loss"], &fit["fit"]["downweighted"]), (&"squares".into(), &0.into()));
+    let svg = std::fs::read_to_string(&picture).unwrap();
+    has_parts(&svg, &["<svg", "friction", "profile likelihood"]);
+    let table = std::fs::read_to_string(&draws).unwrap();
+    let mut lines = table.lines();
+    assert!(lines.next().unwrap().contains("coulomb-friction.force [N]"));
+    assert_eq!(fit["posterior"]["count"], lines.filter(|line| line.split(',').count() == 2).count());
+    // A reading a hundred newtons off.
+    let text = std::fs::read_to_string(&data).unwrap();
+    let mut rows: Vec<String> = text.lines().map(str::to_owned).collect();
+    let spiked = rows.len() / 2;
+    let (before, force) = rows[spiked].rsplit_once(',').unwrap();
+    rows[spiked] = format!("{before},{}", force.parse::<f64>().unwrap() + 100.0);
+    let spiked = folder.write("spiked.csv", &rows.join("\n"));
+    let friction = |loss: &str| {
+        let fit = json(&[
+            "fit",
+            &spiked,
+            "--muscle",
+            &muscle,
+            "--with",
+            "coulomb-friction",
+            "--loss",
+            loss,
+            "--json",
+        ]);
+        (fit["fit"]["parameters"][0]["value"].as_f64().unwrap(), fit["fit"]["downweighted"].as_u64().unwrap())
+    };
+    let [(plain, none), (robust, one)] = ["squares", "cauchy"].map(friction);
+    assert!(none == 0 && one >= 1, "{none} {one}");
+    assert!((plain - robust).abs() > 0.1, "{plain} {robust}");
+    refused(&[&call[..], &["--loss", "hubert"]].concat(), 2, &["huber"]);
+}
+
 #[test]
 fn a_users_own_effect_is_one_of_all() {
     let folder = Folder::new("own");

@@ -46,7 +46,7 @@ impl Effect for BladderElasticity {
     }
 
     fn parameters(&self) -> Vec<ParameterCard<'_>> {
-        let about = "Mooney-Rivlin constant c10, half the shear modulus at rest";
+        let about = "Mooney-Rivlin constant c10 (its key in files), half the shear modulus at rest";
         vec![
             ParameterCard::new("modulus", MEGAPASCAL, (0.0, 3.0), 0.3, about)
                 .key("c10")

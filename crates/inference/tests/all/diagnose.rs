@@ -12,6 +12,7 @@ use bulge_measurements::{Columns, Data, Trace};
 use bulge_model::{Model, Record, Wanted};
 use bulge_muscles::{Muscle, Quantity, from_toml};
 use bulge_numerics::Random;
+use rayon::prelude::*;
 use std::fmt::Write;
 
 const BRAID: &str = r#"
@@ -87,9 +88,12 @@ fn the_hidden_effect_is_named_with_its_number() {
 #[test]
 fn where_nothing_is_hidden_nothing_is_named() {
     let (mut named, mut told) = (Vec::new(), 0);
-    for seed in 0..12 {
+    let of_seed = |seed| {
         let correlated = if seed % 2 == 0 { 0.0 } else { 2.0 };
-        let found = diagnosed(&measured(&[], &protocol(2.0, correlated), seed));
+        (seed, correlated, diagnosed(&measured(&[], &protocol(2.0, correlated), seed)))
+    };
+    let all: Vec<_> = (0..12).into_par_iter().map(of_seed).collect();
+    for (seed, correlated, found) in all {
         if found.verdict != Verdict::Adequate {
             named.push(format!("{seed}: {} {:?} {}", found.says, names(&found), found.noise.law.says));
         }

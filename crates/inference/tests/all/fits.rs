@@ -585,11 +585,12 @@ fn spikes_pull_less_under_other_losses() {
     for seed in 1..=12 {
         let clean = measured(&muscle, &truth, 1.0, seed);
         let mut noise = Noise(1000 + seed);
+        let contraction = clean.contraction(0.11);
         let mut csv = String::from("time [s],sweep,pressure [Pa],contraction [-],force [N]\n");
         for row in 0..clean.len() {
             // Nine readings in a hundred lie some 40 N too high.
             let spike = if noise.uniform() < 0.09 { 40.0 + 5.0 * noise.normal() } else { 0.0 };
-            let (pressure, contraction) = (clean.pressure()[row], clean.contraction()[row]);
+            let (pressure, contraction) = (clean.pressure()[row], contraction[row]);
             let force = clean.force()[row] + spike;
             let _ = writeln!(csv, "{row},{},{pressure},{contraction},{force}", row / 30 + 1);
         }
@@ -604,13 +605,13 @@ fn spikes_pull_less_under_other_losses() {
                 worst[place] = worst[place].max((found - value).abs());
                 rounds += 1;
             }
-            let is_robust = loss != Loss::Squares;
-            assert_eq!(fit.downweighted > 5, is_robust, "{loss:?}: {}", fit.downweighted);
+            // Some spikes are set apart before the fit: by lines that stand alone.
+            assert_eq!(fit.downweighted > 0, loss != Loss::Squares, "{loss:?}: {}", fit.downweighted);
         }
     }
     let each = f64::from(rounds / 4);
     // The mean of the spikes is 3.6 N; a tenth of spikes on one side moves Huber's estimate by 0.2 sigma.
-    assert!(worst[0] > 3.0, "{worst:?}");
+    assert!(worst[0] > 2.5, "{worst:?}");
     assert!(worst[1..].iter().all(|worst| *worst < 1.2), "{worst:?}");
     assert!(f64::from(held[3]) > 0.8 * each, "{held:?} of {each}");
 }
