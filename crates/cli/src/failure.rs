@@ -1,5 +1,6 @@
 //! Errors of the command, each as one message and an exit status.
 
+use bulge_design::QuestionError;
 use bulge_design::gas::GasError;
 use bulge_design::heat::HeatError;
 use bulge_design::sensing::SensingError;
@@ -140,6 +141,17 @@ of_libraries!(
         HeatError::NotConverged(_) => 4,
     },
 );
+
+impl<E: std::error::Error + Into<Self>> From<QuestionError<E>> for Failure {
+    fn from(error: QuestionError<E>) -> Self {
+        match error {
+            QuestionError::Part { about, what } => {
+                Self::Library { says: format!("--{}: {what}", about.replace('_', "-")), status: 1 }
+            }
+            QuestionError::Answer(error) => error.into(),
+        }
+    }
+}
 
 impl From<PlotError> for Failure {
     fn from(error: PlotError) -> Self {

@@ -35,6 +35,7 @@ mod cycle;
 mod filling;
 mod muscle;
 mod orifice;
+mod question;
 mod stiffness;
 mod surroundings;
 
@@ -43,6 +44,9 @@ pub use closed::{ClosedMuscle, ClosedState};
 pub use cycle::{CycleResult, Lift, Stroke};
 pub use filling::{Energy, Filling, GasModel, History, Sample, Supply};
 pub use orifice::{Orifice, REFERENCE_DENSITY, REFERENCE_TEMPERATURE_K};
+pub use question::{
+    FillAnswer, FillQuestion, Moves, ShutAnswer, ShutQuestion, ShutState, StrokeAnswer, StrokeQuestion, Valve,
+};
 pub use stiffness::StiffnessSplit;
 pub(crate) use {
     closed::ShutGas,

@@ -11,6 +11,7 @@ mod file;
 mod four_bar;
 mod geometry;
 mod muscle;
+mod question;
 mod state;
 #[cfg(test)]
 mod tests;
@@ -19,6 +20,7 @@ pub use file::{Checks, JOINT_EXAMPLE};
 pub use four_bar::FourBar;
 pub use geometry::{Linkage, Side};
 pub use muscle::{JointMuscle, Pull};
+pub use question::{JointAnswer, JointDocument, JointGas, JointParts, JointQuestion, MapPlace};
 pub use state::{Closed, JointState, Outside, Readings, SideState};
 
 use bulge_fibre::Approach;

@@ -20,6 +20,7 @@ mod catalogue;
 mod choice;
 mod family;
 mod load;
+mod question;
 mod search;
 #[cfg(test)]
 mod tests;
@@ -28,6 +29,7 @@ pub use catalogue::fluidic_muscles;
 pub use choice::{AtPoint, Choice, Given, Infeasible};
 pub use family::{CutMuscle, Family, Limits};
 pub use load::{LoadCase, LoadPoint};
+pub use question::{Candidates, Isobars, MUSCLES, OwnLimits, SizeDocument, SizeQuestion, force_or_weight};
 pub use search::{Requirements, Sizing, Weights, size};
 
 /// Why nothing can be sized.
