@@ -24,7 +24,7 @@ pub use question::{JointAnswer, JointDocument, JointGas, JointParts, JointQuesti
 pub use state::{Closed, JointState, Outside, Readings, SideState};
 
 use bulge_fibre::Approach;
-use bulge_muscles::Pressure;
+use bulge_muscles::{Fault, Pressure};
 use bulge_numerics::root::illinois;
 use serde::Serialize;
 
@@ -95,6 +95,14 @@ pub enum JointError {
         /// The range \[rad\].
         range: [f64; 2],
     },
+}
+
+impl JointError {
+    /// The kind of the error: there is no such state.
+    #[must_use]
+    pub const fn fault(&self) -> Fault {
+        Fault::NoSolution
+    }
 }
 
 /// A joint with two muscles.

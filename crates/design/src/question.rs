@@ -1,6 +1,8 @@
 //! What the questions of a design have in common: refusals that name a part of the question, and drawings.
 
 use bulge_muscles::units::significant;
+use bulge_muscles::{Length, Pressure, Quantity, Ratio, Volume};
+use std::fmt::Display;
 
 /// Why a question has no answer.
 #[derive(Debug, thiserror::Error)]
@@ -39,4 +41,41 @@ pub struct Lines {
 /// A length \[m\] as people write it.
 pub(crate) fn millimetres(metres: f64) -> String {
     format!("{} mm", significant(1e3 * metres, 4))
+}
+
+/// "the length of the muscle is 0.5 mm" of a name with its SI unit, such as "the length of the muscle \[m\]", and a
+/// value: in the units that people write. A share is marked by \[%\] and written in per cent.
+pub(crate) fn is(what: &str, value: f64) -> String {
+    let split = what.strip_suffix(']').and_then(|what| what.rsplit_once(" ["));
+    let Some((name, unit)) = split else { return format!("{what} is {value}") };
+    match unit {
+        "m" => said::<Length>(name, value),
+        "Pa" => said::<Pressure>(name, value),
+        "%" => said::<Ratio>(name, value),
+        "m^3" => said::<Volume>(name, value),
+        "m^3/(s Pa)" => format!("{name} is {} l/(s bar)", 1e8 * value),
+        unit => format!("{name} is {value} {unit}"),
+    }
+}
+
+fn said<Q: Quantity + Display>(name: &str, value: f64) -> String {
+    format!("{name} is {}", Q::from_si(value))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::is;
+
+    #[test]
+    fn values_are_said_in_the_units_that_people_write() {
+        for (what, value, said) in [
+            ("the wall [m]", 5e-4, "the wall is 0.5 mm"),
+            ("the pressure [Pa]", -2e5, "the pressure is -2 bar"),
+            ("the share [%]", 1.2, "the share is 120 %"),
+            ("the period [s]", 0.2, "the period is 0.2 s"),
+            ("the number of cells", 3.0, "the number of cells is 3"),
+        ] {
+            assert_eq!(is(what, value), said);
+        }
+    }
 }

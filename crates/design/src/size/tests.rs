@@ -237,7 +237,7 @@ fn nonsense_is_refused() {
     assert!(refused(wish(&[], &[f64::NAN])).contains("length is NaN"));
     assert!(
         refused(Requirements { margin: -0.1, ..wish(&[], &[]) })
-            .contains("margin is -0.1: it must be 0 or more")
+            .contains("margin is -10 %: it must be 0 or more")
     );
     assert!(refused(Requirements { step_m: -1.0, ..wish(&[], &[]) }).contains("0 or more"));
     let weights = Some(Weights { pressure: 0.0, contraction: 0.0, length: 0.0 });
