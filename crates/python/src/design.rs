@@ -74,7 +74,7 @@ fn in_python(says: &str) -> String {
 /// An error of a question, about a part of it or of its answer.
 fn asked<T, E: Raised + std::error::Error>(found: Result<T, QuestionError<E>>) -> PyResult<T> {
     found.map_err(|error| match error {
-        QuestionError::Part { about, what } => input(in_python(&format!("{about}: {what}"))),
+        QuestionError::Part { about, what } => of_fault(Fault::Input, in_python(&format!("{about}: {what}"))),
         QuestionError::Answer(error) => of_fault(error.fault(), in_python(&error.to_string())),
     })
 }

@@ -95,7 +95,7 @@ def size(
     else:
         points = [(si(travel, "m", "load"), _weight(needed, "load")) for travel, needed in _pairs(load)]
     named = muscle.split(",") if isinstance(muscle, str) else [muscle] if isinstance(muscle, Muscle) else list(muscle)
-    muscles = [(one.name, one._native) if isinstance(one, Muscle) else (one.strip(), None) for one in named]
+    muscles: list[tuple[str, _bulge.Muscle | None]] = [(one.name, one._native) if isinstance(one, Muscle) else (one.strip(), None) for one in named]
     limits = [
         optional(max_pressure, "Pa", "max_pressure"), optional(start, "%", "start"), optional(max_contraction, "%", "max_contraction"),
         optional(max_length, "m", "max_length"), None if max_force is None else _weight(max_force, "max_force"),
