@@ -355,7 +355,6 @@ pub(crate) fn sense(
 /// How warm a muscle gets with each of some pipes (length and inner diameter); see `bulge.heat`. `tube` is
 /// length, diameter, wall and port, `times` are period and ramp.
 #[pyfunction]
-#[expect(clippy::too_many_arguments, reason = "called by the Python part alone")]
 pub(crate) fn heat(
     py: Python<'_>,
     tube: [f64; 4],
@@ -426,8 +425,7 @@ fn states(
 ) -> PyResult<Vec<Row>> {
     let mut rows = Vec::new();
     let share = |done: usize| done as f64 / case.states().max(1) as f64;
-    loop {
-        let Some(next) = run.advance(|_, _| watch.look()) else { break };
+    while let Some(next) = run.advance(|_, _| watch.look()) {
         let (row, state, fields) = match next {
             Ok(found) => found,
             Err(error) => {

@@ -106,7 +106,7 @@ impl ShutAnswer {
             let given = Given::Contraction(at.state.contraction);
             let found = muscle
                 .solve(Pressure::pa(pressure_pa), given, Approach::Auto)
-                .map_err(|error| GasError::Muscle { pressure_pa, error: Box::new(error.into()) })?;
+                .map_err(|error| GasError::Muscle { pressure_pa, error: Box::new(error) })?;
             open.push([percent(at), found.force_n]);
         }
         let lines = vec![("valve open".to_owned(), open), ("valve shut".to_owned(), shut)];

@@ -354,3 +354,47 @@ impl Joint {
         Ok(Lines { title, axes: ["angle [deg]", "torque [N m]"], lines })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_asked_follows_from_what_is_known() {
+        let both = Some(vec![2e5, 1.5e5]);
+        let rest = JointParts { pressures_pa: both.clone(), torque_nm: Some(3.0), ..JointParts::default() };
+        let expected = JointQuestion::Rest { pressures_pa: [2e5, 1.5e5], torque_nm: 3.0 };
+        assert_eq!(rest.question().unwrap(), expected);
+        assert_eq!(JointParts::default().question().unwrap(), JointQuestion::Map { torque_nm: 0.0 });
+        let shut = JointParts { closed: Some(JointGas::Adiabatic), ..rest.clone() };
+        assert!(matches!(shut.question().unwrap(), JointQuestion::Shut { dead_volume_m3: 0.0, .. }));
+        let held = JointParts { angle_rad: Some(0.1), torque_nm: None, ..rest.clone() };
+        assert!(matches!(held.question().unwrap(), JointQuestion::Held { .. }));
+    }
+
+    #[test]
+    fn parts_that_would_be_left_unheard_are_refused() {
+        let pressures_pa = Some(vec![2e5, 1.5e5]);
+        let some = JointParts { pressures_pa: pressures_pa.clone(), ..JointParts::default() };
+        for (parts, says) in [
+            (JointParts { angle_rad: Some(0.1), ..JointParts::default() }, "angle: an angle alone"),
+            (JointParts { pressures_pa: Some(vec![2e5]), ..JointParts::default() }, "pressure: 1 pressures"),
+            (JointParts { pressures_pa: Some(vec![2e5, 0.0]), ..JointParts::default() }, "pressure: both"),
+            (JointParts { stiffness: Some(1.0), ..JointParts::default() }, "stiffness: it is wanted at"),
+            (JointParts { closed: Some(JointGas::Isothermal), ..some.clone() }, "closed: shut valves"),
+            (JointParts { dead_volume_m3: Some(1e-5), ..some.clone() }, "dead_volume: it counts"),
+            (JointParts { readings: [None, None, Some(1.0)], ..some.clone() }, "force_sd: it counts"),
+            (
+                JointParts { readings: [Some(-1.0), None, None], angle_rad: Some(0.1), ..some.clone() },
+                "pressure_sd: a standard deviation is 0 or more",
+            ),
+            (
+                JointParts { torque_nm: Some(1.0), angle_rad: Some(0.1), ..some.clone() },
+                "torque: pressures and an angle give",
+            ),
+        ] {
+            let message = parts.question().unwrap_err().to_string();
+            assert!(message.starts_with(says), "{message}");
+        }
+    }
+}

@@ -134,12 +134,11 @@ impl Candidates {
     /// The law or its numbers don't suit the muscle, or the limits are invalid.
     pub fn add(&mut self, name: &str, muscle: &Muscle, known: Vec<Known>) -> Result<(), Refused> {
         let limits = Limits::of(muscle.kind());
-        let family = match self.law {
-            Some(law) => self.by_law(name, muscle, law, limits)?,
-            None => {
-                let family = Family::of_muscle(muscle, known, limits)?;
-                if muscle.is_pleated() { family.similar() } else { family }
-            }
+        let family = if let Some(law) = self.law {
+            self.by_law(name, muscle, law, limits)?
+        } else {
+            let family = Family::of_muscle(muscle, known, limits)?;
+            if muscle.is_pleated() { family.similar() } else { family }
         };
         self.push(name, family)
     }
