@@ -43,8 +43,8 @@ pub(crate) fn millimetres(metres: f64) -> String {
     format!("{} mm", significant(1e3 * metres, 4))
 }
 
-/// "the length of the muscle is 0.5 mm" of a name with its SI unit, such as "the length of the muscle \[m\]", and a
-/// value: in the units that people write. A share is marked by \[%\] and written in per cent.
+/// A name with its SI unit in brackets, such as "the length of the muscle \[m\]", and a value as a statement in
+/// the units that people write: "the length of the muscle is 0.5 mm". A share is marked by \[%\].
 pub(crate) fn is(what: &str, value: f64) -> String {
     let split = what.strip_suffix(']').and_then(|what| what.rsplit_once(" ["));
     let Some((name, unit)) = split else { return format!("{what} is {value}") };

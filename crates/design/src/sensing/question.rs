@@ -1,5 +1,5 @@
-//! The question of a sensor: a winding, a range of contractions, and the noise of the reading. Its answer is a
-//! JSON document.
+//! The question of a sensor: a winding, a range of contractions, and the noise of the reading. Its answer is
+//! a JSON document.
 
 use bulge_model::MuscleWithEffects;
 use bulge_muscles::Pressure;
