@@ -6,7 +6,10 @@
 
 Force of the second-generation PPAM at random pairs of contraction and slenderness: from Python, from Rust with the same pairs, and from SciPy in
 three ways that a user would write (the elliptic equations by a root finder point by point; the same by Newton's method on whole arrays; shooting on the
-meridian ODE). All answers are compared with each other. Also the time of `import bulge`.
+meridian ODE). All answers are compared with each other. Also the time of `import bulge`, and that of a lookup in a table at a single point, which
+without the example is measured alone:
+
+    python crates/python/measure.py
 """
 
 import argparse
@@ -14,6 +17,7 @@ import subprocess
 import sys
 import tempfile
 import time
+import timeit
 from pathlib import Path
 
 import numpy as np
@@ -30,11 +34,14 @@ FEW, FEWEST = 2000, 40
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("pairs", type=Path, help="the Rust example `pairs`")
+    parser.add_argument("pairs", type=Path, nargs="?", help="the Rust example `pairs`")
     parser.add_argument("--points", type=int, default=1_000_000)
     parser.add_argument("--runs", type=int, default=7, help="of Python and Rust, in turn")
     parser.add_argument("--wheel", type=Path)
     arguments = parser.parse_args()
+    _table_lookups()
+    if arguments.pairs is None:
+        return
     generator = np.random.default_rng(1)
     contraction = generator.uniform(0.02, 0.30, arguments.points)
     slenderness = generator.uniform(4.0, 20.0, arguments.points)
@@ -50,6 +57,37 @@ def main():
     print(f"\n  import bulge (with numpy): {1e3 * np.median(imports):.0f} ms, of which numpy {1e3 * np.median([_import_seconds('numpy') for _ in range(9)]):.0f} ms")
     if arguments.wheel:
         print(f"  wheel: {arguments.wheel.stat().st_size / 1e6:.1f} MB")
+
+
+#: A table of force and volume over two axes.
+TABLE = """
+muscle = "ppam-2-r16"
+outputs = ["force_f", "volume_v"]
+[axes.contraction]
+range = "0.5 %..limit"
+[axes.slenderness]
+range = "5..9"
+[table]
+tolerance = 1e-4
+gradient = 1e-2
+max_size = "64 KiB"
+checks = 100000
+"""
+
+
+def _table_lookups():
+    """Microseconds of a lookup at one point, the least of fifty runs."""
+    table = bulge.Sweep(TABLE).table()
+    many = {"contraction": np.full(100_000, 0.2), "slenderness": 6.875}
+    asks = [
+        ("value at a point", lambda: table(contraction=0.2, slenderness=6.875), 1000, 1),
+        ("gradient at a point", lambda: table.gradient(contraction=0.2, slenderness=6.875), 1000, 1),
+        ("value in an array of 100000", lambda: table(**many), 1, 100_000),
+    ]
+    print(f"table of {len(table.to_bytes())} bytes\n")
+    for name, ask, number, points in asks:
+        print(f"  {name:<46} {1e6 * min(timeit.repeat(ask, number=number, repeat=50)) / number / points:12.3f} us")
+    print()
 
 
 def _side_by_side(muscle, contraction, slenderness, arguments):

@@ -1,15 +1,14 @@
 //! `bulge air`: the air in a muscle, shut in, flowing through a valve, and used in a cycle.
 
+use bulge_design::Lines;
 use bulge_design::gas::{
-    AMBIENT_TEMPERATURE_K, Chamber, ClosedMuscle, ClosedState, CycleResult, Filling, GasModel, History, Lift,
-    Load, Orifice, StiffnessSplit, Stroke, Supply,
+    CycleResult, FillQuestion, History, Moves, ShutAnswer, ShutQuestion, StrokeQuestion, Valve,
 };
 use bulge_model::MuscleWithEffects;
 use bulge_muscles::units::Quantity;
-use bulge_muscles::{Force, Length, Muscle, Pressure, Ratio, Volume};
+use bulge_muscles::{Force, Length, Pressure, Ratio, Volume};
 use bulge_report::lines_svg;
 use clap::{Args, Subcommand};
-use serde_json::json;
 use std::fmt::Write;
 use std::path::PathBuf;
 
@@ -22,11 +21,6 @@ use crate::text::{significant, table, with_units};
 const CONDUCTANCE: [(&str, f64); 2] = [("l/(s bar)", 1e-8), ("m^3/(s Pa)", 1.0)];
 /// Rows of the table.
 const ROWS: usize = 11;
-/// Points of the plot of a rising load.
-const RISING: u32 = 40;
-/// Output times of a filling.
-const SAMPLES: usize = 200;
-
 /// The air in a muscle: shut in, flowing through a valve, and used in a cycle.
 #[derive(Debug, Args)]
 pub(crate) struct AirCommand {
@@ -170,171 +164,132 @@ impl Common {
     }
 }
 
+/// A drawing as an SVG document.
+fn svg(drawing: &Lines) -> Result<String, Failure> {
+    Ok(lines_svg(&drawing.title, drawing.axes, &drawing.lines)?)
+}
+
 impl Shut {
     fn run(&self) -> Result<String, Failure> {
         let (name, muscle) = self.common.muscle()?;
-        let pressure = quantity::<Pressure>("--pressure", &self.pressure)?.si();
-        let contraction = quantity::<Ratio>("--contraction", &self.contraction)?.si();
-        let closed = ClosedMuscle::new(&muscle, pressure, contraction, self.exponent)?
-            .with_dead_volume(self.common.dead()?)?;
-        let [from, to] = match &self.range {
-            Some(text) => range::<Ratio>("--range", text)?,
-            None => [contraction - 0.05, contraction + 0.05],
-        };
-        let mut states: Vec<(ClosedState, StiffnessSplit)> = Vec::new();
-        for k in 0..ROWS {
-            let at = from + (to - from) * k as f64 / (ROWS - 1) as f64;
-            match closed.at_contraction(at) {
-                Ok(state) => states.push((state, closed.split(&state)?)),
-                // Contractions of the default range may lie outside the range of the muscle.
-                Err(_) if self.range.is_none() && k != ROWS / 2 => (),
-                Err(error) => return Err(error.into()),
-            }
-        }
-        let under = self.force.as_deref().map(|text| quantity::<Force>("--force", text)).transpose()?;
-        let under = under.map(|force| closed.under_force(force.si())).transpose()?;
-        let wrote = files::wrote(self.plot.as_deref(), || compared(&name, &muscle, pressure, &states))?;
+        let question = self.question()?;
+        let found = question.answer(&muscle)?;
+        let wrote =
+            files::wrote(self.plot.as_deref(), || svg(&found.drawing(&muscle, question.pressure_pa)?))?;
         if self.common.json.wanted {
-            let states: Vec<_> =
-                states.iter().map(|(state, split)| json!({ "state": state, "stiffness": split })).collect();
-            let document = json!({
-                "schema": "bulge.air/1", "muscle": name, "mass_kg": closed.mass_kg(), "exponent": self.exponent,
-                "states": states, "under_force": under,
-            });
-            return pretty(&document);
+            return pretty(&serde_json::to_value(&found)?);
         }
-        let mut text = format!(
-            "{name}, shut at {} % and {} bar with {} g of air, exponent {}\n\n",
-            significant(100.0 * contraction, 4),
-            significant(1e-5 * pressure, 4),
-            significant(1e3 * closed.mass_kg(), 4),
-            significant(self.exponent, 3)
-        );
-        let heading =
-            ["contraction", "pressure", "force", "volume", "stiffness", "of geometry", "of the gas"];
-        let units = ["%", "bar", "N", "ml", "N/mm", "N/mm", "N/mm"];
-        let rows = states.iter().map(|(state, split)| {
-            [
-                significant(100.0 * state.contraction, 4),
-                significant(1e-5 * state.pressure_pa, 4),
-                significant(state.force_n, 4),
-                significant(1e6 * state.response.volume_m3, 4),
-                significant(1e-3 * split.total_n_per_m, 4),
-                significant(1e-3 * split.geometry_n_per_m, 4),
-                significant(1e-3 * split.gas_n_per_m, 4),
-            ]
-        });
-        text.push_str(&with_units(heading, units, rows));
-        if let Some(state) = under {
-            let _ = writeln!(
-                text,
-                "\n  under {} N it stands at {} % and {} bar",
-                significant(state.force_n, 4),
-                significant(100.0 * state.contraction, 4),
-                significant(1e-5 * state.pressure_pa, 4)
-            );
-        }
-        Ok(text + &wrote)
+        Ok(shut(&name, &question, &found) + &wrote)
+    }
+
+    fn question(&self) -> Result<ShutQuestion, Failure> {
+        let pressure_pa = quantity::<Pressure>("--pressure", &self.pressure)?.si();
+        let contraction = quantity::<Ratio>("--contraction", &self.contraction)?.si();
+        let dead_volume_m3 = self.common.dead()?;
+        let force = self.force.as_deref().map(|text| quantity::<Force>("--force", text)).transpose()?;
+        Ok(ShutQuestion {
+            pressure_pa,
+            contraction,
+            range: self.range.as_deref().map(|text| range::<Ratio>("--range", text)).transpose()?,
+            exponent: self.exponent,
+            force_n: force.map(Quantity::si),
+            dead_volume_m3,
+        })
     }
 }
 
-/// Plot of the force with the valve shut, and at the pressure of the filling.
-fn compared(
-    title: &str,
-    muscle: &MuscleWithEffects,
-    pressure: f64,
-    states: &[(ClosedState, StiffnessSplit)],
-) -> Result<String, Failure> {
-    let shut = states.iter().map(|(state, _)| [100.0 * state.contraction, state.force_n]).collect();
-    let mut open = Vec::new();
-    for (state, _) in states {
-        let given = bulge_fibre::Given::Contraction(state.contraction);
-        let found = muscle.solve(Pressure::pa(pressure), given, bulge_fibre::Approach::Auto)?;
-        open.push([100.0 * state.contraction, found.force_n]);
+fn shut(name: &str, question: &ShutQuestion, found: &ShutAnswer) -> String {
+    let mut text = format!(
+        "{name}, shut at {} % and {} bar with {} g of air, exponent {}\n\n",
+        significant(100.0 * question.contraction, 4),
+        significant(1e-5 * question.pressure_pa, 4),
+        significant(1e3 * found.mass_kg, 4),
+        significant(question.exponent, 3)
+    );
+    let heading = ["contraction", "pressure", "force", "volume", "stiffness", "of geometry", "of the gas"];
+    let units = ["%", "bar", "N", "ml", "N/mm", "N/mm", "N/mm"];
+    let rows = found.states.iter().map(|at| {
+        let (state, split) = (&at.state, &at.stiffness);
+        [
+            significant(100.0 * state.contraction, 4),
+            significant(1e-5 * state.pressure_pa, 4),
+            significant(state.force_n, 4),
+            significant(1e6 * state.response.volume_m3, 4),
+            significant(1e-3 * split.total_n_per_m, 4),
+            significant(1e-3 * split.geometry_n_per_m, 4),
+            significant(1e-3 * split.gas_n_per_m, 4),
+        ]
+    });
+    text.push_str(&with_units(heading, units, rows));
+    if let Some(state) = &found.under_force {
+        let _ = writeln!(
+            text,
+            "\n  under {} N it stands at {} % and {} bar",
+            significant(state.force_n, 4),
+            significant(100.0 * state.contraction, 4),
+            significant(1e-5 * state.pressure_pa, 4)
+        );
     }
-    let lines = [("valve open".to_owned(), open), ("valve shut".to_owned(), shut)];
-    Ok(lines_svg(title, ["contraction [%]", "force [N]"], &lines)?)
+    text
 }
 
 impl Fill {
     fn run(&self) -> Result<String, Failure> {
         let (name, muscle) = self.common.muscle()?;
-        let history = self.filling(&muscle)?.run()?;
+        let question = self.question()?;
+        let found = question.answer(&muscle)?;
         let wanted = [self.csv.as_deref(), self.plot.as_deref()];
-        let wrote = files::wrote_both(wanted, || csv(&history), || drawn(&name, &history))?;
+        let wrote = files::wrote_both(wanted, || csv(&found.filling), || svg(&found.drawing()))?;
         if self.common.json.wanted {
-            let document = json!({ "schema": "bulge.filling/1", "muscle": name, "filling": history });
-            return pretty(&document);
+            return pretty(&serde_json::to_value(&found)?);
         }
-        let mut text = told(&name, &history);
-        if let (Some(load), Some(last)) = (&self.load, history.samples.last()) {
-            let load = quantity::<Force>("--load", load)?.si();
-            if last.force_n < (1.0 - 1e-6) * load && last.pressure_pa > 0.0 {
-                let _ = writeln!(
-                    text,
-                    "  the load isn't lifted: on its support the muscle pulls {} N in the end",
-                    significant(last.force_n, 4)
-                );
-            }
+        let mut text = told(&name, &found.filling);
+        if let (Moves::Lifts { force_n: load, .. }, Some(last)) =
+            (question.moves, found.filling.samples.last())
+            && last.force_n < (1.0 - 1e-6) * load
+            && last.pressure_pa > 0.0
+        {
+            let _ = writeln!(
+                text,
+                "  the load isn't lifted: on its support the muscle pulls {} N in the end",
+                significant(last.force_n, 4)
+            );
         }
         Ok(text + &wrote)
     }
 
-    /// A hole, which must fit into the end of the muscle.
-    fn hole(muscle: &Muscle, text: &str) -> Result<Orifice, Failure> {
-        let diameter = quantity::<Length>("--hole", text)?.si();
-        let most = 2.0 * muscle.end_radius().si();
-        if diameter > most {
-            let what = format!(
-                "a hole of {} mm is wider than the end of {}, {} mm: give its diameter, such as \"2 mm\"",
-                significant(1e3 * diameter, 4),
-                muscle.name(),
-                significant(1e3 * most, 4)
-            );
-            return Err(Failure::Value { option: "--hole", what });
-        }
-        Ok(Orifice::hole(diameter)?)
-    }
-
-    fn filling<'a>(&self, muscle: &'a MuscleWithEffects) -> Result<Filling<'a>, Failure> {
-        let pressure_pa = quantity::<Pressure>("--supply", &self.supply)?.si();
-        let temperature_k = AMBIENT_TEMPERATURE_K;
+    fn question(&self) -> Result<FillQuestion, Failure> {
+        let supply_pa = quantity::<Pressure>("--supply", &self.supply)?.si();
         let vessel = self.vessel.as_deref().map(|text| quantity::<Volume>("--vessel", text)).transpose()?;
-        let supply = match vessel {
-            Some(volume) => Supply::Vessel { pressure_pa, temperature_k, volume_m3: volume.si() },
-            None => Supply::Constant { pressure_pa, temperature_k },
-        };
-        let orifice = match (&self.hole, &self.conductance) {
-            (Some(hole), _) => Self::hole(muscle.muscle(), hole)?,
-            (None, Some(text)) => {
-                Orifice::new(in_unit("--conductance", text, &CONDUCTANCE)?, self.critical_ratio)?
-            }
+        let valve = match (&self.hole, &self.conductance) {
+            (Some(hole), _) => Valve::Hole(quantity::<Length>("--hole", hole)?.si()),
+            (None, Some(text)) => Valve::Sheet {
+                conductance: in_unit("--conductance", text, &CONDUCTANCE)?,
+                critical_ratio: self.critical_ratio,
+            },
             (None, None) => {
                 return Err(missing("--conductance", "a valve is needed: give --conductance or --hole"));
             }
         };
-        let load = match (&self.held, &self.load) {
-            (Some(held), _) => Load::Held(quantity::<Ratio>("--held", held)?.si()),
-            (None, Some(load)) => Load::Force(quantity::<Force>("--load", load)?.si()),
+        let moves = match (&self.held, &self.load) {
+            (Some(held), _) => Moves::Held(quantity::<Ratio>("--held", held)?.si()),
+            (None, Some(load)) => {
+                let force_n = quantity::<Force>("--load", load)?.si();
+                let support =
+                    self.support.as_deref().map(|text| quantity::<Ratio>("--support", text)).transpose()?;
+                Moves::Lifts { force_n, support: support.map(Quantity::si) }
+            }
             (None, None) => return Err(missing("--load", "a load is needed: give --load or --held")),
         };
-        let mut chamber = Chamber::muscle(muscle, load)?.with_dead_volume(self.common.dead()?)?;
-        let support = self.support.as_deref().map(|text| quantity::<Ratio>("--support", text)).transpose()?;
-        // A braid without pressure carries nothing: its load stands on a support where the muscle has its
-        // rest length.
-        let stands = !muscle.muscle().is_pleated() && self.load.is_some();
-        if let Some(support) = support.map(Quantity::si).or(stands.then_some(0.0)) {
-            chamber = chamber.on_support(support)?;
-        }
-        Ok(Filling {
-            chamber,
-            orifice,
-            supply,
-            gas: if self.adiabatic { GasModel::adiabatic() } else { GasModel::Isothermal },
-            start_pressure_pa: quantity::<Pressure>("--start", &self.start)?.si(),
-            start_temperature_k: temperature_k,
+        Ok(FillQuestion {
+            supply_pa,
+            vessel_m3: vessel.map(Quantity::si),
+            start_pa: quantity::<Pressure>("--start", &self.start)?.si(),
+            valve,
+            moves,
+            is_adiabatic: self.adiabatic,
             longest_s: in_unit("--longest", &self.longest, &TIME)?,
-            samples: SAMPLES,
+            dead_volume_m3: self.common.dead()?,
         })
     }
 }
@@ -410,46 +365,28 @@ fn csv(history: &History) -> String {
     text
 }
 
-/// Plot of the pressure in bar and the contraction in 10 % on one axis.
-fn drawn(title: &str, history: &History) -> Result<String, Failure> {
-    let line = |name: &str, read: &dyn Fn(&bulge_design::gas::Sample) -> f64| {
-        (name.to_owned(), history.samples.iter().map(|at| [at.time_s, read(at)]).collect::<Vec<_>>())
-    };
-    let lines = [
-        line("contraction [10 %]", &|at| 10.0 * at.contraction),
-        line("pressure [bar]", &|at| 1e-5 * at.pressure_pa),
-    ];
-    Ok(lines_svg(title, ["time [s]", "pressure [bar], contraction [10 %]"], &lines)?)
-}
-
 impl Cycle {
     fn run(&self) -> Result<String, Failure> {
         let (name, muscle) = self.common.muscle()?;
-        let load = quantity::<Force>("--load", &self.load)?.si();
-        let lift = match &self.pressure {
-            Some(text) => Lift::Isobaric { pressure_pa: quantity::<Pressure>("--pressure", text)?.si() },
-            None => Lift::PressureRise,
-        };
-        let supply = quantity::<Pressure>("--supply", &self.supply)?.si();
-        let way = range::<Ratio>("--stroke", &self.stroke)?;
-        let mut stroke = Stroke::new(&muscle, load, way, lift, supply);
-        stroke.dead_volume_m3 = self.common.dead()?;
-        let found = stroke.cycle()?;
-        let wrote = files::wrote(self.plot.as_deref(), || rising(&name, &stroke, &found))?;
-        let document = json!({ "schema": "bulge.stroke/1", "muscle": name, "cycle": found });
-        self.common.json.or(&document, || spent(&name, load, &found) + &wrote)
+        let question = self.question()?;
+        let found = question.answer(&muscle)?;
+        let wrote = files::wrote(self.plot.as_deref(), || svg(&question.drawing(&muscle, &found)?))?;
+        let text = || spent(&name, question.load_n, &found.cycle) + &wrote;
+        self.common.json.or(&serde_json::to_value(&found)?, text)
     }
-}
 
-/// Plot of the pressure as the load rises: the pressures at the end of strokes of increasing length.
-fn rising(title: &str, stroke: &Stroke<'_>, found: &CycleResult) -> Result<String, Failure> {
-    let mut points = vec![[100.0 * stroke.from, 1e-5 * found.start_pressure_pa]];
-    for k in 1..=RISING {
-        let to = stroke.from + (stroke.to - stroke.from) * f64::from(k) / f64::from(RISING);
-        points.push([100.0 * to, 1e-5 * Stroke { to, ..*stroke }.cycle()?.end_pressure_pa]);
+    fn question(&self) -> Result<StrokeQuestion, Failure> {
+        let load_n = quantity::<Force>("--load", &self.load)?.si();
+        let pressure =
+            self.pressure.as_deref().map(|text| quantity::<Pressure>("--pressure", text)).transpose()?;
+        Ok(StrokeQuestion {
+            load_n,
+            pressure_pa: pressure.map(Quantity::si),
+            supply_pa: quantity::<Pressure>("--supply", &self.supply)?.si(),
+            stroke: range::<Ratio>("--stroke", &self.stroke)?,
+            dead_volume_m3: self.common.dead()?,
+        })
     }
-    let lines = [("with the load".to_owned(), points)];
-    Ok(lines_svg(title, ["contraction [%]", "pressure [bar]"], &lines)?)
 }
 
 fn spent(name: &str, load: f64, found: &CycleResult) -> String {

@@ -118,23 +118,8 @@ pub(crate) fn quantity<Q: Quantity>(option: &'static str, text: &str) -> Result<
 }
 
 /// A number with one of the given units, converted to the first one.
-pub(crate) fn in_unit(option: &'static str, text: &str, units: &[(&str, f64)]) -> Result<f64, Failure> {
-    let text = text.trim();
-    let unit = text.trim_start_matches(|c: char| c.is_ascii_digit() || "+-.eE".contains(c));
-    let (number, unit) = (&text[..text.len() - unit.len()], unit.trim());
-    let factor = units.iter().find(|(name, _)| *name == unit).map(|(_, factor)| *factor);
-    match (number.trim().parse::<f64>(), factor) {
-        (Ok(number), Some(factor)) if number.is_finite() => Ok(number * factor),
-        _ => {
-            let known: Vec<&str> = units.iter().map(|(name, _)| *name).collect();
-            let what = format!(
-                "`{text}` can't be read: write such as \"2 {}\" (known: {})",
-                known[0],
-                known.join(", ")
-            );
-            Err(Failure::Value { option, what })
-        }
-    }
+pub(crate) fn in_unit(option: &'static str, text: &str, known: &[(&str, f64)]) -> Result<f64, Failure> {
+    units::in_one_of(text, known).map_err(|what| Failure::Value { option, what })
 }
 
 /// A list of quantities.

@@ -1,5 +1,6 @@
 //! Errors of the command, each as one message and an exit status.
 
+use bulge_design::QuestionError;
 use bulge_design::gas::GasError;
 use bulge_design::heat::HeatError;
 use bulge_design::sensing::SensingError;
@@ -8,10 +9,10 @@ use bulge_effects::CatalogueError;
 use bulge_fibre::FibreError;
 use bulge_inference::{HideError, InferenceError, Stated, StatementError};
 use bulge_measurements::{MeasurementError, WrittenError};
-use bulge_membrane::MembraneError;
 use bulge_membrane::case::CaseError;
 use bulge_model::{ModelError, MuscleWithEffectsError};
 use bulge_muscles::{Fault, FileError, PresetError};
+use bulge_report::cloth::ClothError;
 use bulge_report::{LearningError, PlotError};
 use bulge_sweep::export::ExportError;
 use bulge_sweep::{BuildError, SweepError, TabulateError};
@@ -71,17 +72,7 @@ impl Failure {
             Self::Library { status, .. } => *status,
             Self::NotConverged(_) => 4,
             Self::Outside(_) | Self::NoneFound { .. } => 3,
-            Self::Membrane { source, .. } => match source.as_ref() {
-                CaseError::State {
-                    source:
-                        MembraneError::LimitPoint { .. }
-                        | MembraneError::Collapsed { .. }
-                        | MembraneError::Overstretched { .. },
-                    ..
-                } => 3,
-                CaseError::Structure(_) | CaseError::State { source: MembraneError::NoGas { .. }, .. } => 1,
-                CaseError::State { .. } => 4,
-            },
+            Self::Membrane { source, .. } => status(source.fault()),
             _ => 1,
         }
     }
@@ -133,31 +124,27 @@ of_libraries!(
     ModelError: |error| status(error.fault()),
     MuscleWithEffectsError: |error| status(error.fault()),
     LearningError: |error| status(error.fault()),
-    SizeError: |error| if matches!(error, SizeError::Muscle { .. }) { 3 } else { 1 },
+    ClothError: |error| status(error.fault()),
+    SizeError: |error| status(error.fault()),
     TabulateError: |error| match error {
         TabulateError::Build(BuildError::NoValue(_)) => 3,
         _ => 1,
     },
-    SensingError: |error| match error {
-        SensingError::Equilibrium { .. }
-        | SensingError::Overstrained { .. }
-        | SensingError::NotMonotone { .. }
-        | SensingError::NoChange
-        | SensingError::NoPlace { .. } => 3,
-        SensingError::Input(_) => 1,
-    },
-    GasError: |error| match error {
-        GasError::Number { .. } => 1,
-        GasError::Stopped { .. } => 4,
-        GasError::Muscle { error, .. } => status(error.fault()),
-        GasError::NoBalance(_) => 3,
-    },
-    HeatError: |error| match error {
-        HeatError::Invalid { .. } => 1,
-        HeatError::Choked { .. } => 3,
-        HeatError::NotConverged(_) => 4,
-    },
+    SensingError: |error| status(error.fault()),
+    GasError: |error| status(error.fault()),
+    HeatError: |error| status(error.fault()),
 );
+
+impl<E: std::error::Error + Into<Self>> From<QuestionError<E>> for Failure {
+    fn from(error: QuestionError<E>) -> Self {
+        match error {
+            QuestionError::Part { about, what } => {
+                Self::Library { says: format!("--{}: {what}", about.replace('_', "-")), status: 1 }
+            }
+            QuestionError::Answer(error) => error.into(),
+        }
+    }
+}
 
 impl From<PlotError> for Failure {
     fn from(error: PlotError) -> Self {

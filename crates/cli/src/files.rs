@@ -94,19 +94,6 @@ pub(crate) fn folder(path: &Path) -> Result<(), Failure> {
     fs::create_dir_all(path).map_err(|source| Failure::Output { path: path.to_path_buf(), source })
 }
 
-/// Removes files of an earlier run if they exist.
-pub(crate) fn remove(paths: &[PathBuf]) -> Result<(), Failure> {
-    for path in paths {
-        match fs::remove_file(path) {
-            Err(source) if source.kind() != io::ErrorKind::NotFound => {
-                return Err(Failure::Output { path: path.clone(), source });
-            }
-            _ => {}
-        }
-    }
-    Ok(())
-}
-
 /// A file that a command reads or writes, with its name on the command line.
 pub(crate) type Named<'a> = (&'static str, &'a Path);
 

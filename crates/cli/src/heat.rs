@@ -1,12 +1,11 @@
 //! `bulge heat`: temperature of a muscle under repeated charging and discharging, with and without an inner
 //! pipe.
 
-use bulge_design::heat::{HeatProblem, HeatSolution, Pipe, trend};
+use bulge_design::heat::{HeatAnswer, HeatProblem, HeatQuestion, Pipe, pipe_name};
 use bulge_muscles::units::Quantity;
 use bulge_muscles::{Length, Pressure, Ratio};
 use bulge_report::lines_svg;
 use clap::Args;
-use serde_json::json;
 use std::fmt::Write;
 use std::path::PathBuf;
 
@@ -14,9 +13,6 @@ use crate::arguments::{Json, TIME, in_unit, quantity, range};
 use crate::failure::Failure;
 use crate::files;
 use crate::text::{significant, with_units};
-
-/// Most pipes in one call.
-const MOST_PIPES: usize = 100;
 
 /// How warm a muscle gets that is charged and discharged again and again, with and without an inner pipe.
 ///
@@ -67,26 +63,15 @@ pub(crate) struct HeatCommand {
 
 impl HeatCommand {
     pub(crate) fn run(&self) -> Result<String, Failure> {
-        let (problem, pipes) = (self.problem()?, self.pipes()?);
-        let solved = trend(&problem, &pipes);
-        if let (Some(Err(error)), true) = (solved.first(), solved.iter().all(Result::is_err)) {
-            return Err(error.clone().into());
-        }
+        let found = HeatQuestion { problem: self.problem()?, pipes: self.pipes()? }.answer()?;
         let mut wrote = String::new();
         if let Some(path) = &self.plot {
-            files::write(path, drawn(&problem, &pipes, &solved)?.as_bytes())?;
+            let drawing = found.drawing();
+            let svg = lines_svg(&drawing.title, drawing.axes, &drawing.lines)?;
+            files::write(path, svg.as_bytes())?;
             let _ = writeln!(wrote, "\n  wrote {}", path.display());
         }
-        let cases = pipes.iter().zip(&solved).map(|(pipe, solved)| match solved {
-            Ok(solution) => json!({ "pipe": pipe, "solution": solution }),
-            Err(error) => json!({ "pipe": pipe, "why": error.to_string() }),
-        });
-        let document = json!({
-            "schema": "bulge.heat/1",
-            "problem": problem,
-            "cases": cases.collect::<Vec<_>>(),
-        });
-        self.json.or(&document, || text(&problem, &pipes, &solved) + &wrote)
+        self.json.or(&serde_json::to_value(found.document())?, || text(&found) + &wrote)
     }
 
     fn problem(&self) -> Result<HeatProblem, Failure> {
@@ -106,13 +91,9 @@ impl HeatCommand {
     }
 
     fn pipes(&self) -> Result<Vec<Option<Pipe>>, Failure> {
-        let words: Vec<&str> = self.pipe.split(',').map(str::trim).collect();
-        if words.len() > MOST_PIPES {
-            let what = format!("{} pipes: at most {MOST_PIPES} in one call", words.len());
-            return Err(Failure::Value { option: "--pipe", what });
-        }
-        words
-            .into_iter()
+        self.pipe
+            .split(',')
+            .map(str::trim)
             .map(|word| {
                 if word == "none" {
                     return Ok(None);
@@ -128,20 +109,8 @@ impl HeatCommand {
     }
 }
 
-type Solved = Result<HeatSolution, bulge_design::heat::HeatError>;
-
-fn name(pipe: Option<&Pipe>) -> String {
-    pipe.map_or("none".to_owned(), |pipe| {
-        format!(
-            "{} x {} mm",
-            significant(1e3 * pipe.length_m, 3),
-            significant(1e3 * pipe.inner_diameter_m, 2)
-        )
-    })
-}
-
-fn text(problem: &HeatProblem, pipes: &[Option<Pipe>], solved: &[Solved]) -> String {
-    let (tube, drive) = (problem.tube, problem.drive);
+fn text(found: &HeatAnswer) -> String {
+    let (tube, drive) = (found.question.problem.tube, found.question.problem.drive);
     let mut text = format!(
         "a muscle of {} mm, {} mm wide, charged from {} to {} bar every {} s; mean wall temperatures above the ambient\n\n",
         significant(1e3 * tube.length_m, 4),
@@ -154,8 +123,8 @@ fn text(problem: &HeatProblem, pipes: &[Option<Pipe>], solved: &[Solved]) -> Str
     let units = ["", "K", "K", "K", "mm", "s", "times", "J"];
     let mut rows = Vec::new();
     let mut failed = String::new();
-    for (pipe, solved) in pipes.iter().zip(solved) {
-        let name = name(pipe.as_ref());
+    for (pipe, solved) in found.cases() {
+        let name = pipe_name(pipe);
         match solved {
             Ok(found) => rows.push([
                 name,
@@ -178,17 +147,4 @@ fn text(problem: &HeatProblem, pipes: &[Option<Pipe>], solved: &[Solved]) -> Str
         "\n  First order in the cells: at 40 the end without pipe is some 10 % low, and the ageing there by a factor of two; --cells 160 takes seconds a pipe.\n  ageing: how many times faster the rubber ages at its worst place than at the ambient temperature; no life.\n  Compare designs with this; absolute temperatures hold only after a measurement has fixed the coefficients.\n",
     );
     text
-}
-
-fn drawn(problem: &HeatProblem, pipes: &[Option<Pipe>], solved: &[Solved]) -> Result<String, Failure> {
-    let ambient = problem.surroundings.ambient_k;
-    let mut lines = Vec::new();
-    for (pipe, found) in
-        pipes.iter().zip(solved).filter_map(|(pipe, found)| Some((pipe, found.as_ref().ok()?)))
-    {
-        let places = found.muscle.x_m.iter().zip(&found.muscle.wall_mean_k);
-        let points = places.map(|(x, wall)| [1e3 * x, wall - ambient]).collect();
-        lines.push((name(pipe.as_ref()), points));
-    }
-    Ok(lines_svg("wall above the ambient, by inner pipe", ["from the inlet [mm]", "rise [K]"], &lines)?)
 }

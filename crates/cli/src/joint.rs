@@ -1,13 +1,15 @@
 //! `bulge joint`: two antagonistic muscles on a joint: its equilibrium angle, its stiffness, and the
 //! pressures it needs.
 
-use bulge_design::joint::{Checks, JOINT_EXAMPLE, Joint, JointError, JointState, Outside, Readings};
+use bulge_design::joint::{
+    Checks, JOINT_EXAMPLE, Joint, JointAnswer, JointError, JointGas, JointParts, JointState, MapPlace,
+    Outside,
+};
 use bulge_muscles::units::Quantity;
 use bulge_muscles::{Angle, Force, Pressure, Volume};
 use bulge_report::lines_svg;
 use bulge_sweep::JointTable;
 use clap::{Args, ValueEnum};
-use serde_json::{Value, json};
 use std::fmt::Write;
 use std::path::PathBuf;
 
@@ -15,11 +17,6 @@ use crate::arguments::{Json, in_unit, list, quantity};
 use crate::failure::Failure;
 use crate::files;
 use crate::text::{shown, significant, table, with_units};
-
-/// Number of pressures of each muscle in the map.
-const GRID: usize = 5;
-/// Points of a plotted line.
-const DRAWN: usize = 81;
 
 /// What the gas of a closed muscle does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -79,118 +76,68 @@ impl JointCommand {
         let is_point = self.plot.is_none() && (self.pressure.is_some() || self.angle.is_some());
         let checks = if is_point { Checks::Linkage } else { Checks::Everywhere };
         let joint = JointTable::read(&self.joint, checks)?.joint;
-        let pressures = self.pressures()?;
-        let angle = self.angle.as_deref().map(|text| quantity::<Angle>("--angle", text)).transpose()?;
-        let angle = angle.map(Quantity::si);
-        let torque = self.torque.as_deref().map_or(Ok(0.0), |text| in_unit("--torque", text, &TORQUE))?;
-        let wrong = |option, what: &str| Err(Failure::Value { option, what: what.to_owned() });
-        let (document, text) = match (pressures, angle, &self.stiffness) {
-            (Some(pressures), None, _) if self.closed.is_some() => self.shut(&joint, pressures, torque)?,
-            (Some(pressures), None, _) => {
-                let stand = joint.rest(pressures, torque)?;
-                (json!({ "stand": stand }), standing("rests", &stand, torque))
-            }
-            (Some(_), Some(_), _) if self.torque.is_some() => {
-                return wrong(
-                    "--torque",
-                    "pressures and an angle give the torque from outside: leave one of the three out",
-                );
-            }
-            (Some(pressures), Some(angle), _) => {
-                let readings = self.readings()?;
-                let (stand, outside) =
-                    (joint.stand(angle, pressures)?, joint.outside(angle, pressures, readings)?);
-                let text = standing("is held", &stand, outside.torque_nm) + &surely(&outside);
-                (json!({ "stand": stand, "outside": outside, "readings": readings }), text)
-            }
-            (None, Some(angle), Some(stiffness)) => {
-                let stiffness = in_unit("--stiffness", stiffness, &STIFFNESS)?;
-                let stand = joint.pressures_for(angle, stiffness, torque)?;
-                (json!({ "stand": stand }), standing("stands", &stand, torque))
-            }
-            (None, Some(_), None) => {
-                return wrong(
-                    "--angle",
-                    "an angle alone is no question: add --stiffness for the pressures, or --pressure for the torque that holds it there",
-                );
-            }
-            (None, None, _) => mapped(&joint, torque)?,
-        };
+        let question = self.parts()?.question()?;
+        let answer = joint.answer(&question)?;
         let mut wrote = String::new();
         if let Some(path) = &self.plot {
-            files::write(path, drawn(&joint)?.as_bytes())?;
+            let drawing = joint.drawing()?;
+            let svg = lines_svg(&drawing.title, drawing.axes, &drawing.lines)?;
+            files::write(path, svg.as_bytes())?;
             let _ = writeln!(wrote, "\n  wrote {}", path.display());
         }
-        let mut document = document;
-        document["schema"] = "bulge.joint/1".into();
-        document["name"] = joint.name.clone().into();
-        document["outside_nm"] = torque.into();
-        self.json.or(&document, || format!("{}\n\n{text}{wrote}", joint.name))
+        let document = serde_json::to_value(joint.document(&question, &answer))?;
+        let torque = question.torque_nm();
+        self.json.or(&document, || format!("{}\n\n{}{wrote}", joint.name, self.text(&joint, &answer, torque)))
     }
 
-    fn pressures(&self) -> Result<Option<[f64; 2]>, Failure> {
-        let Some(text) = &self.pressure else { return Ok(None) };
-        let pressures: Vec<Pressure> = list("--pressure", text)?;
-        let pressures: Vec<f64> = pressures.into_iter().map(Quantity::si).collect();
-        match pressures[..] {
-            [one, other] if one > 0.0 && other > 0.0 => Ok(Some([one, other])),
-            [_, _] => {
-                let what = "both muscles need a gauge pressure above 0".to_owned();
-                Err(Failure::Value { option: "--pressure", what })
-            }
-            _ => {
-                let what = format!(
-                    "{} pressures: write that of the agonist and that of the antagonist, such as \"2 bar,1.5 bar\"",
-                    pressures.len()
-                );
-                Err(Failure::Value { option: "--pressure", what })
-            }
-        }
-    }
-
-    fn readings(&self) -> Result<Readings, Failure> {
-        let readings = Readings {
-            pressure_pa: quantity::<Pressure>("--pressure-sd", &self.pressure_sd)?.si(),
-            angle_rad: quantity::<Angle>("--angle-sd", &self.angle_sd)?.si(),
-            force_n: quantity::<Force>("--force-sd", &self.force_sd)?.si(),
-        };
-        for (option, value) in [
-            ("--pressure-sd", readings.pressure_pa),
-            ("--angle-sd", readings.angle_rad),
-            ("--force-sd", readings.force_n),
-        ] {
-            if value < 0.0 {
-                return Err(Failure::Value { option, what: "a standard deviation is 0 or more".to_owned() });
-            }
-        }
-        Ok(readings)
-    }
-
-    /// The joint at rest without load, then with shut valves under load.
-    fn shut(&self, joint: &Joint, pressures: [f64; 2], torque: f64) -> Result<(Value, String), Failure> {
+    fn parts(&self) -> Result<JointParts, Failure> {
+        let pressures =
+            self.pressure.as_deref().map(|text| list::<Pressure>("--pressure", text)).transpose()?;
+        let angle = self.angle.as_deref().map(|text| quantity::<Angle>("--angle", text)).transpose()?;
+        let readings = [
+            quantity::<Pressure>("--pressure-sd", &self.pressure_sd)?.si(),
+            quantity::<Angle>("--angle-sd", &self.angle_sd)?.si(),
+            quantity::<Force>("--force-sd", &self.force_sd)?.si(),
+        ];
+        let is_held = self.pressure.is_some() && self.angle.is_some();
         let dead = self.dead_volume.as_deref().map(|text| quantity::<Volume>("--dead-volume", text));
-        let dead = dead.transpose()?.map_or(0.0, Quantity::si);
-        if dead < 0.0 {
-            let what = "a volume is 0 or more".to_owned();
-            return Err(Failure::Value { option: "--dead-volume", what });
+        let unit = |option, text: &Option<String>, units| -> Result<Option<f64>, Failure> {
+            text.as_deref().map(|text| in_unit(option, text, units)).transpose()
+        };
+        Ok(JointParts {
+            pressures_pa: pressures.map(|all| all.into_iter().map(Quantity::si).collect()),
+            angle_rad: angle.map(Quantity::si),
+            torque_nm: unit("--torque", &self.torque, &TORQUE)?,
+            stiffness: unit("--stiffness", &self.stiffness, &STIFFNESS)?,
+            closed: self.closed.map(|gas| match gas {
+                Gas::Isothermal => JointGas::Isothermal,
+                Gas::Adiabatic => JointGas::Adiabatic,
+            }),
+            dead_volume_m3: dead.transpose()?.map(Quantity::si),
+            // Their defaults count where they are asked for alone.
+            readings: readings.map(|sd| is_held.then_some(sd)),
+        })
+    }
+
+    fn text(&self, joint: &Joint, answer: &JointAnswer, torque: f64) -> String {
+        match answer {
+            JointAnswer::Shut { before, stand, shut_nm_per_rad: [stiff, after], .. } => format!(
+                "{}\n{}\n  turned by {} deg with shut valves; stiffness of the shut joint with its dead volume {} N m/rad before, {} after\n",
+                standing("rests, and the valves are shut,", before, 0.0),
+                standing("rests", stand, torque),
+                degrees(stand.angle_rad - before.angle_rad),
+                significant(*stiff, 4),
+                significant(*after, 4)
+            ),
+            JointAnswer::Held { stand, outside, .. } => {
+                standing("is held", stand, outside.torque_nm) + &surely(outside)
+            }
+            JointAnswer::Stand { stand } => {
+                let how = if self.stiffness.is_some() { "stands" } else { "rests" };
+                standing(how, stand, torque)
+            }
+            JointAnswer::Map { map } => mapped(joint, map, torque),
         }
-        let exponent = if self.closed == Some(Gas::Adiabatic) { bulge_fibre::ADIABATIC } else { 1.0 };
-        let before = joint.rest(pressures, 0.0)?;
-        let closed = joint.closed(before.angle_rad, pressures, exponent, [dead; 2])?;
-        let after = closed.rest(torque)?;
-        let stiffness = [closed.stiffness(before.angle_rad)?, closed.stiffness(after.angle_rad)?];
-        let text = format!(
-            "{}\n{}\n  turned by {} deg with shut valves; stiffness of the shut joint with its dead volume {} N m/rad before, {} after\n",
-            standing("rests, and the valves are shut,", &before, 0.0),
-            standing("rests", &after, torque),
-            degrees(after.angle_rad - before.angle_rad),
-            significant(stiffness[0], 4),
-            significant(stiffness[1], 4)
-        );
-        Ok((
-            json!({ "before": before, "stand": after, "shut_nm_per_rad": stiffness, "exponent": exponent, "dead_volume_m3": dead }),
-            text,
-        ))
     }
 }
 
@@ -261,14 +208,8 @@ fn surely(outside: &Outside) -> String {
     )
 }
 
-/// Evenly spaced pressures over the joint's range.
-fn pressures(joint: &Joint) -> Vec<f64> {
-    let [low, high] = joint.pressure;
-    (0..GRID).map(|k| low + (high - low) * k as f64 / (GRID - 1) as f64).collect()
-}
-
 /// Equilibrium angles and stiffnesses over both pressures.
-fn mapped(joint: &Joint, torque: f64) -> Result<(Value, String), Failure> {
+fn mapped(joint: &Joint, map: &[MapPlace], torque: f64) -> String {
     let [low, high] = joint.angle;
     let mut text = format!(
         "  from {} to {} deg; angle [deg] and stiffness [N m/rad] over both pressures",
@@ -279,55 +220,19 @@ fn mapped(joint: &Joint, torque: f64) -> Result<(Value, String), Failure> {
         let _ = write!(text, ", under {} N m from outside", significant(torque, 4));
     }
     text.push_str("\n\n");
-    let pressures = pressures(joint);
+    let pressures = joint.grid();
     let mut rows = vec![vec!["agonist [bar]".to_owned()]];
     rows[0].extend(pressures.iter().map(|p| format!("antagonist {} bar", bar(*p))));
-    let (mut map, mut refused) = (Vec::new(), None);
-    for one in &pressures {
-        let mut row = vec![bar(*one)];
-        for other in &pressures {
-            let at = [*one, *other];
-            match joint.rest(at, torque) {
-                Ok(stand) => {
-                    row.push(format!(
-                        "{}, {}",
-                        degrees(stand.angle_rad),
-                        significant(stand.stiffness_nm_per_rad, 3)
-                    ));
-                    map.push(json!(stand));
-                }
-                Err(error) => {
-                    row.push("-".to_owned());
-                    map.push(json!({ "pressures_pa": at, "why": error.to_string() }));
-                    refused = Some(error);
-                }
+    for (one, places) in pressures.iter().zip(map.chunks(pressures.len())) {
+        let cell = |place: &MapPlace| match place {
+            MapPlace::Rest(stand) => {
+                format!("{}, {}", degrees(stand.angle_rad), significant(stand.stiffness_nm_per_rad, 3))
             }
-        }
-        rows.push(row);
-    }
-    // No pair of pressures has an equilibrium: the last reason is reported.
-    if let (Some(error), true) = (refused, map.iter().all(|at| at.get("why").is_some())) {
-        return Err(error.into());
+            MapPlace::Refused { .. } => "-".to_owned(),
+        };
+        rows.push(std::iter::once(bar(*one)).chain(places.iter().map(cell)).collect());
     }
     text.push_str(&table(&rows));
     text.push_str("\n  -: no rest within the range of angles\n");
-    Ok((json!({ "map": map }), text))
-}
-
-/// Plot of the torque of both muscles against the angle, for equal pressures and for opposite extremes.
-fn drawn(joint: &Joint) -> Result<String, Failure> {
-    let ([low, high], all) = (joint.angle, pressures(joint));
-    let pairs = all.iter().map(|p| [*p, *p]).chain([[all[GRID - 1], all[0]], [all[0], all[GRID - 1]]]);
-    let mut lines = Vec::new();
-    for [one, other] in pairs {
-        let mut points = Vec::new();
-        for k in 0..DRAWN {
-            // Rounding must not lead out of the range.
-            let angle = (low + (high - low) * k as f64 / (DRAWN - 1) as f64).min(high);
-            points.push([angle.to_degrees(), joint.torque(angle, one, other)?]);
-        }
-        lines.push((format!("{} | {} bar", bar(one), bar(other)), points));
-    }
-    let title = format!("{}: agonist | antagonist", joint.name);
-    Ok(lines_svg(&title, ["angle [deg]", "torque [N m]"], &lines)?)
+    text
 }

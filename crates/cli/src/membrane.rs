@@ -1,21 +1,17 @@
 //! `bulge membrane`: a finite-element membrane case, state by state.
 
-use bulge_inference::{Fitting, Options};
-use bulge_measurements::Data;
+use bulge_membrane::Effort;
 use bulge_membrane::case::{CASE_EXAMPLE, Case, CaseError, CaseRun, Row};
-use bulge_membrane::{Effort, Fields, State};
-use bulge_muscles::Muscle;
-use bulge_report::Learnt;
-use bulge_vtk::{MembranePicture, MembraneSeries, VtkError, Whole, write_vtu};
+use bulge_report::cloth::{self, ClothDocument};
+use bulge_vtk::CaseFolder;
 use clap::Args;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use serde_json::json;
 use std::fmt::Write;
 use std::io::{IsTerminal, stderr, stdout};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-use crate::arguments::{self, Json, pretty};
+use crate::arguments::{Json, pretty};
 use crate::failure::Failure;
 use crate::files;
 use crate::fit;
@@ -51,13 +47,12 @@ impl MembraneCommand {
             kept,
         };
         if let Some(path) = &self.as_effect {
-            learns(&case)?;
+            cloth::muscle(&case)?;
             files::can_be_written(path)?;
         }
         let mut run = case.start().map_err(|error| refused(error, String::new()))?;
         files::folder(&self.out)?;
-        let stem = stem(&case.name);
-        let mut output = Output::new(self, &case, &stem)?;
+        let mut output = CaseFolder::new(&self.out, &case, self.whole)?;
         let bar = self.bar(case.states());
         let clock = Instant::now();
         while let Some(next) = run.advance(|_, _| bar.tick()) {
@@ -75,25 +70,33 @@ impl MembraneCommand {
                         output.take(row, &state, &fields)?;
                     }
                     output.finish(&mut run)?;
-                    return Err(refused(error, output.kept(is_rescued)));
+                    return Err(refused(error, kept(&output, is_rescued)));
                 }
             }
         }
         bar.finish_and_clear();
         output.finish(&mut run)?;
         let time = clock.elapsed();
-        let learnt = self.as_effect.as_ref().map(|path| self.learn(&case, &output, path)).transpose()?;
+        let learnt = match &self.as_effect {
+            Some(path) => {
+                let learnt = cloth::learn(&case, output.rows(), &output.forces().display().to_string())?;
+                files::write(path, learnt.model.as_bytes())?;
+                Some(learnt)
+            }
+            None => None,
+        };
         if self.json.wanted {
-            return self.document(&case, &run, &output, learnt.as_ref());
+            let effect = learnt.as_ref().map(ClothDocument::of);
+            return pretty(&serde_json::to_value(run.document(output.rows(), output.written(), effect))?);
         }
         let mut text = describe(&case, &run, &output, time);
         let _ = writeln!(
             text,
             "  wrote {} and states.csv{}",
-            output.series.path().display(),
-            if output.has_forces { ", forces.csv (for `bulge compare`, `diagnose` and `fit`)" } else { "" }
+            output.pvd().display(),
+            if output.has_forces() { ", forces.csv (for `bulge compare`, `diagnose` and `fit`)" } else { "" }
         );
-        text.extend(output.note.iter().map(|note| format!("  {note}\n")));
+        text.extend(output.note().iter().map(|note| format!("  {note}\n")));
         if let (Some(fitted), Some(path)) = (&learnt, &self.as_effect) {
             let _ = writeln!(
                 text,
@@ -117,141 +120,25 @@ impl MembraneCommand {
         bar.enable_steady_tick(Duration::from_millis(120));
         bar
     }
-
-    /// The muscle with the fitted effect of its cloth.
-    fn learn(&self, case: &Case, output: &Output, path: &Path) -> Result<Learnt, Failure> {
-        let muscle = learns(case)?;
-        let Some(forces) = forces(&output.rows) else {
-            let what = "no state has a pressure and a contraction: there is nothing to learn from".to_owned();
-            return Err(Failure::Value { option: "--as-effect", what });
-        };
-        let catalogue = arguments::catalogue(None)?;
-        let effects = arguments::effects(&catalogue, &["limited-unfolding".to_owned()])?;
-        let data = Data::from_csv(&forces, &self.out.join("forces.csv").display().to_string())?;
-        let fitted = fit::learn(&data, muscle, &Options::new(catalogue, effects))?;
-        is_the_cloth(case, &fitted)?;
-        files::write(path, fitted.model.as_bytes())?;
-        Ok(fitted)
-    }
-
-    fn document(
-        &self,
-        case: &Case,
-        run: &CaseRun<'_>,
-        output: &Output,
-        learnt: Option<&Learnt>,
-    ) -> Result<String, Failure> {
-        let [unknowns, matrix, factors] = run.sizes();
-        let document = json!({
-            "schema": "bulge.membrane/1",
-            "name": case.name,
-            "folder": self.out,
-            "nodes": case.mesh.nodes.len(),
-            "elements": run.elements(),
-            "unknowns": unknowns,
-            "matrix_entries": matrix,
-            "factor_entries": factors,
-            "effort": effort(&run.effort()),
-            "writing_s": output.writing.as_secs_f64(),
-            "pvd": output.series.path(),
-            "effect": learnt.map(|fitted| json!({
-                "before_rmse_n": fitted.fitting.before_rmse_n,
-                "rmse_n": fitted.fitting.rmse_n,
-                "fit": fitted.fitting.fit,
-                "model": fitted.model,
-            })),
-            "states": output.rows,
-        });
-        pretty(&document)
-    }
 }
 
-/// The files of a run in its folder.
-struct Output {
-    folder: PathBuf,
-    stem: String,
-    series: MembraneSeries,
-    rows: Vec<Row>,
-    /// What is drawn of each state, and of the last one.
-    each: Whole,
-    whole: Whole,
-    has_forces: bool,
-    writing: Duration,
-    note: Option<String>,
-}
-
-impl Output {
-    /// Clears the folder: files of an earlier run of this case would be taken for results of this one.
-    fn new(command: &MembraneCommand, case: &Case, stem: &str) -> Result<Self, Failure> {
-        let folder = command.out.clone();
-        let whole = Whole::of(case);
-        // A sector repeated all round makes the files a hundred times larger.
-        let is_sector = matches!(whole, Whole::Sector { .. });
-        let each = if is_sector && !command.whole { Whole::AsMeshed } else { whole };
-        let series = MembraneSeries::new(&folder, stem)?;
-        let last = format!("{stem}-whole.vtu");
-        files::remove(&["states.csv", "forces.csv", &last].map(|name| folder.join(name)))?;
-        Ok(Self {
-            folder,
-            stem: stem.to_owned(),
-            series,
-            rows: Vec::new(),
-            each,
-            whole,
-            has_forces: false,
-            writing: Duration::ZERO,
-            note: None,
-        })
-    }
-
-    fn take(&mut self, row: Row, state: &State, fields: &Fields) -> Result<(), Failure> {
-        let clock = Instant::now();
-        self.series.append(&MembranePicture { state, fields, whole: self.each, time: row.state as f64 })?;
-        self.rows.push(row);
-        files::write(&self.folder.join("states.csv"), csv(&self.rows).as_bytes())?;
-        self.writing += clock.elapsed();
-        Ok(())
-    }
-
-    /// Writes the whole muscle in its last state, and the forces for other commands.
-    fn finish(&mut self, run: &mut CaseRun<'_>) -> Result<(), Failure> {
-        let clock = Instant::now();
-        if self.each != self.whole && !self.rows.is_empty() {
-            let (state, fields) = run.last();
-            let time = self.rows.len() as f64;
-            let picture = MembranePicture { state, fields: &fields, whole: self.whole, time };
-            match write_vtu(self.folder.join(format!("{}-whole.vtu", self.stem)), &picture) {
-                Err(error @ VtkError::TooManyPoints { .. }) => {
-                    self.note = Some(format!("the whole muscle isn't drawn: {error}"));
-                }
-                done => done?,
-            }
-        }
-        if let Some(forces) = forces(&self.rows) {
-            files::write(&self.folder.join("forces.csv"), forces.as_bytes())?;
-            self.has_forces = true;
-        }
-        self.writing += clock.elapsed();
-        Ok(())
-    }
-
-    /// What remains of a run that ended early, as text.
-    fn kept(&self, is_rescued: bool) -> String {
-        match self.rows.last() {
-            Some(row) => format!(
-                "\n  states.csv and {} hold what was found; the last is {}{}",
-                self.series.path().display(),
-                if is_rescued { "the last equilibrium on the way to " } else { "" },
-                line(row)
-            ),
-            None => "\n  no state of the case was reached: begin with a smaller load, or in smaller steps"
-                .to_owned(),
+/// What remains of a run that ended early, as text.
+fn kept(output: &CaseFolder, is_rescued: bool) -> String {
+    match output.rows().last() {
+        Some(row) => format!(
+            "\n  states.csv and {} hold what was found; the last is {}{}",
+            output.pvd().display(),
+            if is_rescued { "the last equilibrium on the way to " } else { "" },
+            line(row)
+        ),
+        None => {
+            "\n  no state of the case was reached: begin with a smaller load, or in smaller steps".to_owned()
         }
     }
 }
 
-fn describe(case: &Case, run: &CaseRun<'_>, output: &Output, time: Duration) -> String {
-    let rows = &output.rows;
+fn describe(case: &Case, run: &CaseRun<'_>, output: &CaseFolder, time: Duration) -> String {
+    let rows = output.rows();
     let [unknowns, _, factors] = run.sizes();
     let mut text = format!(
         "{}: {} nodes, {} elements, {unknowns} unknowns\n\n",
@@ -278,96 +165,13 @@ fn describe(case: &Case, run: &CaseRun<'_>, output: &Output, time: Duration) -> 
         seconds(assembling),
         seconds(factorising),
         seconds(solving),
-        seconds(output.writing)
+        seconds(output.writing())
     );
     text
 }
 
-/// The muscle whose effect of the cloth can be fitted to a case.
-fn learns(case: &Case) -> Result<&Muscle, Failure> {
-    let is_shortened = case
-        .steps
-        .iter()
-        .any(|step| step.contraction.is_some() || step.fittings.iter().flatten().next().is_some());
-    match &case.muscle {
-        Some(muscle) if muscle.is_pleated() && is_shortened => Ok(muscle),
-        _ => Err(Failure::Value {
-            option: "--as-effect",
-            what: "the case needs a pleated muscle (`muscle` in `[mesher]`) and steps with a `contraction`"
-                .to_owned(),
-        }),
-    }
-}
-
-/// Largest relative difference between the fitted radius and the radius of the cloth without a fold: lobes
-/// become taut a little before it.
-const NEAR: f64 = 0.2;
-
-/// Rejects a fit that describes something else: the cloth must be unfolded at the fitted radius.
-fn is_the_cloth(case: &Case, fitted: &Learnt) -> Result<(), Failure> {
-    let parameters = &fitted.fitting.fit.parameters;
-    let radius = parameters.iter().find(|parameter| parameter.name == "unfolded_radius");
-    let (Some(cloth), Some(radius)) = (case.unfolded_radius.map(|radius| 1e3 * radius), radius) else {
-        return Ok(());
-    };
-    if (radius.value / cloth - 1.0).abs() <= NEAR {
-        return Ok(());
-    }
-    let Fitting { before_rmse_n, rmse_n, .. } = &fitted.fitting;
-    Err(Failure::Outside(format!(
-        "--as-effect: nothing is written: fitted to these states (error {} N, before {} N), limited unfolding would act from {} mm on, but the cloth \
-         has no fold left at {} mm only (forces.csv stands). What costs force before that are the lobes between the fibres: contract further, or compare forces.csv with a \
-         muscle that states `[effects.lobes]`",
-        significant(*rmse_n, 3),
-        significant(*before_rmse_n, 3),
-        significant(radius.value, 4),
-        significant(cloth, 4),
-    )))
-}
-
-/// Bytes of a file name without the number of the state; systems allow 255.
-const LONGEST_STEM: usize = 80;
-
-/// A file name derived from the name of a case.
-fn stem(name: &str) -> String {
-    let mut stem = String::new();
-    for c in name.chars() {
-        if c.is_alphanumeric() {
-            stem.extend(c.to_lowercase());
-        } else if !stem.is_empty() && !stem.ends_with('-') {
-            stem.push('-');
-        }
-    }
-    let mut end = stem.len().min(LONGEST_STEM);
-    while !stem.is_char_boundary(end) {
-        end -= 1;
-    }
-    let stem = stem[..end].trim_end_matches('-').to_owned();
-    if stem.is_empty() { "membrane".to_owned() } else { stem }
-}
-
-/// The states in the format of measurements, if they have a contraction and a force.
-fn forces(rows: &[Row]) -> Option<String> {
-    let mut text = String::from("pressure [Pa],contraction,force [N],diameter [m],volume [m^3]\n");
-    for row in rows.iter().filter(|row| row.pressure > 0.0) {
-        let (contraction, force) = (row.contraction?, row.force?);
-        let _ = writeln!(text, "{},{contraction},{force},{},{}", row.pressure, row.diameter, row.volume);
-    }
-    (text.lines().count() > 1).then_some(text)
-}
-
 fn seconds(time: Duration) -> String {
     format!("{} s", significant(time.as_secs_f64(), 3))
-}
-
-fn effort(effort: &Effort) -> serde_json::Value {
-    json!({
-        "iterations": effort.iterations,
-        "factorisations": effort.factorisations,
-        "elements_s": effort.assembling.as_secs_f64(),
-        "factors_s": effort.factorising.as_secs_f64(),
-        "solving_s": effort.solving.as_secs_f64(),
-    })
 }
 
 /// A state in a few words.
@@ -421,39 +225,4 @@ fn cells(rows: &[Row]) -> Vec<Vec<String>> {
         all.push(cells);
     }
     all
-}
-
-/// All states with their units.
-fn csv(rows: &[Row]) -> String {
-    let mut text = String::from(
-        "state,step,pressure [Pa],contraction,force [N],volume [m^3],largest_diameter [m],taut,wrinkled,slack,\
-         membrane_force_min [N/m],membrane_force_max [N/m],fibre_tension_min [N],fibre_tension_max [N],energy [J],unstable,\
-         iterations,residual\n",
-    );
-    for row in rows {
-        let maybe = |x: Option<f64>| x.map_or_else(String::new, |x| x.to_string());
-        let _ = writeln!(
-            text,
-            "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{:e}",
-            row.state,
-            row.step,
-            row.pressure,
-            maybe(row.contraction),
-            maybe(row.force),
-            row.volume,
-            row.diameter,
-            row.taut,
-            row.wrinkled,
-            row.slack,
-            row.forces[0],
-            row.forces[1],
-            row.threads[0],
-            row.threads[1],
-            row.energy,
-            row.unstable,
-            row.iterations,
-            row.residual
-        );
-    }
-    text
 }

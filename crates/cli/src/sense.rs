@@ -1,15 +1,12 @@
 //! `bulge sense`: a channel of liquid metal wound around a muscle, whose resistance gives the contraction.
 
 use bulge_design::sensing::{
-    Curve, EGAIN_RESISTIVITY_OHM_M, Goal, Layer, Linearity, Options, Placement, Range, Reference, Search,
-    Sensor, Winding,
+    Curve, Linearity, Placement, RESISTANCE_UNITS, Range, SenseQuestion, Sensor, Winding,
 };
 use bulge_muscles::units::Quantity;
 use bulge_muscles::{Length, Pressure, Ratio};
 use bulge_report::lines_svg;
 use clap::Args;
-use serde_json::json;
-use std::f64::consts::PI;
 use std::fmt::Write;
 use std::path::PathBuf;
 
@@ -18,13 +15,8 @@ use crate::failure::Failure;
 use crate::files;
 use crate::text::{significant, with_units};
 
-/// Units of a resistance.
-const RESISTANCE: [(&str, f64); 4] = [("ohm", 1.0), ("mohm", 1e-3), ("uohm", 1e-6), ("kohm", 1e3)];
 /// Rows of the table.
 const ROWS: usize = 11;
-/// Centres in the search for the best zone.
-const CENTRES: usize = 81;
-
 /// A channel of liquid metal wound round a muscle, whose resistance tells the contraction (S3, section 5).
 ///
 /// The channel lies in an elastomer outside the fibres and goes with them: as the muscle bulges, it gets longer and thinner. Resistance against contraction, how
@@ -79,71 +71,56 @@ pub(crate) struct SenseCommand {
 impl SenseCommand {
     pub(crate) fn run(&self) -> Result<String, Failure> {
         let (muscle, extended) = extended(&self.muscle, self.effects.as_deref(), None)?;
-        let pressure = quantity::<Pressure>("--pressure", &self.pressure)?;
-        let [from, to] = range::<Ratio>("--contraction", &self.contraction)?;
-        let range = Range { from, to, points: self.points };
-        let noise = in_unit("--noise", &self.noise, &RESISTANCE)?;
-        let sensor = Sensor::new(&extended, pressure, self.winding()?, Reference::Rest, Options::default())?;
-        let placed = self.best.as_deref().map(|width| self.placed(&sensor, range, width)).transpose()?;
-        let sensor = match &placed {
-            Some(placed) => sensor.rewound(placed.winding)?,
-            None => sensor,
-        };
-        let curve = sensor.curve(range)?;
-        let resolution = curve.resolution(noise)?;
+        let question = self.question()?;
+        let found = question.answer(&extended)?;
         let wanted = [self.csv.as_deref(), self.plot.as_deref()];
-        let wrote = files::wrote_both(wanted, || csv(&curve), || drawn(muscle.name(), &curve))?;
+        let wrote = files::wrote_both(
+            wanted,
+            || csv(&found.curve),
+            || {
+                let drawing = found.drawing();
+                Ok(lines_svg(&drawing.title, drawing.axes, &drawing.lines)?)
+            },
+        )?;
         if self.json.wanted {
-            let document = json!({
-                "schema": "bulge.sensing/1",
-                "muscle": muscle.name(),
-                "winding": sensor.winding(),
-                "curve": curve,
-                "resolution": resolution,
-                "scanned": placed.as_ref().map(|placed| &placed.scanned),
-            });
-            return pretty(&document);
+            return pretty(&serde_json::to_value(found.document())?);
         }
+        let pressure = Pressure::pa(question.pressure_pa);
         let heading = format!("{} at {pressure}\n\n", muscle.name());
+        let resolution = found.resolution;
         let worst = format!(
             "  {} {} of noise are {} % of contraction at worst, {} mm (at {} %)\n",
-            significant(1e3 * noise, 3),
+            significant(1e3 * question.noise_ohm, 3),
             "mohm",
             significant(100.0 * resolution.worst, 2),
             significant(1e3 * resolution.worst_m, 2),
             significant(100.0 * resolution.worst_at, 3)
         );
         Ok(heading
-            + &wound(sensor.winding(), &sensor)
-            + &rows(&curve)
-            + &straight(&curve)
+            + &wound(found.sensor.winding(), &found.sensor)
+            + &rows(&found.curve)
+            + &straight(&found.curve)
             + &worst
-            + &best(placed.as_ref())
+            + &best(found.placed.as_ref())
             + &wrote)
     }
 
-    fn winding(&self) -> Result<Winding, Failure> {
-        let [start, end] = range::<Ratio>("--zone", &self.zone)?;
-        let channel = quantity::<Length>("--channel", &self.channel)?.si();
-        Ok(Winding {
-            start,
-            end,
+    fn question(&self) -> Result<SenseQuestion, Failure> {
+        let pressure_pa = quantity::<Pressure>("--pressure", &self.pressure)?.si();
+        let [from, to] = range::<Ratio>("--contraction", &self.contraction)?;
+        let noise_ohm = in_unit("--noise", &self.noise, &RESISTANCE_UNITS)?;
+        let best = self.best.as_deref().map(|width| quantity::<Ratio>("--best", width)).transpose()?;
+        Ok(SenseQuestion {
+            pressure_pa,
+            range: Range { from, to, points: self.points },
             turns: self.turns,
-            section_m2: 0.25 * PI * channel * channel.abs(),
+            zone: range::<Ratio>("--zone", &self.zone)?,
+            channel_m: quantity::<Length>("--channel", &self.channel)?.si(),
             offset_m: quantity::<Length>("--offset", &self.offset)?.si(),
-            layer: Layer::Thinning,
-            resistivity_ohm_m: EGAIN_RESISTIVITY_OHM_M,
+            noise_ohm,
+            best: best.map(Quantity::si),
+            least_gauge_factor: self.least_gauge_factor,
         })
-    }
-
-    fn placed(&self, sensor: &Sensor, range: Range, width: &str) -> Result<Placement, Failure> {
-        let width = quantity::<Ratio>("--best", width)?.si();
-        let goal = match self.least_gauge_factor {
-            Some(least_sensitivity) => Goal::MostLinear { least_sensitivity },
-            None => Goal::MostSensitive,
-        };
-        let search = Search { range, widths: [width; 2], width_steps: 1, centres: CENTRES, goal };
-        Ok(sensor.best_place(&search)?)
     }
 }
 
@@ -212,18 +189,4 @@ fn csv(curve: &Curve) -> String {
         );
     }
     text
-}
-
-/// Plot of the curve and the best straight line.
-fn drawn(title: &str, curve: &Curve) -> Result<String, Failure> {
-    let read: Vec<[f64; 2]> =
-        curve.readings.iter().map(|at| [100.0 * at.contraction, at.resistance_ohm]).collect();
-    let mut lines = Vec::new();
-    if let Some(line) = &curve.linearity {
-        let ends = [read.first(), read.last()].into_iter().flatten();
-        let points = ends.map(|[x, _]| [*x, line.intercept_ohm + line.slope_ohm * x / 100.0]).collect();
-        lines.push(("best straight line".to_owned(), points));
-    }
-    lines.push(("channel".to_owned(), read));
-    Ok(lines_svg(title, ["contraction [%]", "resistance [ohm]"], &lines)?)
 }

@@ -1,16 +1,13 @@
 //! `bulge size`: from a load over a stroke to muscles, lengths and pressures.
 
 use bulge_design::size::{
-    Choice, Family, Given, Infeasible, Limits, LoadCase, LoadPoint, Requirements, Sizing, Weights,
-    fluidic_muscles, size,
+    Candidates, Choice, Given, LoadCase, LoadPoint, MUSCLES, OwnLimits, SizeQuestion, Sizing, force_or_weight,
 };
 use bulge_effects::known;
-use bulge_effects::law::Law;
 use bulge_muscles::units::Quantity;
-use bulge_muscles::{Force, Length, Muscle, PRESETS, Pressure, Ratio};
+use bulge_muscles::{Length, Pressure, Ratio};
 use bulge_report::sizing_svg;
 use clap::Args;
-use serde_json::json;
 use std::fmt::Write;
 use std::path::PathBuf;
 
@@ -18,19 +15,6 @@ use crate::arguments::{Json, catalogue, list, muscle, pretty, quantity};
 use crate::failure::Failure;
 use crate::files;
 use crate::text::{significant, with_units};
-
-/// Weight of a kilogram \[N\].
-const GRAVITY: f64 = 9.806_65;
-/// Muscles considered if none is named.
-const MUSCLES: &str = "dmsp-10,dmsp-20,dmsp-40,ppam-2-r16";
-/// Default step of the pressure \[Pa\], and the most steps.
-const PRESSURE_STEP: f64 = 5e4;
-const MOST_PRESSURES: u32 = 40;
-/// Default limit of the length of a muscle, in strokes.
-const LONG: f64 = 10.0;
-/// Most isobars of the plot, and points of each.
-const MOST_ISOBARS: u32 = 8;
-const DRAWN: usize = 121;
 
 /// From a load over a stroke to muscles, lengths and pressures.
 ///
@@ -102,22 +86,39 @@ pub(crate) struct SizeCommand {
 
 impl SizeCommand {
     pub(crate) fn run(&self) -> Result<String, Failure> {
-        let load = self.load()?;
-        let families = self.families(&load)?;
-        let sizing = self.sized(&families, &load)?;
-        let answer = if self.json.wanted { document(&sizing)? } else { String::new() };
+        let question = self.question()?;
+        let sizing = question.answer()?;
+        let answer =
+            if self.json.wanted { pretty(&serde_json::to_value(sizing.document())?)? } else { String::new() };
         let Some(best) = sizing.choices.first() else {
-            return Err(Failure::NoneFound { answer, why: nothing(&sizing) });
+            return Err(Failure::NoneFound { answer, why: sizing.nothing() });
         };
         let mut wrote = String::new();
         if let Some(path) = &self.plot {
-            files::write(path, drawn(best, &families)?.as_bytes())?;
+            let isobars = question.isobars(best)?;
+            files::write(path, sizing_svg(&best.title(), &isobars, &best.way())?.as_bytes())?;
             let _ = writeln!(wrote, "\n  wrote {}", path.display());
         }
         if self.json.wanted {
             return Ok(answer);
         }
         Ok(self.text(&sizing) + &wrote)
+    }
+
+    fn question(&self) -> Result<SizeQuestion, Failure> {
+        let load = self.load()?;
+        let families = self.candidates(&load)?.families().to_vec();
+        let si = |pressures: Vec<Pressure>| pressures.into_iter().map(Quantity::si).collect::<Vec<_>>();
+        let lengths: Vec<Length> =
+            self.length.as_deref().map(|text| list("--length", text)).transpose()?.unwrap_or_default();
+        Ok(SizeQuestion {
+            load,
+            families,
+            pressures_pa: self.pressure.as_deref().map(|text| list("--pressure", text)).transpose()?.map(si),
+            lengths_m: lengths.into_iter().map(Quantity::si).collect(),
+            margin: quantity::<Ratio>("--margin", &self.margin)?.si(),
+            step_m: quantity::<Length>("--step", &self.step)?.si(),
+        })
     }
 
     fn load(&self) -> Result<LoadCase, Failure> {
@@ -141,131 +142,42 @@ impl SizeCommand {
         Ok(LoadCase::lift(stroke, before, after)?)
     }
 
-    fn families(&self, load: &LoadCase) -> Result<Vec<Family>, Failure> {
-        let law = self.law()?;
-        let fluidic = fluidic_muscles()?;
-        let mut families = Vec::new();
+    fn candidates(&self, load: &LoadCase) -> Result<Candidates, Failure> {
+        let (law, table) = (self.law.as_deref(), self.table.as_deref());
+        let mut all = Candidates::new(load, law, table, self.limits()?, self.length.is_some())?;
         for name in self.muscle.split(',').map(str::trim) {
             if name.is_empty() {
                 let what = format!("`{}` names an empty muscle: write names between commas", self.muscle);
                 return Err(Failure::Value { option: "--muscle", what });
             }
-            let family = match (fluidic.iter().find(|family| family.name() == name), law) {
-                (Some(family), None) => family.clone(),
-                (Some(_), Some(_)) => {
-                    let what = format!(
-                        "{name} stands for the law of S4: with another law name shipped muscles ({}) or files by --muscle",
-                        shipped()
-                    );
-                    return Err(Failure::Value { option: "--law", what });
-                }
-                (None, law) => self.family(name, law)?,
+            if all.is_fluidic(name) {
+                all.add_fluidic(name)?;
+                continue;
+            }
+            let muscle = muscle(name)?;
+            // A law takes the place of the effects.
+            let known = match law {
+                Some(_) => Vec::new(),
+                None => known(&muscle, &catalogue(self.effects.as_deref())?)?,
             };
-            // Two files may have the same name: the argument distinguishes them.
-            let is_taken = families.iter().any(|other: &Family| other.name() == family.name());
-            let family =
-                if is_taken { family.clone().named(&format!("{} ({name})", family.name())) } else { family };
-            let limits = self.limits(family.limits(), load.stroke_m())?;
-            families.push(family.with_limits(limits)?);
+            all.add(name, &muscle, known)?;
         }
-        Ok(families)
-    }
-
-    /// A shipped muscle or a file.
-    fn family(&self, name: &str, law: Option<&'static Law>) -> Result<Family, Failure> {
-        let muscle: Muscle = muscle(name)?;
-        let limits = Limits::of(muscle.kind());
-        let Some(law) = law else {
-            let known = known(&muscle, &catalogue(self.effects.as_deref())?)?;
-            let family = Family::of_muscle(&muscle, known, limits)?;
-            return Ok(if muscle.is_pleated() { family.similar() } else { family });
-        };
-        let wrong = |what: String| Err(Failure::Value { option: "--law", what });
-        if !law.suits(muscle.kind()) {
-            return wrong(format!(
-                "{} is not for {name}: `bulge effects {}` says for what",
-                law.name, law.name
-            ));
-        }
-        if law.is_isobaric() {
-            return wrong(format!("the numbers of {} hold at one pressure: choose another law", law.name));
-        }
-        let table = match &self.table {
-            Some(wanted) => {
-                let names = law.tables.iter().map(|table| table.name).collect::<Vec<_>>().join(", ");
-                let Some(table) = law.table(wanted) else {
-                    let what = format!("{} has no numbers called `{wanted}`: there are {names}", law.name);
-                    return Err(Failure::Value { option: "--table", what });
-                };
-                Some(table)
-            }
-            None => law.table_for(muscle.name()).or_else(|| law.table_for(name)),
-        };
-        Ok(Family::of_law(muscle.name(), law, table, &muscle, limits)?)
-    }
-
-    fn law(&self) -> Result<Option<&'static Law>, Failure> {
-        let Some(name) = &self.law else { return Ok(None) };
-        let found = Law::find(name);
-        if found.is_none() {
-            let what = format!("there is no force law `{name}`: `bulge effects` lists them");
-            return Err(Failure::Value { option: "--law", what });
-        }
-        Ok(found)
-    }
-
-    fn limits(&self, of: Limits, stroke_m: f64) -> Result<Limits, Failure> {
-        let mut limits = of;
-        if let Some(text) = &self.max_pressure {
-            limits.pressure_pa = quantity::<Pressure>("--max-pressure", text)?.si();
-        }
-        if let Some(text) = &self.start {
-            limits.contraction[0] = quantity::<Ratio>("--start", text)?.si();
-        }
-        if let Some(text) = &self.max_contraction {
-            limits.contraction[1] = quantity::<Ratio>("--max-contraction", text)?.si();
-        }
-        let [shortest, longest] = &mut limits.length_m;
-        if let Some(text) = &self.max_length {
-            *longest = quantity::<Length>("--max-length", text)?.si();
-        } else if self.length.is_none() {
-            *longest = longest.min(LONG * stroke_m).max(*shortest);
-        }
-        if let Some(text) = &self.max_force {
-            limits.force_n = force("--max-force", text)?;
-        }
-        Ok(limits)
-    }
-
-    /// Sizes each muscle separately: without a given pressure each goes up to its own limit.
-    fn sized(&self, families: &[Family], load: &LoadCase) -> Result<Sizing, Failure> {
-        let si = |pressures: Vec<Pressure>| pressures.into_iter().map(Quantity::si).collect::<Vec<_>>();
-        let pressures = self.pressure.as_deref().map(|text| list("--pressure", text)).transpose()?.map(si);
-        let lengths: Vec<Length> =
-            self.length.as_deref().map(|text| list("--length", text)).transpose()?.unwrap_or_default();
-        let is_open = pressures.is_none() && lengths.is_empty();
-        let mut wish = Requirements {
-            pressures_pa: pressures.clone().unwrap_or_default(),
-            lengths_m: lengths.into_iter().map(Quantity::si).collect(),
-            margin: quantity::<Ratio>("--margin", &self.margin)?.si(),
-            step_m: quantity::<Length>("--step", &self.step)?.si(),
-            weights: is_open.then(Weights::default),
-        };
-        let mut all = Sizing { load: load.clone(), choices: Vec::new(), infeasible: Vec::new() };
-        for family in families {
-            if is_open {
-                let highest = family.limits().pressure_pa;
-                let step = PRESSURE_STEP.max(highest / f64::from(MOST_PRESSURES));
-                let pressures = (1..=MOST_PRESSURES).map(|k| step * f64::from(k));
-                wish.pressures_pa =
-                    pressures.filter(|p| *p > 0.9e5 && *p <= highest * (1.0 + 1e-9)).collect();
-            }
-            let found = size(std::slice::from_ref(family), load, &wish)?;
-            all.choices.extend(found.choices);
-            all.infeasible.extend(found.infeasible);
-        }
-        all.choices.sort_by(|a, b| a.strain.total_cmp(&b.strain));
         Ok(all)
+    }
+
+    fn limits(&self) -> Result<OwnLimits, Failure> {
+        let ratio = |option, text: &Option<String>| -> Result<Option<f64>, Failure> {
+            text.as_deref().map(|text| Ok(quantity::<Ratio>(option, text)?.si())).transpose()
+        };
+        let pressure = self.max_pressure.as_deref().map(|text| quantity::<Pressure>("--max-pressure", text));
+        let length = self.max_length.as_deref().map(|text| quantity::<Length>("--max-length", text));
+        Ok(OwnLimits {
+            pressure_pa: pressure.transpose()?.map(Quantity::si),
+            start: ratio("--start", &self.start)?,
+            contraction: ratio("--max-contraction", &self.max_contraction)?,
+            length_m: length.transpose()?.map(Quantity::si),
+            force_n: self.max_force.as_deref().map(|text| force("--max-force", text)).transpose()?,
+        })
     }
 
     fn text(&self, sizing: &Sizing) -> String {
@@ -293,7 +205,7 @@ impl SizeCommand {
         if let Some(best) = sizing.choices.first() {
             text.push_str(&way(best));
         }
-        text.push_str(&refused(&sizing.infeasible));
+        text.push_str(&sizing.refusals());
         text.push_str(&bases(&sizing.choices));
         if self.max_pressure.is_some() || self.max_contraction.is_some() || self.max_force.is_some() {
             text.push_str("  the limits are yours: beyond 6 bar and 25 % the law of S4 was not measured, and a larger limit makes every choice look kinder\n");
@@ -302,19 +214,9 @@ impl SizeCommand {
     }
 }
 
-fn shipped() -> String {
-    PRESETS.iter().map(|preset| preset.name).collect::<Vec<_>>().join(", ")
-}
-
 /// A force in newtons, or the weight of kilograms.
 fn force(option: &'static str, text: &str) -> Result<f64, Failure> {
-    let text = text.trim();
-    let Some(number) = text.strip_suffix("kg") else { return Ok(quantity::<Force>(option, text)?.si()) };
-    let mass: f64 = number.trim().parse().map_err(|_| {
-        let what = format!("`{text}` is no mass: write such as \"50 kg\", or a force such as \"500 N\"");
-        Failure::Value { option, what }
-    })?;
-    Ok(GRAVITY * mass)
+    force_or_weight(text).map_err(|what| Failure::Value { option, what })
 }
 
 fn row(choice: &Choice) -> [String; 8] {
@@ -361,27 +263,6 @@ fn way(best: &Choice) -> String {
     text + &with_units(heading, units, rows)
 }
 
-/// The first reason for each muscle, and the number of further ones.
-fn refused(infeasible: &[Infeasible]) -> String {
-    let mut text = String::new();
-    let mut seen: Vec<&str> = Vec::new();
-    for not in infeasible {
-        if seen.contains(&not.family.as_str()) {
-            continue;
-        }
-        seen.push(&not.family);
-        let many = infeasible.iter().filter(|other| other.family == not.family).count();
-        let at = match not.given {
-            Given::Pressure { pressure_pa } => format!(" at {} bar", significant(1e-5 * pressure_pa, 3)),
-            Given::Length { length_m } => format!(" of {} mm", significant(1e3 * length_m, 4)),
-            Given::Compromise => String::new(),
-        };
-        let more = if many > 1 { format!(" (and {} more)", many - 1) } else { String::new() };
-        let _ = writeln!(text, "  {}{at}: {}{more}", not.family, not.why);
-    }
-    if text.is_empty() { text } else { format!("\nnot:\n\n{text}") }
-}
-
 /// The sources of the forces.
 fn bases(choices: &[Choice]) -> String {
     let mut text = "\nforces:\n\n".to_owned();
@@ -398,57 +279,4 @@ fn bases(choices: &[Choice]) -> String {
         );
     }
     text
-}
-
-/// The JSON document, with or without choices.
-fn document(sizing: &Sizing) -> Result<String, Failure> {
-    let document = json!({
-        "schema": "bulge.size/1",
-        "load": sizing.load,
-        "choices": sizing.choices,
-        "infeasible": sizing.infeasible,
-    });
-    pretty(&document)
-}
-
-/// Text for the case that nothing carries the load.
-fn nothing(sizing: &Sizing) -> String {
-    format!(
-        "none of these muscles carries {} N over {} mm\n{}",
-        significant(sizing.load.largest_n(), 4),
-        significant(1e3 * sizing.load.stroke_m(), 4),
-        refused(&sizing.infeasible)
-    )
-}
-
-/// Plot of the isobars of the best choice with the path of the load.
-fn drawn(best: &Choice, families: &[Family]) -> Result<String, Failure> {
-    let Some(family) = families.iter().find(|family| family.name() == best.family) else {
-        return Ok(String::new());
-    };
-    let muscle = family.at(best.length_m)?;
-    // Whole bars, and no more isobars than fit into a legend.
-    let highest = family.limits().pressure_pa;
-    let step = 1e5 * (highest / (1e5 * f64::from(MOST_ISOBARS))).ceil().max(1.0);
-    let mut pressures: Vec<f64> =
-        (1..=MOST_ISOBARS).map(|k| step * f64::from(k)).filter(|p| *p <= highest).collect();
-    if pressures.iter().all(|p| (p - best.pressure_pa).abs() > 1e3) {
-        pressures.push(best.pressure_pa);
-        pressures.sort_by(f64::total_cmp);
-    }
-    let mut isobars = Vec::new();
-    for pressure in pressures {
-        let points = muscle.isobar(pressure, DRAWN)?;
-        if points.len() > 1 {
-            isobars.push((pressure, points));
-        }
-    }
-    let load: Vec<[f64; 2]> = best.points.iter().map(|at| [at.contraction, at.force_n]).collect();
-    let title = format!(
-        "{} of {} mm at {} bar",
-        best.family,
-        significant(1e3 * best.length_m, 4),
-        significant(1e-5 * best.pressure_pa, 3)
-    );
-    Ok(sizing_svg(&title, &isobars, &load)?)
 }

@@ -35,6 +35,7 @@ mod cycle;
 mod filling;
 mod muscle;
 mod orifice;
+mod question;
 mod stiffness;
 mod surroundings;
 
@@ -43,6 +44,9 @@ pub use closed::{ClosedMuscle, ClosedState};
 pub use cycle::{CycleResult, Lift, Stroke};
 pub use filling::{Energy, Filling, GasModel, History, Sample, Supply};
 pub use orifice::{Orifice, REFERENCE_DENSITY, REFERENCE_TEMPERATURE_K};
+pub use question::{
+    FillAnswer, FillQuestion, Moves, ShutAnswer, ShutQuestion, ShutState, StrokeAnswer, StrokeQuestion, Valve,
+};
 pub use stiffness::StiffnessSplit;
 pub(crate) use {
     closed::ShutGas,
@@ -51,7 +55,9 @@ pub(crate) use {
 };
 
 use bulge_model::MuscleWithEffectsError;
-use bulge_muscles::Pressure;
+use bulge_muscles::{Fault, Pressure};
+
+use crate::question::is;
 
 /// Specific gas constant of dry air \[J/(kg K)\].
 pub const R_AIR: f64 = 287.05;
@@ -68,9 +74,9 @@ pub const AMBIENT_TEMPERATURE_K: f64 = 293.15;
 #[derive(Debug, thiserror::Error)]
 pub enum GasError {
     /// An impossible number.
-    #[error("{what} is {value}: {instead}")]
+    #[error("{}: {instead}", is(what, *value))]
     Number {
-        /// Name of the number.
+        /// Name of the number, with its SI unit in brackets.
         what: &'static str,
         /// Its value.
         value: f64,
@@ -101,6 +107,17 @@ pub enum GasError {
 }
 
 impl GasError {
+    /// The kind of the error: wrong input, no solution, or an integration that stopped.
+    #[must_use]
+    pub fn fault(&self) -> Fault {
+        match self {
+            Self::Number { .. } => Fault::Input,
+            Self::Stopped { .. } => Fault::NotConverged,
+            Self::Muscle { error, .. } => error.fault(),
+            Self::NoBalance(_) => Fault::NoSolution,
+        }
+    }
+
     /// An impossible number.
     const fn number(what: &'static str, value: f64, instead: &'static str) -> Self {
         Self::Number { what, value, instead }

@@ -87,6 +87,7 @@ mod mesh;
 mod outcome;
 mod periodic;
 mod problem;
+mod question;
 mod state;
 mod step;
 #[cfg(test)]
@@ -95,6 +96,7 @@ mod tridiagonal;
 
 pub use outcome::{HeatError, HeatProfile, HeatSolution};
 pub use problem::{Closures, Drive, HeatNumerics, HeatProblem, Pipe, Surroundings, Tube};
+pub use question::{HeatAnswer, HeatDocument, HeatQuestion, pipe_name};
 
 use rayon::prelude::*;
 

@@ -11,6 +11,7 @@ mod file;
 mod four_bar;
 mod geometry;
 mod muscle;
+mod question;
 mod state;
 #[cfg(test)]
 mod tests;
@@ -19,10 +20,11 @@ pub use file::{Checks, JOINT_EXAMPLE};
 pub use four_bar::FourBar;
 pub use geometry::{Linkage, Side};
 pub use muscle::{JointMuscle, Pull};
+pub use question::{JointAnswer, JointDocument, JointGas, JointParts, JointQuestion, MapPlace};
 pub use state::{Closed, JointState, Outside, Readings, SideState};
 
 use bulge_fibre::Approach;
-use bulge_muscles::Pressure;
+use bulge_muscles::{Fault, Pressure};
 use bulge_numerics::root::illinois;
 use serde::Serialize;
 
@@ -93,6 +95,14 @@ pub enum JointError {
         /// The range \[rad\].
         range: [f64; 2],
     },
+}
+
+impl JointError {
+    /// The kind of the error: there is no such state.
+    #[must_use]
+    pub const fn fault(&self) -> Fault {
+        Fault::NoSolution
+    }
 }
 
 /// A joint with two muscles.

@@ -13,6 +13,9 @@
 //!
 //! S3 is "Study on Mechanical Behaviour of Pneumatic Artificial Muscle and Methods to Improve it".
 //!
+//! Each command's question and its JSON document are made here, in the files `question`, for all that ask: a
+//! question is a struct of SI numbers, its answer serialises as the document.
+//!
 //! Deliberately absent: prices, and file formats other than that of a joint. Functions return values with
 //! numbers; the command line reads files and prints.
 
@@ -20,5 +23,8 @@ pub mod elements;
 pub mod gas;
 pub mod heat;
 pub mod joint;
+mod question;
 pub mod sensing;
 pub mod size;
+
+pub use question::{Lines, QuestionError};

@@ -61,6 +61,7 @@ mod curve;
 mod error;
 mod linearity;
 mod place;
+mod question;
 mod sensor;
 mod surface;
 #[cfg(test)]
@@ -72,5 +73,6 @@ pub use curve::{Curve, Range, Resolution};
 pub use error::SensingError;
 pub use linearity::Linearity;
 pub use place::{Goal, Place, Placement, Search, Verdict};
+pub use question::{RESISTANCE_UNITS, SenseAnswer, SenseDocument, SenseQuestion};
 pub use sensor::Sensor;
 pub use winding::{EGAIN_RESISTIVITY_OHM_M, Layer, Options, Reference, Winding};

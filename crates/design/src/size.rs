@@ -20,6 +20,7 @@ mod catalogue;
 mod choice;
 mod family;
 mod load;
+mod question;
 mod search;
 #[cfg(test)]
 mod tests;
@@ -28,7 +29,11 @@ pub use catalogue::fluidic_muscles;
 pub use choice::{AtPoint, Choice, Given, Infeasible};
 pub use family::{CutMuscle, Family, Limits};
 pub use load::{LoadCase, LoadPoint};
+pub use question::{Candidates, Isobars, MUSCLES, OwnLimits, SizeDocument, SizeQuestion, force_or_weight};
 pub use search::{Requirements, Sizing, Weights, size};
+
+use crate::question::is;
+use bulge_muscles::Fault;
 
 /// Why nothing can be sized.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -49,6 +54,15 @@ pub enum SizeError {
 }
 
 impl SizeError {
+    /// The kind of the error: wrong input, or no solution.
+    #[must_use]
+    pub const fn fault(&self) -> Fault {
+        match self {
+            Self::Input(_) => Fault::Input,
+            Self::Muscle { .. } => Fault::NoSolution,
+        }
+    }
+
     /// A load without points or without travel.
     fn no_stroke() -> Self {
         let cure = "say what force is needed after what travel, such as 500 N after 50 mm";
@@ -57,6 +71,6 @@ impl SizeError {
 
     /// A requirement outside its range.
     fn out_of_range(what: &str, value: f64, range: &str) -> Self {
-        Self::Input(format!("the {what} is {value}: it must be {range}"))
+        Self::Input(format!("the {}: it must be {range}", is(what, value)))
     }
 }

@@ -1,5 +1,6 @@
 //! Cases: a mesh, its materials, its supports, and a sequence of loads, from a TOML file.
 
+mod document;
 mod ends;
 mod example;
 mod materials;
@@ -10,6 +11,7 @@ mod source;
 mod steps;
 mod supports;
 
+pub use document::{CaseDocument, Written, forces_csv, states_csv};
 pub use ends::Ends;
 pub use example::CASE_EXAMPLE;
 pub use run::{CaseError, CaseRun, Row};

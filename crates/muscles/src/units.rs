@@ -71,6 +71,30 @@ pub fn any(text: &str) -> Result<Any, UnitError> {
     read(Wanted::ANY, text)
 }
 
+/// Reads a number with one of the given units, into the first one: for units that no [`Quantity`] has.
+///
+/// ```
+/// use bulge_muscles::units;
+/// assert_eq!(units::in_one_of("2 min", &[("s", 1.0), ("min", 60.0)]), Ok(120.0));
+/// ```
+///
+/// # Errors
+/// The text is no finite number with such a unit; the message says what to write.
+pub fn in_one_of(text: &str, units: &[(&str, f64)]) -> Result<f64, String> {
+    let text = text.trim();
+    let unit = text.trim_start_matches(|c: char| c.is_ascii_digit() || "+-.eE".contains(c));
+    let (number, unit) = (&text[..text.len() - unit.len()], unit.trim());
+    let factor = units.iter().find(|(name, _)| *name == unit).map(|(_, factor)| *factor);
+    match (number.trim().parse::<f64>(), factor) {
+        (Ok(number), Some(factor)) if number.is_finite() => Ok(number * factor),
+        _ => {
+            let known: Vec<&str> = units.iter().map(|(name, _)| *name).collect();
+            let first = known.first().unwrap_or(&"");
+            Err(format!("`{text}` can't be read: write such as \"2 {first}\" (known: {})", known.join(", ")))
+        }
+    }
+}
+
 /// The size of a unit in SI units, such as 0.001 for `Length` and "mm": for CSV headers like `length [mm]`.
 ///
 /// For a [`Ratio`], "", "1" and "-" also mean a pure number.

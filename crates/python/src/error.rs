@@ -1,5 +1,10 @@
 //! Errors of the crates as Python exceptions, with the same sentences.
 
+use bulge_design::gas::GasError;
+use bulge_design::heat::HeatError;
+use bulge_design::joint::JointError;
+use bulge_design::sensing::SensingError;
+use bulge_design::size::SizeError;
 use bulge_effects::CatalogueError;
 use bulge_fibre::FibreError;
 use bulge_inference::{HideError, InferenceError, StatementError};
@@ -77,6 +82,7 @@ macro_rules! raised {
 raised!(
     FileError, PresetError, MuscleError, MeasurementError, CatalogueError, SweepError, TableError,
     TabulateError, VtkError, PlotError, serde_json::Error, std::io::Error;
+    SizeError, JointError, GasError, SensingError, HeatError,
     FibreError, ModelError, MuscleWithEffectsError, FamilyError, InferenceError, HideError, LearningError, StatementError
 );
 

@@ -5,7 +5,9 @@ use bulge_inference as inference;
 use bulge_inference::{DiagnoseOptions, NextLimits, Options, Progress, Protocol, rows_to_exclude};
 use bulge_report::diagnosis::NextStep;
 use bulge_report::{Learnt, comparison, diagnosis};
+use numpy::PyArray1;
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 use std::sync::Arc;
 
 use crate::data::Data;
@@ -26,6 +28,35 @@ impl Comparison {
     /// The JSON document.
     fn document(&self) -> PyResult<String> {
         serde_json::to_string(&self.0).or_raise()
+    }
+
+    /// Rows as columns in SI, by names that say the unit.
+    fn columns<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let rows = &self.1;
+        let columns = PyDict::new(py);
+        let names = |names: &[String], index: &[u32]| -> Vec<String> {
+            index.iter().map(|k| names.get(*k as usize).cloned().unwrap_or_default()).collect()
+        };
+        columns.set_item("file", names(&rows.files, &rows.file))?;
+        columns.set_item("line", PyArray1::from_iter(py, rows.line.iter().map(|line| i64::from(*line))))?;
+        if rows.is_path {
+            columns.set_item("sweep", names(&rows.sweeps, &rows.sweep))?;
+        }
+        columns.set_item("specimen", names(&rows.specimens, &rows.specimen))?;
+        columns.set_item("counts", PyArray1::from_slice(py, &rows.counts))?;
+        let numbers = [
+            ("time_s", rows.time_s.as_deref()),
+            ("pressure_pa", Some(&rows.pressure_pa[..])),
+            ("contraction", Some(&rows.contraction)),
+            ("measured_n", Some(&rows.measured_n)),
+            ("base_n", Some(&rows.base_n)),
+            ("model_n", Some(&rows.model_n)),
+            ("residual_n", Some(&rows.residual_n())),
+        ];
+        for (name, values) in numbers.into_iter().filter_map(|(name, values)| Some((name, values?))) {
+            columns.set_item(name, PyArray1::from_slice(py, values))?;
+        }
+        Ok(columns)
     }
 
     /// The report, a page that stands for itself.
@@ -205,7 +236,34 @@ pub(crate) fn next_experiment(
     serde_json::to_string(&NextStep::after(&found, &catalogue, limits).document()).or_raise()
 }
 
-/// The document of a fit; see `bulge.fit`.
+/// A fit, with what it was made of: its rows are computed when they are asked for.
+#[pyclass(frozen, module = "bulge._bulge")]
+pub(crate) struct Fit {
+    document: String,
+    data: Arc<bulge_measurements::Data>,
+    muscle: bulge_muscles::Muscle,
+    options: Options,
+}
+
+#[pymethods]
+impl Fit {
+    /// The JSON document.
+    fn document(&self) -> &str {
+        &self.document
+    }
+
+    /// The comparison whose last rung is this fit.
+    fn comparison(&self, py: Python<'_>) -> PyResult<Comparison> {
+        let (data, muscle) = (Arc::clone(&self.data), self.muscle.clone());
+        // The ladder of a fit has no held-out errors.
+        let options = Options { held_out: false, ..self.options.clone() };
+        let found = beside(py, None, move |_| inference::compare_with_rows(&data, &muscle, &options))?;
+        let (comparison, rows) = found.or_raise()?;
+        Ok(Comparison(comparison, rows))
+    }
+}
+
+/// Fits; see `bulge.fit`.
 #[pyfunction]
 pub(crate) fn fit(
     py: Python<'_>,
@@ -215,19 +273,21 @@ pub(crate) fn fit(
     own: &str,
     form_error: bool,
     said: Said,
-) -> PyResult<String> {
+) -> PyResult<Fit> {
     let options = said.apply(py, options(muscle, own, &with_)?, &data.0, &muscle.muscle)?;
     let (data, muscle) = (Arc::clone(&data.0), muscle.muscle.clone());
     let (of, on, with) = (Arc::clone(&data), muscle.clone(), options.clone());
     let fitting = beside(py, None, move |_| inference::fit_effects(&of, &on, &with))?;
     let learnt = Learnt::of(fitting.or_raise()?).or_raise()?;
     let drawn = if form_error {
-        let drawn = beside(py, None, move |_| inference::drawn_forms(&data, &muscle, &options))?;
+        let (of, on, with) = (Arc::clone(&data), muscle.clone(), options.clone());
+        let drawn = beside(py, None, move |_| inference::drawn_forms(&of, &on, &with))?;
         Some(drawn.or_raise()?)
     } else {
         None
     };
-    serde_json::to_string(&learnt.document().with_drawn(drawn.as_ref())).or_raise()
+    let document = serde_json::to_string(&learnt.document().with_drawn(drawn.as_ref())).or_raise()?;
+    Ok(Fit { document, data, muscle, options })
 }
 
 /// The document of a prediction; see `bulge.predict`.

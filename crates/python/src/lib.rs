@@ -7,6 +7,7 @@
 //! Deliberately absent: units of arguments, pandas, plots, distribution. They are Python, in the part that is.
 
 mod data;
+mod design;
 mod error;
 mod evaluate;
 mod inference;
@@ -34,9 +35,13 @@ mod bulge_module {
     #[pymodule_export]
     use super::data::Data;
     #[pymodule_export]
+    use super::design::{
+        Answer, air_fill, air_shut, air_stroke, heat, joint, membrane, resistance, sense, size, weight,
+    };
+    #[pymodule_export]
     use super::inference::{
-        Comparison, Diagnosis, compare, diagnose, effect_names, effects, fit, next_experiment, plan, predict,
-        simulate,
+        Comparison, Diagnosis, Fit, compare, diagnose, effect_names, effects, fit, next_experiment, plan,
+        predict, simulate,
     };
     #[pymodule_export]
     use super::muscle::{Muscle, presets, si, unit_factor, units_of};

@@ -4,19 +4,26 @@ use bulge_sweep::TableDescription;
 use bulge_table as tables;
 use numpy::{PyArray1, PyArray2, PyReadonlyArray2, ndarray::Array2};
 use pyo3::prelude::*;
-use pyo3::types::PyBytes;
+use pyo3::types::{PyBytes, PyTuple};
 use rayon::prelude::*;
 use std::sync::Arc;
 
 use crate::error::{OrRaise, input};
 use crate::task::{Watch, beside};
 
+/// Most axes of a table.
+const MOST_AXES: usize = tables::format::MOST_AXES;
 /// Points of one task.
 const BLOCK: usize = 4096;
 
-/// A table.
+/// A table: its bytes, and that they were checked.
 #[pyclass(frozen, module = "bulge._bulge")]
-pub(crate) struct Table(Arc<Vec<u8>>);
+pub(crate) struct Table {
+    bytes: Arc<Vec<u8>>,
+    checked: tables::Checked,
+    axes: usize,
+    outputs: usize,
+}
 
 /// Values (points, outputs) and gradients (points, outputs x axes), with NaN outside of the domain.
 type Looked<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<f64>>);
@@ -26,28 +33,38 @@ impl Table {
     /// From the bytes of a table file.
     #[staticmethod]
     fn from_bytes(bytes: &[u8], origin: &str) -> PyResult<Self> {
-        tables::Table::from_bytes(bytes).map_err(|error| input(format!("{origin}: {error}")))?;
-        Ok(Self(Arc::new(bytes.to_vec())))
+        let table = tables::Table::from_bytes(bytes).map_err(|error| input(format!("{origin}: {error}")))?;
+        let (checked, axes, outputs) = (table.checked(), table.axes(), table.outputs());
+        Ok(Self { bytes: Arc::new(bytes.to_vec()), checked, axes, outputs })
     }
 
     /// Its bytes.
     fn to_bytes<'py>(&self, py: Python<'py>) -> Bound<'py, PyBytes> {
-        PyBytes::new(py, &self.0)
+        PyBytes::new(py, &self.bytes)
     }
 
     /// The JSON document of what it says of itself.
     fn document(&self) -> PyResult<String> {
-        let table = tables::Table::from_bytes(&self.0).or_raise()?;
-        serde_json::to_string(&TableDescription::of(&table).or_raise()?).or_raise()
+        serde_json::to_string(&TableDescription::of(&self.table()?).or_raise()?).or_raise()
+    }
+
+    /// Values at one point; none outside of the domain.
+    fn at(&self, point: &Bound<'_, PyTuple>) -> PyResult<Option<Vec<f64>>> {
+        Ok(self.one(point)?.map(|(values, _)| values))
+    }
+
+    /// Gradients at one point, those of the first output first; none outside of the domain.
+    fn slopes_at(&self, point: &Bound<'_, PyTuple>) -> PyResult<Option<Vec<f64>>> {
+        Ok(self.one(point)?.map(|(_, gradients)| gradients))
     }
 
     /// Values and gradients at points (points, axes).
     fn sample<'py>(&self, py: Python<'py>, points: PyReadonlyArray2<'py, f64>) -> PyResult<Looked<'py>> {
         let (flat, count) = self.points(&points)?;
-        let bytes = Arc::clone(&self.0);
-        let (axes, outputs) = self.size()?;
+        let bytes = Arc::clone(&self.bytes);
+        let (checked, axes, outputs) = (self.checked, self.axes, self.outputs);
         let found = looked_up(py, count, move |watch| {
-            let table = tables::Table::from_bytes(&bytes)?;
+            let table = tables::Table::again(&bytes, checked)?;
             let mut values = vec![f64::NAN; count * outputs];
             let mut gradients = vec![f64::NAN; count * outputs * axes];
             let blocks = flat
@@ -84,10 +101,10 @@ impl Table {
         points: PyReadonlyArray2<'py, f64>,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let (flat, count) = self.points(&points)?;
-        let bytes = Arc::clone(&self.0);
-        let (axes, _) = self.size()?;
+        let bytes = Arc::clone(&self.bytes);
+        let (checked, axes) = (self.checked, self.axes);
         let ends = looked_up(py, count, move |watch| {
-            let table = tables::Table::from_bytes(&bytes)?;
+            let table = tables::Table::again(&bytes, checked)?;
             let mut ends = vec![f64::NAN; count];
             flat.par_chunks(BLOCK * axes).zip(ends.par_chunks_mut(BLOCK)).for_each(|(points, ends)| {
                 watch.look();
@@ -102,15 +119,28 @@ impl Table {
 }
 
 impl Table {
-    /// Numbers of axes and outputs.
-    fn size(&self) -> PyResult<(usize, usize)> {
-        let table = tables::Table::from_bytes(&self.0).or_raise()?;
-        Ok((table.axes(), table.outputs()))
+    fn table(&self) -> PyResult<tables::Table<'_>> {
+        tables::Table::again(&self.bytes, self.checked).or_raise()
+    }
+
+    /// Values and gradients at one point; none outside of the domain.
+    fn one(&self, point: &Bound<'_, PyTuple>) -> PyResult<Option<(Vec<f64>, Vec<f64>)>> {
+        let mut at = [0.0; MOST_AXES];
+        if point.len() != self.axes {
+            return Err(input(format!("{} numbers, but the table has {} axes", point.len(), self.axes)));
+        }
+        for (at, value) in at.iter_mut().zip(point.iter()) {
+            *at = value.extract()?;
+        }
+        let mut values = vec![0.0; self.outputs];
+        let mut gradients = vec![0.0; self.outputs * self.axes];
+        let found = self.table()?.sample(&at[..self.axes], &mut values, &mut gradients);
+        Ok(found.map(|()| (values, gradients)))
     }
 
     /// Points one after the other, and how many there are.
     fn points(&self, points: &PyReadonlyArray2<'_, f64>) -> PyResult<(Vec<f64>, usize)> {
-        let (axes, _) = self.size()?;
+        let axes = self.axes;
         let points = points.as_array();
         if points.ncols() != axes {
             return Err(input(format!(

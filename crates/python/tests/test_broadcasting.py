@@ -221,7 +221,7 @@ def test_a_muscle_that_contracts_by_its_length_has_none(ppam, braid, cylinder, c
             with pytest.raises(bulge.InputError, match="contracts by 100 % has no length") as caught:
                 call()
             assert "\n" not in str(caught.value)
-    found = ppam.force([0.1, 1.0, 1.2], pressure=BAR, errors="coerce")
+    found = ppam.force([0.1, 1.0, "120 %"], pressure=BAR, errors="coerce")
     assert np.isnan(found).tolist() == [False, True, True]
 
 

@@ -274,6 +274,35 @@ def test_mistakes_are_said_with_their_cure(rubbed, cylinder, protocol):
             wrong()
 
 
+def test_residuals_are_rows(rubbed):
+    found = bulge.compare(rubbed.data, rubbed.muscle, ["bladder-elasticity", "coulomb-friction"])
+    columns, data = found.columns, rubbed.data.columns
+    assert found.residuals.shape == (180,) and columns["counts"].all()
+    np.testing.assert_array_equal(columns["measured_n"], data["force_n"])
+    np.testing.assert_array_equal(found.residuals, columns["measured_n"] - columns["model_n"])
+    for name, rung in [("base_n", 0), ("model_n", -1)]:
+        rms = np.sqrt(np.mean((columns["measured_n"] - columns[name]) ** 2))
+        assert rms == pytest.approx(found.ladder[rung]["rmse_n"], rel=1e-9)
+    np.testing.assert_allclose(columns["pressure_pa"], data["pressure_pa"], rtol=1e-12)
+    assert set(columns["line"]) == set(range(3, 183)) and len(set(columns["sweep"])) == 3
+    frame = found.to_pandas() if pytest.importorskip("pandas") else None
+    assert {"line", "sweep", "contraction", "pressure_pa", "measured_n", "model_n", "residual_n"} <= set(frame.columns)
+    with pytest.raises(bulge.InputError, match="left its report behind"):
+        pickle.loads(pickle.dumps(found)).residuals
+
+
+def test_a_fit_has_rows_and_a_plot(rubbed):
+    fitted = bulge.fit(rubbed.data, rubbed.muscle, ["bladder-elasticity", "coulomb-friction"], exclude="123-182")
+    columns = fitted.columns
+    assert columns["counts"].sum() == 120 and fitted.residuals.shape == (180,)
+    rms = np.sqrt(np.mean(fitted.residuals[columns["counts"]] ** 2))
+    assert rms == pytest.approx(fitted.rmse_n, rel=1e-9) and len(fitted.to_pandas()) == 180
+    pytest.importorskip("matplotlib").use("Agg")
+    assert len(fitted.plot().lines) == 6
+    with pytest.raises(bulge.InputError, match="left its rows behind"):
+        pickle.loads(pickle.dumps(fitted)).plot()
+
+
 def test_plots(rubbed, diagnosed):
     pytest.importorskip("matplotlib").use("Agg")
     ax = diagnosed.plot()

@@ -204,6 +204,20 @@ def test_tables_broadcast(table):
     assert table(contraction=many, slenderness=6)["force_f"][7777] == table(contraction=many[7777], slenderness=6)["force_f"]
 
 
+def test_single_points_are_those_of_arrays(table):
+    e, s = 0.2, 6.875
+    one, slopes = table(contraction=e, slenderness=s), table.gradient(contraction=np.float64(e), slenderness=s)
+    many, by = table(contraction=[e], slenderness=s), table.gradient(contraction=[e], slenderness=s)
+    for name in table.output_names:
+        assert type(one[name]) is float and one[name] == many[name][0]
+        assert {axis: value for axis, value in slopes[name].items()} == {axis: value[0] for axis, value in by[name].items()}
+    assert np.isnan(table(contraction=0.9, slenderness=s)["force_f"]) and np.isnan(table.gradient(contraction=0.9, slenderness=s)["force_f"]["slenderness"])
+    with pytest.raises(bulge.InputError, match="contraction: 20 is 2000 %"):
+        table(contraction=20.0, slenderness=s)
+    with pytest.raises(bulge.NoSolutionError, match="1 of 1 points lie outside"):
+        table(contraction=0.9, slenderness=s, errors="raise")
+
+
 def test_outside_of_a_table_is_nan(table):
     limit = table.upper_end(slenderness=6.0)
     e = np.array([0.004, 0.005, 0.2, limit * (1 - 1e-9), limit * (1 + 1e-6), 0.9, np.nan])

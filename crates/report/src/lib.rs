@@ -13,6 +13,7 @@
 //! numbers.
 mod axis;
 mod characteristics;
+pub mod cloth;
 pub mod comparison;
 pub mod diagnosis;
 mod drawing;

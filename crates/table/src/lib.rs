@@ -74,4 +74,4 @@ pub use curve::Curve;
 pub use error::TableError;
 pub use format::{Axis, Certificate, Form, Output};
 pub use lookup::{Lookup, Sample};
-pub use table::Table;
+pub use table::{Checked, Table};

@@ -38,6 +38,13 @@ pub struct Table<'a> {
     text: &'a str,
 }
 
+/// What a check of bytes has found: the same bytes become a table again without another check of all of them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Checked {
+    length: usize,
+    checksum: u64,
+}
+
 impl<'a> Table<'a> {
     /// Checks the bytes and returns a table that borrows them; nothing is copied.
     ///
@@ -68,11 +75,35 @@ impl<'a> Table<'a> {
         if stored != computed {
             return Err(TableError::Checksum { stored, computed });
         }
-        Self::checked(bytes, body)
+        // Any mistake from here on was made by the program that wrote it.
+        let table = Self::read(bytes, body)?;
+        table.check_sizes()?;
+        Ok(table)
     }
 
-    /// Reads a table whose checksum fits: any mistake from here on was made by the program that wrote it.
-    fn checked(bytes: &'a [u8], body: &'a [u8]) -> Result<Self, TableError> {
+    /// The table as [`Self::again`] needs it.
+    #[must_use]
+    pub fn checked(&self) -> Checked {
+        let length = self.bytes.len();
+        Checked { length, checksum: u64_at(self.bytes, length - CHECKSUM).unwrap_or_default() }
+    }
+
+    /// The table of bytes that were checked before, for programs that can't keep a table beside its bytes: in
+    /// nanoseconds, where [`Self::from_bytes`] reads all of them. Bytes of another length or with another
+    /// checksum at their end are checked as there.
+    ///
+    /// # Errors
+    /// As [`Self::from_bytes`].
+    pub fn again(bytes: &'a [u8], checked: Checked) -> Result<Self, TableError> {
+        let Checked { length, checksum } = checked;
+        if bytes.len() != length || u64_at(bytes, length - CHECKSUM) != Some(checksum) {
+            return Self::from_bytes(bytes);
+        }
+        Self::read(bytes, &bytes[..length - CHECKSUM])
+    }
+
+    /// Reads the header of a table whose checksum fits.
+    fn read(bytes: &'a [u8], body: &'a [u8]) -> Result<Self, TableError> {
         let malformed = |field| TableError::Malformed { field };
         let number = |at| size_at(body, at).ok_or(malformed("header"));
         let form = match bytes[10] {
@@ -100,7 +131,7 @@ impl<'a> Table<'a> {
         if !f64_at(body, 56).is_some_and(|error| error >= 0.0) {
             return Err(malformed("error of the edge"));
         }
-        let table = Self {
+        Ok(Self {
             bytes,
             form,
             precision,
@@ -110,9 +141,7 @@ impl<'a> Table<'a> {
             edge: &body[edge..data],
             data: &body[data..text],
             text: str::from_utf8(&body[text..]).map_err(|_| malformed("text"))?,
-        };
-        table.check_sizes()?;
-        Ok(table)
+        })
     }
 
     /// Checks that edge and coefficients have the sizes given in the records, and that all numbers are

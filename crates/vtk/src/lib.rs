@@ -14,7 +14,8 @@
 //! | field data | `pressure_Pa`, `force_N`, `length_m`, `contraction`, `volume_m3` |
 //!
 //! States of the membrane finite elements are written as unstructured grids in their own coordinates, with
-//! the axis along z: [`MembranePicture`], [`write_vtu`], [`MembraneSeries`].
+//! the axis along z: [`MembranePicture`], [`write_vtu`], [`MembraneSeries`]; a run with its
+//! tables in a [`CaseFolder`].
 //!
 //! This crate solves nothing and reads nothing: every file is a function of a [`bulge_fibre::Shape`], or of a
 //! [`bulge_membrane::State`] and its fields.
@@ -32,7 +33,7 @@ mod xml;
 
 pub use bulge::{Bulge, Style};
 pub use error::VtkError;
-pub use membrane::{MembranePicture, MembraneSeries, Whole, write_vtu};
+pub use membrane::{CaseFolder, MembranePicture, MembraneSeries, Whole, write_vtu};
 pub use mesh::Mesh;
 pub use series::write_series;
 pub use vtp::{vtp_bytes, write_vtp};

@@ -4,10 +4,12 @@ mod arrays;
 mod check;
 mod copies;
 mod drawing;
+mod folder;
 mod map;
 mod series;
 mod xml;
 
+pub use folder::CaseFolder;
 pub use series::MembraneSeries;
 
 use crate::error::check_extension;

@@ -175,7 +175,7 @@ impl<'a> Chamber<'a> {
     pub fn on_support(mut self, contraction: f64) -> Result<Self, GasError> {
         if !(contraction.is_finite() && contraction < 1.0) {
             return Err(GasError::number(
-                "the contraction of the support",
+                "the contraction of the support [%]",
                 contraction,
                 "give a finite number below 1",
             ));

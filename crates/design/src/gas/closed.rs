@@ -143,7 +143,7 @@ impl<'a> ClosedMuscle<'a> {
     /// # Errors
     /// [`GasError::Muscle`] if the muscle doesn't pull at that contraction, or [`GasError::NoBalance`].
     pub fn at_contraction(&self, contraction: f64) -> Result<ClosedState, GasError> {
-        finite("the contraction", contraction)?;
+        finite("the contraction [%]", contraction)?;
         let inside = self.shut(Load::Held(contraction))?;
         self.state(inside.pressure_pa, contraction)
     }

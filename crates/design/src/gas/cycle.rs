@@ -182,11 +182,11 @@ impl<'a> Stroke<'a> {
             positive("the gauge pressure of the lift [Pa]", pressure_pa)?;
         }
         for value in [self.from, self.to] {
-            finite("a contraction", value)?;
+            finite("a contraction [%]", value)?;
         }
         if self.to <= self.from {
             return Err(GasError::number(
-                "the contraction at the end of the way",
+                "the contraction at the end of the way [%]",
                 self.to,
                 "give a larger one than at its start: a muscle lifts by contracting",
             ));

@@ -21,13 +21,13 @@ fn tube(problem: &HeatProblem) -> Vec<Row> {
     let (length, diameter) = (t.length_m, t.inner_diameter_m);
     let (k, c) = (t.wall_conductivity_w_per_m_k, t.wall_heat_capacity_j_per_m3_k);
     vec![
-        ("the length of the muscle [m]", length, [1e-3, 100.0], "1e-3 to 100"),
-        ("the inner diameter of the muscle [m]", diameter, [1e-4, 1.0], "1e-4 to 1"),
+        ("the length of the muscle [m]", length, [1e-3, 100.0], "1 mm to 100 m"),
+        ("the inner diameter of the muscle [m]", diameter, [1e-4, 1.0], "0.1 mm to 1 m"),
         (
             "the thickness of the muscle's wall [m]",
             t.wall_thickness_m,
             [1e-6, diameter],
-            "1e-6 to the inner diameter",
+            "0.001 mm to the inner diameter",
         ),
         ("the conductivity of the muscle's wall [W/(m K)]", k, [1e-3, 500.0], "1e-3 to 500"),
         ("the heat capacity of the muscle's wall [J/(m3 K)]", c, [1e4, 1e7], "1e4 to 1e7"),
@@ -35,7 +35,7 @@ fn tube(problem: &HeatProblem) -> Vec<Row> {
             "the diameter of the port [m]",
             t.port_diameter_m,
             [1e-5, diameter],
-            "1e-5 to the inner diameter of the muscle",
+            "0.01 mm to the inner diameter of the muscle",
         ),
         ("the swelling of the muscle", t.swelling, [0.0, 10.0], "0 to 10"),
     ]
@@ -53,12 +53,12 @@ fn pipe(problem: &HeatProblem) -> Vec<Row> {
             [0.01 * length, 0.99 * length],
             "0.01 to 0.99 of the muscle's length; leave the pipe out for none",
         ),
-        ("the inner diameter of the pipe [m]", p.inner_diameter_m, [1e-5, f64::INFINITY], "at least 1e-5"),
+        ("the inner diameter of the pipe [m]", p.inner_diameter_m, [1e-5, f64::INFINITY], "at least 0.01 mm"),
         (
             "the thickness of the pipe's wall [m]",
             p.wall_thickness_m,
             [1e-6, diameter],
-            "1e-6 to the inner diameter of the muscle",
+            "0.001 mm to the inner diameter of the muscle",
         ),
         (
             "the outer diameter of the pipe [m]",
@@ -75,10 +75,10 @@ fn drive(problem: &HeatProblem) -> Vec<Row> {
     let d = &problem.drive;
     let plateau = d.period_s * d.duty.min(1.0 - d.duty);
     vec![
-        ("the low gauge pressure [Pa]", d.low_pa, [0.0, 1e7], "0 to 1e7"),
-        ("the high gauge pressure [Pa]", d.high_pa, [d.low_pa, 1e7], "the low one to 1e7"),
-        ("the period [s]", d.period_s, [1e-3, 1e5], "1e-3 to 1e5"),
-        ("the duty", d.duty, [0.01, 0.99], "0.01 to 0.99"),
+        ("the low gauge pressure [Pa]", d.low_pa, [0.0, 1e7], "0 bar to 100 bar"),
+        ("the high gauge pressure [Pa]", d.high_pa, [d.low_pa, 1e7], "the low one to 100 bar"),
+        ("the period [s]", d.period_s, [1e-3, 1e5], "1 ms to 100 000 s"),
+        ("the duty [%]", d.duty, [0.01, 0.99], "1 % to 99 %"),
         (
             "the ramp [s]",
             d.ramp_s,
@@ -92,9 +92,9 @@ fn rest(problem: &HeatProblem) -> Vec<Row> {
     let (s, c, n) = (&problem.surroundings, &problem.closures, &problem.numerics);
     let energy = problem.activation_energy_j_per_mol;
     vec![
-        ("the ambient temperature [K]", s.ambient_k, [150.0, 600.0], "150 to 600"),
-        ("the supply temperature [K]", s.supply_k, [150.0, 600.0], "150 to 600"),
-        ("the ambient pressure [Pa]", s.pressure_pa, [1e3, 1e7], "1e3 to 1e7"),
+        ("the ambient temperature [K]", s.ambient_k, [150.0, 600.0], "150 K to 600 K"),
+        ("the supply temperature [K]", s.supply_k, [150.0, 600.0], "150 K to 600 K"),
+        ("the ambient pressure [Pa]", s.pressure_pa, [1e3, 1e7], "0.01 bar to 100 bar"),
         (
             "the outer heat transfer coefficient [W/(m2 K)]",
             s.outer_transfer_w_per_m2_k,

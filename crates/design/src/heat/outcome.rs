@@ -1,6 +1,9 @@
 //! Results and errors of the heat model.
 
+use bulge_muscles::Fault;
 use serde::Serialize;
+
+use crate::question::is;
 
 /// Temperatures along the muscle or along its pipe over a cycle of the periodic state, by cell.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -59,9 +62,9 @@ pub struct HeatSolution {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum HeatError {
     /// A number out of range.
-    #[error("{what} is {value}; it must be {range}")]
+    #[error("{}; it must be {range}", is(what, *value))]
     Invalid {
-        /// The number.
+        /// The number, with its SI unit in brackets.
         what: &'static str,
         /// Its value.
         value: f64,
@@ -82,6 +85,16 @@ pub enum HeatError {
 }
 
 impl HeatError {
+    /// The kind of the error: wrong input, no solution, or a search that failed.
+    #[must_use]
+    pub const fn fault(&self) -> Fault {
+        match self {
+            Self::Invalid { .. } => Fault::Input,
+            Self::Choked { .. } => Fault::NoSolution,
+            Self::NotConverged(_) => Fault::NotConverged,
+        }
+    }
+
     /// No periodic state within the cycles allowed: about so many kelvin are missing.
     pub(super) fn not_periodic(cycles: usize, residual_k: f64) -> Self {
         Self::NotConverged(format!(

@@ -36,13 +36,13 @@ impl Range {
     /// range.
     pub fn contractions(&self) -> Result<Vec<f64>, SensingError> {
         let Self { from, to, points } = *self;
-        number("first contraction of the range", from, "a finite number below 1", |e| {
+        number("first contraction of the range [%]", from, "a finite number below 100 %", |e| {
             e.is_finite() && e < 1.0
         })?;
         number(
-            "last contraction of the range",
+            "last contraction of the range [%]",
             to,
-            "greater than the first one by 1e-6 or more, and below 1",
+            "greater than the first one by 0.0001 % or more, and below 100 %",
             |e| e - from >= 1e-6 && e < 1.0,
         )?;
         number("number of contractions", points as f64, "from 11 to 10001", |_| {
@@ -119,7 +119,7 @@ impl Curve {
     /// # Errors
     /// [`SensingError::Input`] if the noise isn't greater than 0; as [`Curve::check_monotone`].
     pub fn resolution(&self, noise_ohm: f64) -> Result<Resolution, SensingError> {
-        number("noise of the resistance", noise_ohm, "a finite number of ohm greater than 0", is_positive)?;
+        number("noise of the resistance [ohm]", noise_ohm, "a finite number greater than 0", is_positive)?;
         self.check_monotone()?;
         let relative = noise_ohm / self.reference_resistance_ohm;
         let contraction: Vec<f64> = self.sensitivity.iter().map(|slope| relative / slope.abs()).collect();

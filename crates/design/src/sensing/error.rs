@@ -1,7 +1,7 @@
 //! Why a winding has no resistance, no contraction or no best zone.
 
 use bulge_fibre::FibreError;
-use bulge_muscles::{Pressure, Quantity};
+use bulge_muscles::{Fault, Pressure, Quantity};
 
 /// What is wrong, where, and how to correct it.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -67,6 +67,19 @@ pub enum SensingError {
 }
 
 impl SensingError {
+    /// The kind of the error: wrong input, or no solution.
+    #[must_use]
+    pub const fn fault(&self) -> Fault {
+        match self {
+            Self::Input(_) => Fault::Input,
+            Self::Equilibrium { .. }
+            | Self::Overstrained { .. }
+            | Self::NotMonotone { .. }
+            | Self::NoChange
+            | Self::NoPlace { .. } => Fault::NoSolution,
+        }
+    }
+
     /// The error of the solver in a state of the muscle.
     pub(super) fn unsolved(pressure: Pressure, contraction: f64) -> impl Fn(FibreError) -> Self {
         move |error| Self::Equilibrium { pressure_pa: pressure.si(), contraction, error: Box::new(error) }

@@ -101,8 +101,12 @@ pub struct Placement {
 impl Search {
     fn check(&self) -> Result<(), SensingError> {
         let [low, high] = self.widths;
-        number("smallest width of the zone", low, "from 1e-6 to 1", |w| (1e-6..=1.0).contains(&w))?;
-        number("largest width of the zone", high, "from the smallest one to 1", |w| w >= low && w <= 1.0)?;
+        number("smallest width of the zone [%]", low, "from 0.0001 % to 100 %", |w| {
+            (1e-6..=1.0).contains(&w)
+        })?;
+        number("largest width of the zone [%]", high, "from the smallest one to 100 %", |w| {
+            w >= low && w <= 1.0
+        })?;
         let widths = if high > low { 2..=MOST } else { 1..=1 };
         let needs = "from 2 to 1001 for a range of widths, 1 for a single one";
         number("number of widths", self.width_steps as f64, needs, |_| widths.contains(&self.width_steps))?;

@@ -1,11 +1,12 @@
 //! The winding around a muscle: zone, turns, section, layer; and the reference in which it has that section.
 
 use bulge_fibre::Approach;
-use bulge_muscles::Pressure;
+use bulge_muscles::{Pressure, Quantity, Ratio};
 use serde::Serialize;
 use std::f64::consts::PI;
 
 use super::SensingError;
+use crate::question::is;
 
 /// Resistivity of eutectic gallium-indium \[ohm m\] (M. Dickey et al., *Advanced Functional Materials* 18 (2008) 1097).
 pub const EGAIN_RESISTIVITY_OHM_M: f64 = 29.4e-8;
@@ -84,23 +85,19 @@ impl Winding {
         if !inside {
             let Self { start, end, .. } = self;
             return Err(SensingError::Input(format!(
-                "the winding zone from {start} to {end} of the fibre length is none: it must lie in 0..1, with its end at least 1e-6 beyond its start"
+                "the winding zone from {} to {} of the fibre length is none: it must lie in 0 % to 100 %, with its end at least 0.0001 % beyond its start",
+                Ratio::from_si(*start),
+                Ratio::from_si(*end)
             )));
         }
         number("number of turns", self.turns, "from 0 to 1e6", |n| (0.0..=MOST_TURNS).contains(&n))?;
-        number("offset of the channel", self.offset_m, "from 0 to the radius of the muscle", |t| {
+        number("offset of the channel [m]", self.offset_m, "from 0 to the radius of the muscle", |t| {
             (0.0..=radius_m).contains(&t)
         })?;
-        number(
-            "resistivity",
-            self.resistivity_ohm_m,
-            "a finite number of ohm m greater than 0",
-            is_positive,
-        )?;
-        let needs = "greater than 0, and its diameter at most the radius of the muscle";
-        number("section of the channel", self.section_m2, needs, |a| {
-            is_positive(a) && self.diameter_m() <= radius_m
-        })
+        number("resistivity [ohm m]", self.resistivity_ohm_m, "a finite number greater than 0", is_positive)?;
+        let diameter = (4.0 * self.section_m2.abs() / PI).sqrt().copysign(self.section_m2);
+        let needs = "greater than 0, and at most the radius of the muscle";
+        number("diameter of the channel [m]", diameter, needs, |d| is_positive(d) && d <= radius_m)
     }
 
     /// Checks that the turns fit into a zone with this meridian \[m\].
@@ -158,7 +155,9 @@ impl Options {
         number("number of meridian points", points as f64, "from 7 to 20001", |_| {
             (FEWEST_POINTS..=MOST_POINTS).contains(&points)
         })?;
-        number("strain that the elastomer bears", self.max_strain, "greater than 0", |strain| strain > 0.0)
+        number("strain that the elastomer bears [%]", self.max_strain, "greater than 0", |strain| {
+            strain > 0.0
+        })
     }
 }
 
@@ -177,5 +176,5 @@ pub(super) fn number(
     if is_good(value) {
         return Ok(());
     }
-    Err(SensingError::Input(format!("the {what} is {value}: it must be {needs}")))
+    Err(SensingError::Input(format!("the {}: it must be {needs}", is(what, value))))
 }

@@ -41,24 +41,28 @@ impl Limits {
     fn check(&self) -> Result<(), SizeError> {
         let wish = |what, value, range| Err(SizeError::out_of_range(what, value, range));
         if !(self.pressure_pa > 0.0 && self.pressure_pa.is_finite()) {
-            return wish("highest pressure", self.pressure_pa, "a pressure above 0");
+            return wish("highest pressure [Pa]", self.pressure_pa, "a pressure above 0");
         }
         let [low, high] = self.contraction;
         if !(-1.0..1.0).contains(&low) {
-            return wish("contraction where the muscle begins", low, "between -100 % and 100 %");
+            return wish("contraction where the muscle begins [%]", low, "between -100 % and 100 %");
         }
         if !(high > low && high < 1.0) {
-            return wish("largest contraction", high, "beyond that where the muscle begins, and below 100 %");
+            return wish(
+                "largest contraction [%]",
+                high,
+                "beyond that where the muscle begins, and below 100 %",
+            );
         }
         let [low, high] = self.length_m;
         if !(low > 0.0 && low.is_finite()) {
-            return wish("shortest length", low, "a length above 0");
+            return wish("shortest length [m]", low, "a length above 0");
         }
         if !(high >= low && high.is_finite()) {
-            return wish("longest length", high, "no shorter than the shortest one");
+            return wish("longest length [m]", high, "no shorter than the shortest one");
         }
         if !(self.force_n > 0.0 && self.force_n.is_finite()) {
-            return wish("largest force", self.force_n, "a force above 0");
+            return wish("largest force [N]", self.force_n, "a force above 0");
         }
         Ok(())
     }

@@ -1,8 +1,10 @@
 //! The load: required forces over a travel.
 
+use bulge_muscles::Length;
 use serde::Serialize;
 
 use super::SizeError;
+use crate::question::is;
 
 /// Required force after a travel.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -32,18 +34,20 @@ impl LoadCase {
     pub fn new(points: Vec<LoadPoint>) -> Result<Self, SizeError> {
         let mut before = f64::NEG_INFINITY;
         for (i, LoadPoint { travel_m, force_n }) in points.iter().enumerate() {
-            for (what, value) in [("travel", *travel_m), ("force", *force_n)] {
+            for (what, value) in [("travel [m]", *travel_m), ("force [N]", *force_n)] {
                 if !(value >= 0.0 && value.is_finite()) {
                     let point = i + 1;
                     return Err(SizeError::Input(format!(
-                        "point {point} of the load has the {what} {value}: it must be a finite number, 0 or more"
+                        "point {point} of the load: the {}: it must be finite, 0 or more",
+                        is(what, value)
                     )));
                 }
             }
             if *travel_m <= before {
                 let point = i + 1;
                 return Err(SizeError::Input(format!(
-                    "point {point} of the load lies at the travel {travel_m} m, not beyond the one before: give the points in order, each travel once"
+                    "point {point} of the load lies at the travel {}, not beyond the one before: give the points in order, each travel once",
+                    Length::m(*travel_m)
                 )));
             }
             before = *travel_m;
@@ -135,10 +139,10 @@ mod tests {
             (&[][..], "the load has no stroke"),
             (&[(0.0, 5.0)], "the load has no stroke"),
             (&[(0.0, 0.0), (0.1, 0.0)], "the load is 0 N everywhere"),
-            (&[(0.1, 1.0), (0.1, 2.0)], "point 2 of the load lies at the travel 0.1 m"),
-            (&[(0.0, 1.0), (f64::NAN, 2.0)], "point 2 of the load has the travel NaN"),
-            (&[(0.0, -1.0)], "point 1 of the load has the force -1"),
-            (&[(0.1, f64::INFINITY)], "point 1 of the load has the force inf"),
+            (&[(0.1, 1.0), (0.1, 2.0)], "point 2 of the load lies at the travel 100 mm"),
+            (&[(0.0, 1.0), (f64::NAN, 2.0)], "point 2 of the load: the travel is NaN mm"),
+            (&[(0.0, -1.0)], "point 1 of the load: the force is -1 N"),
+            (&[(0.1, f64::INFINITY)], "point 1 of the load: the force is inf N"),
         ] {
             let message = load(points).to_string();
             assert!(message.starts_with(says), "{message}");

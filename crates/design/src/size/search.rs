@@ -101,16 +101,16 @@ pub fn size(families: &[Family], load: &LoadCase, wish: &Requirements) -> Result
 
 fn check(wish: &Requirements) -> Result<(), SizeError> {
     let fault = |what, value, range| Err(SizeError::out_of_range(what, value, range));
-    for (what, values) in [("pressure", &wish.pressures_pa), ("length", &wish.lengths_m)] {
+    for (what, values) in [("pressure [Pa]", &wish.pressures_pa), ("length [m]", &wish.lengths_m)] {
         if let Some(value) = values.iter().find(|value| !(**value > 0.0 && value.is_finite())) {
             return fault(what, *value, "a finite number above 0");
         }
     }
     if !(wish.margin >= 0.0 && wish.margin.is_finite()) {
-        return fault("margin", wish.margin, "0 or more");
+        return fault("margin [%]", wish.margin, "0 or more");
     }
     if !(wish.step_m >= 0.0 && wish.step_m.is_finite()) {
-        return fault("step of lengths", wish.step_m, "0 or more");
+        return fault("step of lengths [m]", wish.step_m, "0 or more");
     }
     if let Some(Weights { pressure, contraction, length }) = wish.weights {
         for value in [pressure, contraction, length] {

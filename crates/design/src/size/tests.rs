@@ -233,11 +233,11 @@ fn what_does_not_carry_says_why() {
 fn nonsense_is_refused() {
     let load = LoadCase::lift(0.05, 0.0, 500.0).unwrap();
     let refused = |wish: Requirements| size(&[dmsp_20()], &load, &wish).unwrap_err().to_string();
-    assert!(refused(wish(&[-1.0], &[])).contains("pressure is -1"));
+    assert!(refused(wish(&[-2e5], &[])).contains("pressure is -2 bar"));
     assert!(refused(wish(&[], &[f64::NAN])).contains("length is NaN"));
     assert!(
         refused(Requirements { margin: -0.1, ..wish(&[], &[]) })
-            .contains("margin is -0.1: it must be 0 or more")
+            .contains("margin is -10 %: it must be 0 or more")
     );
     assert!(refused(Requirements { step_m: -1.0, ..wish(&[], &[]) }).contains("0 or more"));
     let weights = Some(Weights { pressure: 0.0, contraction: 0.0, length: 0.0 });

@@ -1,5 +1,6 @@
 //! Runs a case: a sequence of states, each an equilibrium.
 
+use bulge_muscles::Fault;
 use serde::Serialize;
 use thiserror::Error;
 
@@ -27,6 +28,24 @@ pub enum CaseError {
         /// What went wrong.
         source: MembraneError,
     },
+}
+
+impl CaseError {
+    /// The kind of the error: wrong input, no solution, or a search that failed.
+    #[must_use]
+    pub const fn fault(&self) -> Fault {
+        match self {
+            Self::State {
+                source:
+                    MembraneError::LimitPoint { .. }
+                    | MembraneError::Collapsed { .. }
+                    | MembraneError::Overstretched { .. },
+                ..
+            } => Fault::NoSolution,
+            Self::Structure(_) | Self::State { source: MembraneError::NoGas { .. }, .. } => Fault::Input,
+            Self::State { .. } => Fault::NotConverged,
+        }
+    }
 }
 
 /// The results of one state.
@@ -75,7 +94,7 @@ pub struct Row {
 
 /// A case in progress.
 pub struct CaseRun<'a> {
-    case: &'a Case,
+    pub(super) case: &'a Case,
     solver: Solver,
     last: State,
     /// Prescribed positions and forces.

@@ -13,11 +13,14 @@ stop on Ctrl-C.
 - :func:`read`: measurements, :func:`compare`, :func:`diagnose`, :func:`fit`, :func:`predict`, :func:`plan`, :func:`next_experiment`,
   :func:`simulate`,
 - :class:`Effect`: a physical effect of one's own, :func:`effects`: the catalogue,
+- :func:`size`, :func:`joint`, :mod:`bulge.air`, :func:`sense`, :func:`heat`: muscles put to use, :func:`membrane`: finite elements,
 - :class:`Sweep`, :class:`Table`: families of muscles as data sets and as certified tables,
 - :mod:`bulge.distributed`: the same on Dask.
 """
 
+from bulge import air
 from bulge._bulge import BulgeError, InputError, NoSolutionError, NotConvergedError, version as _version
+from bulge.design import Heat, Joint, MembraneRun, Sensing, Sizing, heat, joint, membrane, sense, size
 from bulge.effects import Effect, EffectCard, Parameter, effects, quantity, read_effects
 from bulge.inference import (
     Comparison,
@@ -51,7 +54,10 @@ __all__ = [
     "Effect",
     "EffectCard",
     "Fit",
+    "Heat",
     "InputError",
+    "Joint",
+    "MembraneRun",
     "Muscle",
     "NextExperiment",
     "NoSolutionError",
@@ -60,16 +66,22 @@ __all__ = [
     "Plan",
     "Prediction",
     "Result",
+    "Sensing",
     "Shape",
     "Simulation",
+    "Sizing",
     "Surface",
     "Sweep",
     "Table",
     "__version__",
+    "air",
     "compare",
     "diagnose",
     "effects",
     "fit",
+    "heat",
+    "joint",
+    "membrane",
     "next_experiment",
     "plan",
     "predict",
@@ -78,8 +90,10 @@ __all__ = [
     "read",
     "read_effects",
     "read_sweep",
+    "sense",
     "si",
     "simulate",
+    "size",
     "sweep",
     "sweep_example",
 ]

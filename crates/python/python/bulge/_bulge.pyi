@@ -8,10 +8,12 @@ import numpy as np
 import numpy.typing as npt
 
 __all__ = [
+    "Answer",
     "BulgeError",
     "Comparison",
     "Data",
     "Diagnosis",
+    "Fit",
     "InputError",
     "Muscle",
     "NoSolutionError",
@@ -19,27 +21,39 @@ __all__ = [
     "Shape",
     "Sweep",
     "Table",
+    "air_fill",
+    "air_shut",
+    "air_stroke",
     "compare",
     "diagnose",
     "effect_names",
     "effects",
     "fit",
+    "heat",
+    "joint",
+    "membrane",
     "next_experiment",
     "plan",
     "predict",
     "presets",
+    "resistance",
+    "sense",
     "si",
     "simulate",
+    "size",
     "sweep_example",
     "unit_factor",
     "units_of",
     "version",
+    "weight",
 ]
 
 _Array = npt.NDArray[np.float64]
 _Path = str | PathLike[str]
 _Value = float | str
 _Said = tuple[str | None, list[tuple[str, _Value]], list[tuple[str, str | tuple[_Value, _Value]]], list[tuple[str, str]]]
+_Ends = list[float]
+_Source = tuple[str | None, str]
 _Told = Callable[[float, str], Any] | None
 
 class BulgeError(ValueError): ...
@@ -113,6 +127,7 @@ class Data:
 @final
 class Comparison:
     def document(self) -> str: ...
+    def columns(self) -> dict[str, Any]: ...
     def html(self) -> str: ...
     def plots(self) -> list[tuple[str, str, str]]: ...
 
@@ -122,6 +137,16 @@ class Diagnosis:
     def headlines(self) -> list[str]: ...
     def html(self) -> str: ...
     def plots(self) -> list[tuple[str, str, str]]: ...
+
+@final
+class Fit:
+    def document(self) -> str: ...
+    def comparison(self) -> Comparison: ...
+
+@final
+class Answer:
+    def document(self) -> str: ...
+    def drawing(self) -> tuple[str, str, str, list[tuple[str, list[list[float]]]]]: ...
 
 @final
 class Sweep:
@@ -172,6 +197,8 @@ class Table:
     def from_bytes(bytes: bytes, origin: str) -> Table: ...
     def to_bytes(self) -> bytes: ...
     def document(self) -> str: ...
+    def at(self, point: tuple[Any, ...]) -> list[float] | None: ...
+    def slopes_at(self, point: tuple[Any, ...]) -> list[float] | None: ...
     def sample(self, points: _Array) -> tuple[_Array, _Array]: ...
     def upper_end(self, points: _Array) -> _Array: ...
 
@@ -200,9 +227,64 @@ def next_experiment(
     said: _Said,
     progress: _Told,
 ) -> str: ...
-def fit(data: Data, muscle: Muscle, with_: list[str], own: str, form_error: bool, said: _Said) -> str: ...
+def fit(data: Data, muscle: Muscle, with_: list[str], own: str, form_error: bool, said: _Said) -> Fit: ...
 def predict(data: Data, muscle: Muscle, own: str, exclude: str | None) -> str: ...
 def plan(muscle: Muscle, protocol: str, origin: str, own: str) -> str: ...
 def simulate(
     muscle: Muscle, protocol: str, origin: str, with_: list[str], own: str, seed: int
 ) -> tuple[str, str, str]: ...
+def weight(name: str, text: str) -> float: ...
+def resistance(name: str, text: str) -> float: ...
+def size(
+    load: list[tuple[float, float]],
+    muscles: list[tuple[str, Muscle | None]],
+    law: str | None,
+    table: str | None,
+    pressures: list[float] | None,
+    lengths: list[float],
+    limits: list[float | None],
+    margin: float,
+    step: float,
+) -> Answer: ...
+def joint(
+    source: _Source,
+    pressures: list[float] | None,
+    angle: float | None,
+    stiffness: float | None,
+    torque: float | None,
+    closed: str | None,
+    dead_volume: float | None,
+    readings: list[float | None],
+) -> Answer: ...
+def air_shut(
+    muscle: Muscle, pressure: float, contraction: float, range: _Ends | None, exponent: float, force: float | None, dead_volume: float
+) -> Answer: ...
+def air_fill(
+    muscle: Muscle,
+    supply: float,
+    vessel: float | None,
+    start: float,
+    conductance: tuple[float, float] | None,
+    hole: float | None,
+    held: float | None,
+    load: tuple[float, float | None] | None,
+    adiabatic: bool,
+    longest: float,
+    dead_volume: float,
+) -> Answer: ...
+def air_stroke(muscle: Muscle, load: float, stroke: _Ends, supply: float, pressure: float | None, dead_volume: float) -> Answer: ...
+def sense(
+    muscle: Muscle,
+    pressure: float,
+    contraction: _Ends,
+    points: int,
+    turns: float,
+    zone: _Ends,
+    channel: float,
+    offset: float,
+    noise: float,
+    best: float | None,
+    least_gauge_factor: float | None,
+) -> Answer: ...
+def heat(tube: list[float], pressure: _Ends, times: _Ends, duty: float, pipes: list[tuple[float, float] | None], cells: int) -> Answer: ...
+def membrane(source: _Source, out: _Path | None, whole: bool, as_effect: bool, progress: _Told) -> str: ...

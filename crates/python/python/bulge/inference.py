@@ -8,15 +8,18 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from bulge import _bulge
 from bulge.effects import OwnEffects, joined, own_text
 from bulge.measurements import Data, DataLike, measured
 from bulge.muscle import Muscle, effect_units
+from bulge.optional import need
 from bulge.progress import Progress, callback
 from bulge.results import Result, number, rung_names
 from bulge.statements import Bounded, Held, Lines, Tied, said
 from bulge.texts import count, read_text, write_whole
-from bulge.units import Quantity, si, si_range
+from bulge.units import FloatArray, Quantity, si, si_range
 
 
 class _Reported(Result):
@@ -82,6 +85,26 @@ class Comparison(_Reported):
     """Model against measurement, and the error as effects are added: the document of ``bulge compare --json``."""
 
     _what, _file = "comparison", "compare.json"
+
+    @property
+    def columns(self) -> dict[str, Any]:
+        """The rows: arrays by name, each of shape ``(rows,)``, in the order of the data.
+
+        ``file``, ``line`` (or number of the row, from 1), ``sweep`` (of a path), ``specimen``, ``counts`` (whether the row enters errors and fits),
+        ``time_s`` (where it was read), ``pressure_pa``, ``contraction``, ``measured_n``, ``base_n`` (of the muscle as stated), ``model_n`` (with
+        the effects) and ``residual_n`` (measured less ``model_n``). What is unknown is NaN.
+        """
+        return {name: np.asarray(values) for name, values in self._whole().columns().items()}
+
+    @property
+    def residuals(self) -> FloatArray:
+        """Measured force less that of the model with the effects [N], of each row; NaN where a row has no state."""
+        found: FloatArray = self.columns["residual_n"]
+        return found
+
+    def to_pandas(self) -> Any:
+        """The rows as a DataFrame: see :attr:`columns`."""
+        return need("pandas", "a data frame", "pandas").DataFrame(self.columns)
 
     def plot(self, ax: Any = None) -> Any:
         """Draws measured and computed force; returns the axes (matplotlib)."""
@@ -155,9 +178,37 @@ class Fit(Result):
 
     _what = "fit"
 
-    def __init__(self, document: dict[str, Any], own: str = "") -> None:
+    def __init__(self, document: dict[str, Any], own: str = "", native: _bulge.Fit | None = None) -> None:
         super().__init__(document)
         self._own = own
+        self._native = native
+        self._comparison: Comparison | None = None
+
+    def _compared(self) -> Comparison:
+        """The comparison whose last rung is this fit; it is computed once, and takes as long as the fit."""
+        if self._comparison is None:
+            if self._native is None:
+                raise _bulge.InputError(f"this {self._what} has travelled and left its rows behind: make it again where they are needed")
+            self._comparison = Comparison(self._native.comparison())
+        return self._comparison
+
+    @property
+    def columns(self) -> dict[str, Any]:
+        """The rows, measured and fitted: see :attr:`Comparison.columns`. Computed when first asked for, which takes as long as the fit."""
+        return self._compared().columns
+
+    @property
+    def residuals(self) -> FloatArray:
+        """Measured less fitted force [N] of each row; NaN where a row has no state."""
+        return self._compared().residuals
+
+    def to_pandas(self) -> Any:
+        """The rows as a DataFrame: see :attr:`columns`."""
+        return self._compared().to_pandas()
+
+    def plot(self, ax: Any = None) -> Any:
+        """Draws measured and fitted force, dotted the muscle as stated; returns the axes (matplotlib)."""
+        return self._compared().plot(ax)
 
     @property
     def learnt(self) -> Muscle:
@@ -359,8 +410,8 @@ def fit(
     if not names:
         raise _bulge.InputError("with_: name the effects to fit, such as [\"end-taper\", \"bladder-elasticity\"]")
     text = own_text(own)
-    document = json.loads(_bulge.fit(measured(data, muscle)._native, muscle._native, names, text, bool(form_error), said(exclude, hold, bound, tie)))
-    return Fit(document, joined(muscle._native.own, text))
+    native = _bulge.fit(measured(data, muscle)._native, muscle._native, names, text, bool(form_error), said(exclude, hold, bound, tie))
+    return Fit(json.loads(native.document()), joined(muscle._native.own, text), native)
 
 
 def plan(muscle: Muscle, protocol: str | os.PathLike[str], *, own: OwnEffects = None) -> Plan:
@@ -393,7 +444,7 @@ def next_experiment(
     """
     limits = [
         None if value is None else si_range(value, unit, name)
-        for value, unit, name in [(pressure, "Pa", "pressure"), (contraction, "1", "contraction")]
+        for value, unit, name in [(pressure, "Pa", "pressure"), (contraction, "%", "contraction")]
     ]
     rows, stated = measured(data, muscle), said(exclude, hold, bound, tie)
     with callback(progress, "next experiment") as told:

@@ -24,8 +24,8 @@ from bulge.units import FloatArray, Quantities, Quantity, si, si_array
 #: SI units of what a muscle file states beside the numbers of the muscle.
 _INSTRUMENT_UNITS = {"force": "N", "pressure": "Pa", "length": "m", "time": "s", "temperature": "K"}
 #: SI units of what is varied beside the numbers of the muscle.
-_STATE_UNITS = {"contraction": "1", "pressure": "Pa", "slenderness": "1", "elastic_group": "1"}
-_GIVEN = {"contraction": "1", "length": "m", "force": "N", "volume": "m^3"}
+_STATE_UNITS = {"contraction": "%", "pressure": "Pa", "slenderness": "1", "elastic_group": "1"}
+_GIVEN = {"contraction": "%", "length": "m", "force": "N", "volume": "m^3"}
 
 
 def _of_muscle(native: _bulge.Muscle, name: str, value: Quantity) -> float:
@@ -77,23 +77,23 @@ class Muscle:
         lines = [f"name = {quoted(name)}", f"kind = {quoted(kind)}"]
         for key, value, unit in [("length", length, "m"), ("radius", radius, "m"), ("braid_angle", braid_angle, "rad"), ("wall", wall, "m")]:
             if value is not None:
-                lines.append(f"{key} = {_written(value, unit)}")
+                lines.append(f"{key} = {_written(value, unit, key)}")
         if fibres is not None:
             lines.append("fibres = " + (quoted(fibres) if isinstance(fibres, str) else str(count("fibres", fibres, 1))))
         if ends is not None:
             lines.append(f"ends = {quoted(ends)}")
         if fibre is not None:
             units = {"stiffness": "N", "section": "m^2"}
-            lines.append("fibre = " + _inline({key: _written(value, units.get(key, "1")) for key, value in fibre.items()}))
+            lines.append("fibre = " + _inline({key: _written(value, units.get(key, "1"), f"fibre {key}") for key, value in fibre.items()}))
         known = effect_units(own_effects)
         for effect, numbers in (effects or {}).items():
             lines.append(f"[effects.{quoted(effect)}]")
-            lines += [f"{quoted(key)} = {_written(value, known.get(f'{effect}.{key}', '1'))}" for key, value in numbers.items()]
+            lines += [f"{quoted(key)} = {_written(value, known.get(f'{effect}.{key}', '1'), f'{effect}.{key}')}" for key, value in numbers.items()]
         if instruments:
             lines.append("[instruments]")
             for instrument, widths in instruments.items():
                 unit = _INSTRUMENT_UNITS.get(instrument, "1")
-                entries = {key: _written(value, "1" if key == "gain" else unit) for key, value in widths.items()}
+                entries = {key: _written(value, "1" if key == "gain" else unit, f"{instrument} {key}") for key, value in widths.items()}
                 lines.append(f"{quoted(instrument)} = {_inline(entries)}")
         native = _bulge.Muscle.from_text("\n".join(lines) + "\n", name, own_effects)
         for specimen, numbers in (specimens or {}).items():
@@ -223,7 +223,7 @@ class Muscle:
         if errors not in ("raise", "coerce"):
             raise _bulge.InputError(f"errors: {errors!r} is neither \"raise\" nor \"coerce\"")
         names = [outputs] if isinstance(outputs, str) else list(outputs)
-        varied: dict[str, float | FloatArray] = {"contraction": si_array(contraction, "1", "contraction")}
+        varied: dict[str, float | FloatArray] = {"contraction": si_array(contraction, "%", "contraction")}
         if pressure is not None:
             varied["pressure"] = si_array(pressure, "Pa", "pressure")
         elif any(name not in _PRESSURELESS for name in names):
@@ -282,7 +282,7 @@ class Muscle:
         for p in np.atleast_1d(np.asarray(si_array(pressure, "Pa", "pressure"))):
             limit = self.contraction_limit(float(p), method)
             singular = self.kind == "pleated" and self.number("fibre_stiffness") is None
-            first = si(start, "1", "start") if start is not None else (0.01 * limit / 0.4 if singular else 0.0)
+            first = si(start, "%", "start") if start is not None else (0.01 * limit / 0.4 if singular else 0.0)
             contraction = np.linspace(first, limit, points)
             found = self.evaluate(["force", "volume", "stiffness", "max_radius"], contraction, pressure=float(p), method=method, errors="coerce")
             columns = {
@@ -461,11 +461,11 @@ def _check_numbers(varied: Mapping[str, float | FloatArray]) -> None:
             raise _bulge.InputError(f"{name}: {found}{where}: it must be {must}")
 
 
-def _written(value: Quantity, unit: str) -> str:
+def _written(value: Quantity, unit: str, name: str) -> str:
     """A value of a muscle file."""
     if isinstance(value, str):
         return quoted(value)
-    number = si(value, unit)
+    number = si(value, unit, name)
     if not np.isfinite(number):
         raise _bulge.InputError(f"{number} is no number that a muscle can have")
     return json.dumps(f"{number!r} {unit}") if unit != "1" else repr(number)

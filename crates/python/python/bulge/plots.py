@@ -105,3 +105,17 @@ def ladder(diagnosis: Diagnosis, ax: Any) -> Any:
     ax.set(ylabel="RMS error [N]", title=f"{diagnosis.verdict}: {', '.join(diagnosis.names)}" if diagnosis.names else diagnosis.verdict)
     ax.tick_params(axis="x", labelrotation=20)
     return ax
+
+
+def lines(drawing: tuple[str, str, str, list[tuple[str, list[list[float]]]]], ax: Any) -> Any:
+    """Named lines against two axes."""
+    ax = _axes(ax)
+    title, x, y, every = drawing
+    for i, (name, points) in enumerate(every):
+        at = np.array(points).reshape(-1, 2)
+        load = name == "load"
+        ax.plot(at[:, 0], at[:, 1], "o-" if load else "-", color="black" if load else _colour(i), label=name)
+    ax.set(xlabel=x, ylabel=y, title=title)
+    if len(every) > 1:
+        ax.legend()
+    return ax

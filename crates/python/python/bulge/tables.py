@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+from math import inf, nan
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +13,7 @@ import numpy as np
 from bulge import _bulge
 from bulge.results import Result, number
 from bulge.muscle import common_shape
-from bulge.units import FloatArray, Quantities, si_array
+from bulge.units import PLAUSIBLE, FloatArray, Quantities, si_array
 
 
 class Table(Result):
@@ -29,6 +30,12 @@ class Table(Result):
     def __init__(self, content: bytes, origin: str = "the table") -> None:
         self._native = _bulge.Table.from_bytes(content, origin)
         super().__init__(json.loads(self._native.document()))
+        # Looked up at single points, a table is asked a million times.
+        self._axes = [axis["name"] for axis in self._document["axes"]]
+        self._outputs = [output["name"] for output in self._document["outputs"]]
+        # A contraction is a share, of which 20 is a slip for 20 %.
+        self._units = ["%" if axis["name"] == "contraction" else axis["unit"] for axis in self._document["axes"]]
+        self._plausible = [PLAUSIBLE.get(unit, (0.0, inf, "", 1.0))[:2] for unit in self._units]
 
     @classmethod
     def read(cls, path: str | os.PathLike[str]) -> Table:
@@ -45,45 +52,66 @@ class Table(Result):
     @property
     def axis_names(self) -> list[str]:
         """Names of the axes."""
-        return [axis["name"] for axis in self._document["axes"]]
+        return list(self._axes)
 
     @property
     def output_names(self) -> list[str]:
         """Names of the outputs."""
-        return [output["name"] for output in self._document["outputs"]]
+        return list(self._outputs)
 
     def __call__(self, *, errors: str = "coerce", **at: Quantities) -> dict[str, Any]:
         """Outputs at points: an array (or float) by name; the axes are given by name and broadcast.
 
         Outside of the domain, which nothing extrapolates, values are NaN; ``errors="raise"`` raises :class:`bulge.NoSolutionError`.
         """
+        point = self._point(at)
+        if point is not None and errors == "coerce":
+            one = self._native.at(point)
+            return dict(zip(self._outputs, one)) if one is not None else dict.fromkeys(self._outputs, nan)
         values, _, shape = self._sample(at)
         self._check(values, shape, errors)
-        return {name: _shaped(values[:, o], shape) for o, name in enumerate(self.output_names)}
+        return {name: _shaped(values[:, o], shape) for o, name in enumerate(self._outputs)}
 
     def gradient(self, *, errors: str = "coerce", **at: Quantities) -> dict[str, dict[str, Any]]:
         """Derivatives at points: ``gradient["force_f"]["contraction"]``, in SI."""
+        n = len(self._axes)
+        point = self._point(at)
+        if point is not None and errors == "coerce":
+            one = self._native.slopes_at(point)
+            if one is None:
+                one = [nan] * (n * len(self._outputs))
+            return {output: dict(zip(self._axes, one[o * n : o * n + n])) for o, output in enumerate(self._outputs)}
         values, gradients, shape = self._sample(at)
         self._check(values, shape, errors)
-        n = len(self.axis_names)
         return {
-            output: {axis: _shaped(gradients[:, o * n + a], shape) for a, axis in enumerate(self.axis_names)}
-            for o, output in enumerate(self.output_names)
+            output: {axis: _shaped(gradients[:, o * n + a], shape) for a, axis in enumerate(self._axes)}
+            for o, output in enumerate(self._outputs)
         }
 
     def upper_end(self, **at: Quantities) -> Any:
         """The end of the first axis (the contraction limit, where the table follows it) at points of the others."""
-        first = self.axis_names[0]
+        first = self._axes[0]
         points, shape = self._points({first: float(self._document["axes"][0]["low"]), **at})
         return _shaped(self._native.upper_end(points), shape)
 
+    def _point(self, at: dict[str, Quantities]) -> tuple[Any, ...] | None:
+        """A single point of plausible floats; None of anything else, which :meth:`_points` looks at."""
+        if len(at) != len(self._axes):
+            return None
+        point = []
+        for name, (low, high) in zip(self._axes, self._plausible):
+            value = at.get(name)
+            if not (isinstance(value, float) and (low <= abs(value) <= high or value == 0.0)):
+                return None
+            point.append(value)
+        return tuple(point)
+
     def _points(self, at: dict[str, Quantities]) -> tuple[FloatArray, tuple[int, ...]]:
-        axes = self._document["axes"]
-        names = self.axis_names
+        names = self._axes
         wrong = [name for name in at if name not in names] + [name for name in names if name not in at]
         if wrong:
             raise _bulge.InputError(f"this table has the axes {', '.join(names)}: `{wrong[0]}` is {'missing' if wrong[0] in names else 'none of them'}")
-        columns = {axis["name"]: si_array(at[axis["name"]], axis["unit"], axis["name"]) for axis in axes}
+        columns = {name: si_array(at[name], unit, name) for name, unit in zip(names, self._units)}
         shape = common_shape(columns)
         points = np.stack([np.broadcast_to(column, shape).reshape(-1) for column in columns.values()], axis=-1)
         return np.ascontiguousarray(points, dtype=np.float64), shape

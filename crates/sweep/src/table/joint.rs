@@ -93,6 +93,20 @@ impl JointTable {
         let (joint, (outputs, table)) = Joint::read(path.as_ref(), checks, wanted)?;
         Ok(Self { joint, outputs, table })
     }
+
+    /// The same from TOML text; see [`Joint::from_toml`].
+    ///
+    /// # Errors
+    /// As [`Joint::from_toml`].
+    pub fn from_toml(
+        text: &str,
+        origin: &str,
+        folder: Option<&Path>,
+        checks: Checks,
+    ) -> Result<Self, FileError> {
+        let (joint, (outputs, table)) = Joint::from_toml(text, origin, folder, checks, wanted)?;
+        Ok(Self { joint, outputs, table })
+    }
 }
 
 /// The outputs that a joint file names, and its table.

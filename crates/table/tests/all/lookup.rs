@@ -472,3 +472,17 @@ fn the_records_are_read() {
         }
     }
 }
+
+/// Bytes that were checked are a table again without another check; other bytes are checked.
+#[test]
+fn checked_bytes_are_a_table_again() {
+    let table = Table::from_bytes(PPAM).unwrap();
+    let (checked, point) = (table.checked(), point_at(&table, &[0.3, 0.6, 0.5, 0.5]));
+    let again = Table::again(PPAM, checked).unwrap();
+    assert!(sample(&table, &point).is_some());
+    assert_eq!((sample(&again, &point), again.text()), (sample(&table, &point), table.text()));
+    let mut damaged = PPAM.to_vec();
+    *damaged.last_mut().unwrap() ^= 1;
+    assert!(matches!(Table::again(&damaged, checked), Err(TableError::Checksum { .. })));
+    assert!(Table::again(&PPAM[..PPAM.len() - 1], checked).is_err());
+}

@@ -64,7 +64,7 @@ impl MembraneSeries {
 }
 
 /// Removes a file; returns whether it existed.
-fn remove(path: &Path) -> Result<bool, VtkError> {
+pub(super) fn remove(path: &Path) -> Result<bool, VtkError> {
     match std::fs::remove_file(path) {
         Ok(()) => Ok(true),
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(false),
