@@ -204,7 +204,7 @@ fn profiled(problem: &FitProblem<'_>, minimum: &Minimum, place: usize, variance:
         }
     }
     points.sort_by(|a, b| a[0].total_cmp(&b[0]));
-    points.dedup_by(|a, b| a[0] == b[0]);
+    points.dedup_by(|a, b| a[0].total_cmp(&b[0]).is_eq());
     points
 }
 

@@ -251,7 +251,9 @@ impl Residuals for FitProblem<'_> {
         });
         self.whiten(used)?;
         for (line, slope) in used.chunks_exact_mut(k).zip(&slopes) {
-            line.iter_mut().for_each(|entry| *entry *= slope);
+            for entry in line {
+                *entry *= slope;
+            }
         }
         for (line, (place, _, sd)) in priors.chunks_exact_mut(k).zip(&self.priors) {
             line.fill(0.0);
