@@ -125,8 +125,8 @@ fn mistakes_are_named() {
     let rigid = folder.write("rigid.toml", rigid);
     for (given, status, words) in [
         ("sense ppam-2-r16 --turns 5000", 1, "take fewer turns"),
-        ("sense ppam-2-r16 --zone '70 %..30 %'", 1, "from 0.7 to 0.3"),
-        ("sense ppam-2-r16 --channel '-1 mm'", 1, "section of the channel"),
+        ("sense ppam-2-r16 --zone '70 %..30 %'", 1, "from 70 % to 30 %"),
+        ("sense ppam-2-r16 --channel '-1 mm'", 1, "diameter of the channel is -1 mm"),
         ("sense ppam-2-r16 --points 3", 1, "11 to 10001"),
         ("sense ppam-2-r16 --noise 1", 1, "--noise: `1` can't be read"),
         ("sense ppam-2-r16 --contraction '5 %..60 %'", 3, "the limit of this muscle is 41.8497 %"),
@@ -144,6 +144,7 @@ fn mistakes_are_named() {
         ),
         ("heat --pipe 4", 1, "`4` is no pipe"),
         ("heat --pipe '300 mm x 4 mm'", 1, "length of the pipe"),
+        ("heat --length '0.5 mm'", 1, "the length of the muscle is 0.5 mm; it must be 1 mm to 100 m"),
         ("heat --period 1", 1, "--period: `1` can't be read"),
         ("heat --pressure '5 bar..1 bar'", 1, "high gauge pressure"),
         ("heat --port '0.2 mm' --pipe none", 3, "Mach"),

@@ -121,17 +121,17 @@ fn mistakes_are_named() {
         (
             "size --load '50 mm: 5 N, 20 mm: 5 N'".to_owned(),
             1,
-            "point 2 of the load lies at the travel 0.02 m",
+            "point 2 of the load lies at the travel 20 mm",
         ),
         (lift("--muscle nosuch"), 1, "no shipped muscle is called `nosuch`"),
         (lift("--law nosuch --muscle dmsp-20-400"), 1, "there is no force law `nosuch`"),
         (lift("--law sarosi-6"), 1, "dmsp-10 stands for the law of S4"),
         (lift("--law sarosi-6 --muscle ppam-2-r16"), 1, "sarosi-6 is not for ppam-2-r16"),
         (lift("--law sarosi-6 --table x --muscle dmsp-20-400"), 1, "has no numbers called `x`"),
-        (lift("--pressure '-1 bar'"), 1, "the pressure is -100000"),
-        (lift("--margin '-100 %'"), 1, "the margin is -1"),
-        (lift("--max-contraction '120 %'"), 1, "the largest contraction is 1.2"),
-        (lift("--max-length '-1 m'"), 1, "the longest length is -1"),
+        (lift("--pressure '-1 bar'"), 1, "the pressure is -1 bar: it must be"),
+        (lift("--margin '-100 %'"), 1, "the margin is -100 %"),
+        (lift("--max-contraction '120 %'"), 1, "the largest contraction is 120 %"),
+        (lift("--max-length '-1 m'"), 1, "the longest length is -1000 mm"),
         (lift("--pressure '1 bar' --muscle dmsp-20"), 3, "none of these muscles carries 500.0 N"),
     ] {
         refused(&line(&given), status, &[words]);
