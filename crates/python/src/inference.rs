@@ -2,10 +2,10 @@
 
 use bulge_effects::{Catalogue, Effect, describe, known};
 use bulge_inference as inference;
-use bulge_inference::{DiagnoseOptions, NextLimits, Options, Progress, Protocol, rows_to_exclude};
+use bulge_inference::{DiagnoseOptions, Loss, NextLimits, Options, Progress, Protocol, rows_to_exclude};
 use bulge_report::diagnosis::NextStep;
-use bulge_report::{Learnt, comparison, diagnosis};
-use numpy::PyArray1;
+use bulge_report::{Learnt, comparison, diagnosis, posterior_svg};
+use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Arc;
@@ -122,6 +122,14 @@ fn all(muscle: &Muscle, own: &str) -> PyResult<Catalogue> {
     Ok(catalogue)
 }
 
+/// A loss by its name.
+fn loss_named(name: &str) -> PyResult<Loss> {
+    Loss::named(name).ok_or_else(|| {
+        let all = Loss::ALL.map(Loss::name).join("\", \"");
+        input(format!("loss: there is no \"{name}\"; write \"{all}\""))
+    })
+}
+
 fn telling(watch: &Watch) -> Progress {
     let (told, beat) = (watch.clone(), watch.clone());
     Progress::to(move |share, what| told.at(share, what)).beating(move || beat.look())
@@ -139,9 +147,11 @@ pub(crate) fn compare(
     law: Option<&str>,
     fit_law: bool,
     rivals: bool,
+    loss: &str,
     said: Said,
 ) -> PyResult<Comparison> {
     let mut options = options(muscle, own, &with_)?;
+    options.loss = loss_named(loss)?;
     options.rivals = rivals;
     if let Some(name) = law {
         options =
@@ -261,10 +271,26 @@ impl Fit {
         let (comparison, rows) = found.or_raise()?;
         Ok(Comparison(comparison, rows))
     }
+
+    /// The posterior of its numbers: a JSON document, the draws (draw, number), and the picture as SVG.
+    fn posterior<'py>(
+        &self,
+        py: Python<'py>,
+        seed: u64,
+    ) -> PyResult<(String, Bound<'py, PyArray2<f64>>, Option<String>)> {
+        let (data, muscle, options) = (Arc::clone(&self.data), self.muscle.clone(), self.options.clone());
+        let title = format!("{}: what the data leave open", muscle.name());
+        let found = beside(py, None, move |_| inference::posterior(&data, &muscle, &options, seed))?;
+        let (_, posterior) = found.or_raise()?;
+        let draws = PyArray2::from_vec2(py, &posterior.draws).map_err(|error| input(error.to_string()))?;
+        let picture = posterior_svg(&title, &posterior).ok();
+        Ok((serde_json::to_string(&posterior).or_raise()?, draws, picture))
+    }
 }
 
 /// Fits; see `bulge.fit`.
 #[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "called by the Python part alone")]
 pub(crate) fn fit(
     py: Python<'_>,
     data: &Data,
@@ -272,9 +298,11 @@ pub(crate) fn fit(
     with_: Vec<String>,
     own: &str,
     form_error: bool,
+    loss: &str,
     said: Said,
 ) -> PyResult<Fit> {
-    let options = said.apply(py, options(muscle, own, &with_)?, &data.0, &muscle.muscle)?;
+    let mut options = said.apply(py, options(muscle, own, &with_)?, &data.0, &muscle.muscle)?;
+    options.loss = loss_named(loss)?;
     let (data, muscle) = (Arc::clone(&data.0), muscle.muscle.clone());
     let (of, on, with) = (Arc::clone(&data), muscle.clone(), options.clone());
     let fitting = beside(py, None, move |_| inference::fit_effects(&of, &on, &with))?;

@@ -24,6 +24,7 @@ const NEEDED: &[&str] = &[
     "fsspec",
     "tqdm",
     "pytest",
+    "pytest-xdist",
 ];
 
 /// Least version of Python.
@@ -90,7 +91,14 @@ fn run(tests: &Path, words: &[String], skipped: &[String]) -> Result<ExitCode, W
     said(Command::new(&venv).args(install).arg(&wheel), "the wheel could not be installed")
         .map_err(Why::Broken)?;
     let mut pytest = Command::new(&venv);
-    pytest.args(["-m", "pytest", "-p", "no:cacheprovider", "--rootdir"]).arg(tests).arg(tests);
+    // Most of a test runs on one core: two files at a time.
+    let apart = ["-n", "2", "--dist", "loadfile"];
+    pytest
+        .args(["-m", "pytest", "-p", "no:cacheprovider"])
+        .args(apart)
+        .arg("--rootdir")
+        .arg(tests)
+        .arg(tests);
     let mut chosen: Vec<String> = skipped.iter().map(|word| format!("not {word}")).collect();
     if !words.is_empty() {
         chosen.push(format!("({})", words.join(" or ")));

@@ -211,6 +211,34 @@ class Fit(Result):
         return self._compared().plot(ax)
 
     @property
+    def names(self) -> list[str]:
+        """Names of the fitted numbers with their units, as rows and columns of :attr:`covariance` have them."""
+        return [_named(p) for p in (self._document["fit"] or {}).get("parameters", [])]
+
+    @property
+    def covariance(self) -> FloatArray:
+        """Covariance of the fitted numbers, in products of the units of :attr:`names`; NaN where the data don't determine one.
+
+        ``pandas.DataFrame(fit.covariance, fit.names, fit.names)`` is a table with names.
+        """
+        return _matrix((self._document["fit"] or {}).get("covariance", []), len(self.names))
+
+    @property
+    def correlation(self) -> FloatArray:
+        """Correlations of the fitted numbers."""
+        return _matrix((self._document["fit"] or {}).get("correlations", []), len(self.names))
+
+    def posterior(self, seed: int = 1) -> Posterior:
+        """Draws of the posterior of the fitted numbers, their quantiles, and their profile likelihoods: what ``bulge fit --posterior`` computes.
+
+        The same ``seed`` gives the same draws.
+        """
+        if self._native is None:
+            raise _bulge.InputError(f"this {self._what} has travelled and left its rows behind: make it again where they are needed")
+        document, draws, picture = self._native.posterior(count("seed", seed, 0))
+        return Posterior(json.loads(document), draws, picture)
+
+    @property
     def learnt(self) -> Muscle:
         """The muscle with what was learnt, for :meth:`Muscle.force`, the next comparison, or a file (``fit.learnt.to_toml("learnt.toml")``)."""
         return Muscle.from_toml(self._document["model"], self._own)
@@ -255,6 +283,64 @@ class Fit(Result):
 
     def __reduce__(self) -> Any:
         return (Fit, (self._document, self._own))
+
+
+class Posterior(Result):
+    """The posterior of a fit: ``parameters`` with their ``quantiles`` (2.5, 16, 50, 84, 97.5 %), ``profile`` (value, twice the fall of the log
+    likelihood) and ``r_hat``; ``draws`` (draw, number).
+    """
+
+    _what = "posterior"
+
+    def __init__(self, document: dict[str, Any], draws: FloatArray, picture: str | None) -> None:
+        super().__init__(document)
+        self._draws, self._picture = draws, picture
+
+    @property
+    def draws(self) -> FloatArray:
+        """The draws: a row each, with the numbers in the units of :attr:`names`."""
+        return self._draws
+
+    @property
+    def names(self) -> list[str]:
+        """Names of the numbers with their units."""
+        return [_named(p) for p in self._document["parameters"]]
+
+    def to_pandas(self) -> Any:
+        """The draws as a DataFrame."""
+        return need("pandas", "a data frame", "pandas").DataFrame(self._draws, columns=self.names)
+
+    @property
+    def svg(self) -> str:
+        """The picture of ``bulge fit --posterior``: each number alone with its profile likelihood, and each pair."""
+        if self._picture is None:
+            raise _bulge.InputError("nothing is drawn: only numbers of the rig were fitted, or none")
+        return self._picture
+
+    def _repr_svg_(self) -> str | None:
+        return self._picture
+
+    def _lines(self) -> list[str]:
+        return [f"posterior of {len(self.names)} numbers, {self._document['count']} draws"]
+
+    def _tables(self) -> list[tuple[list[str], list[list[str]]]]:
+        rows = []
+        for name, p in zip(self.names, self._document["parameters"]):
+            low, below, middle, above, high = (number(x) for x in p["quantiles"])
+            rows.append([name, middle, f"{below} to {above}", f"{low} to {high}", f"{p['r_hat']:.3f}"])
+        return [(["number", "median", "68 %", "95 %", "r-hat"], rows)]
+
+    def __reduce__(self) -> Any:
+        return (Posterior, (self._document, self._draws, self._picture))
+
+
+def _named(p: Mapping[str, Any]) -> str:
+    specimen = f"[{p['specimen']}]" if p["specimen"] else ""
+    return f"{p['effect']}.{p['name']}{specimen}" + ("" if p["unit"] == "1" else f" [{p['unit']}]")
+
+
+def _matrix(values: list[float | None], size: int) -> FloatArray:
+    return np.array(values, dtype=np.float64).reshape(size, size)
 
 
 class Plan(Result):
@@ -340,6 +426,7 @@ def compare(
     hold: Held = None,
     bound: Bounded = None,
     tie: Tied = None,
+    loss: str = "squares",
 ) -> Comparison:
     """Compares the model with measurements: what ``bulge compare`` does.
 
@@ -350,8 +437,12 @@ def compare(
     ``{"bladder-elasticity.modulus": "0.31 MPa"}``; ``bound`` keeps them between two, ``{"coulomb-friction.force": ("5 N", "20 N")}``; ``tie``
     gives a number the value of another, ``{"force-lag.time": "pressure-lag.time"}``. Floats are SI. Raises :class:`bulge.InputError` if there is no
     such line or number, a value is out of the bounds of its effect, or a number that isn't fitted is meant.
+
+    ``loss`` is what a reading contributes that lies far off: ``"squares"``, or less than that with ``"huber"``, ``"soft-l1"`` or ``"cauchy"``, so that
+    spikes pull less.
     """
-    return Comparison(_bulge.compare(measured(data, muscle)._native, muscle._native, _names(with_), own_text(own), law, fit_law, rivals, said(exclude, hold, bound, tie)))
+    stated = said(exclude, hold, bound, tie)
+    return Comparison(_bulge.compare(measured(data, muscle)._native, muscle._native, _names(with_), own_text(own), law, fit_law, rivals, loss, stated))
 
 
 def diagnose(
@@ -399,18 +490,19 @@ def fit(
     hold: Held = None,
     bound: Bounded = None,
     tie: Tied = None,
+    loss: str = "squares",
 ) -> Fit:
     """Fits effects, and gives the muscle that has learnt them: what ``bulge fit`` does. Raises :class:`bulge.NotConvergedError`.
 
     ``form_error`` also draws the form that the data want of each effect, as ``bulge fit --form-error`` does: :attr:`Fit.bent` says how much the
-    formulas are bent, and :attr:`Fit.drawn` are effects of one's own with these forms. ``exclude``, ``hold``, ``bound`` and ``tie`` are those of
-    :func:`compare`.
+    formulas are bent, and :attr:`Fit.drawn` are effects of one's own with these forms. ``exclude``, ``hold``, ``bound``, ``tie`` and ``loss`` are
+    those of :func:`compare`.
     """
     names = _names(with_)
     if not names:
         raise _bulge.InputError("with_: name the effects to fit, such as [\"end-taper\", \"bladder-elasticity\"]")
     text = own_text(own)
-    native = _bulge.fit(measured(data, muscle)._native, muscle._native, names, text, bool(form_error), said(exclude, hold, bound, tie))
+    native = _bulge.fit(measured(data, muscle)._native, muscle._native, names, text, bool(form_error), loss, said(exclude, hold, bound, tie))
     return Fit(json.loads(native.document()), joined(muscle._native.own, text), native)
 
 
