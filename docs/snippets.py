@@ -50,6 +50,10 @@ TIMEOUT = 300
 
 # What the first blocks of a page find in their folder.
 PREPARED = {
+    "README.md": {
+        "bulge-demo/hidden/data.csv": "crates/cli/data/hidden/data.csv",
+        "bulge-demo/hidden/muscle.toml": "crates/cli/data/hidden/muscle.toml",
+    },
     "docs/python.md": {
         "data.csv": "crates/cli/data/hidden/data.csv",
         "new.csv": "crates/cli/data/hidden/data.csv",
@@ -250,6 +254,7 @@ class Page:
         with tempfile.TemporaryDirectory() as temporary:
             folder = Path(temporary)
             for name, source in PREPARED.get(self.name, {}).items():
+                (folder / name).parent.mkdir(parents=True, exist_ok=True)
                 (folder / name).write_bytes((ROOT / source).read_bytes())
             printed = None
             for block in blocks_of(self.text):

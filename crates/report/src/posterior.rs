@@ -47,7 +47,7 @@ pub fn posterior_svg(title: &str, posterior: &Posterior) -> Result<String, PlotE
         })
         .collect::<Result<_, _>>()?;
     let count = shown.len() as f64;
-    let (width, height) = ((LEFT + count * CELL.0 + 8.0).max(560.0), TOP + count * CELL.1 + 8.0);
+    let (width, height) = ((LEFT + count * CELL.0 + 8.0).max(560.0), TOP + count * CELL.1 + 18.0);
     let mut svg = Svg::new("posterior", width, height);
     svg.text((0.5 * width, 18.0), title, Style::new(Anchor::Middle).size(15.0));
     let legend = "bars and dots: draws; line: profile likelihood; ellipse: 95 % by the covariance";
@@ -123,8 +123,8 @@ fn finely(profile: &[[f64; 2]]) -> Vec<[f64; 2]> {
         profile.iter().enumerate().map(|(i, point)| root(*point, i < least)).collect();
     let between = |pair: &[[f64; 2]]| {
         let [[x0, z0], [x1, z1]] = [pair[0], pair[1]];
-        (0..8).map(move |k| {
-            let part = f64::from(k) / 8.0;
+        (0..16).map(move |k| {
+            let part = f64::from(k) / 16.0;
             [x0 + part * (x1 - x0), (z0 + part * (z1 - z0)).powi(2)]
         })
     };

@@ -20,6 +20,7 @@ use serde::Serialize;
 
 use crate::comparison::analysis::{Analysis, Climbed};
 use crate::fit::document::{Fit, Fitted};
+use crate::fit::frozen::cost;
 use crate::fit::interval::Scale;
 use crate::fit::problem::FitProblem;
 use crate::fit::search::{Task, settle, some_of_long, weights};
@@ -33,8 +34,8 @@ const ROUND: usize = 250;
 /// Draws of a chain that are kept, and steps between two.
 const KEPT: usize = 500;
 const BETWEEN: usize = 8;
-/// Standard deviations at which a profile is computed; to 3, which every reader asks for.
-const LEVELS: [f64; 6] = [0.5, 1.0, 1.5, 2.0, 2.5, 3.0];
+/// Standard deviations at which a profile is computed: between them its root is nearly straight.
+const LEVELS: [f64; 3] = [1.0, 2.0, 3.0];
 /// Probabilities of the quantiles: the interval of 95 %, that of 68 %, the median.
 const QUANTILES: [f64; 5] = [0.025, 0.16, 0.5, 0.84, 0.975];
 /// Rows from which a thinned record stands for the whole, with a variance that makes up for it.
@@ -236,7 +237,9 @@ fn walk(
 ) -> Result<Chain, ModelError> {
     let count = minimum.theta.len();
     let bounds = problem.bounds();
+    // With derivatives, from which the equilibria are held.
     problem.hold();
+    cost(problem, &minimum.theta)?;
     let mut residuals = vec![0.0; problem.rows()];
     let mut half = |at: &[f64]| -> Result<f64, ModelError> {
         problem.evaluate(at, 0..problem.rows(), &mut residuals, None)?;

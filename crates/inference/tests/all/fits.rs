@@ -658,7 +658,7 @@ fn the_posterior_of_a_straight_model_is_normal() {
             let z = (value - fitted.value) / sd;
             assert!((z * z - rise).abs() < 0.05 * (1.0 + rise), "{}: {value} {rise} {z}", p.name);
         }
-        assert!(p.profile.len() == 13, "{}", p.profile.len());
+        assert!(p.profile.len() == 7, "{}", p.profile.len());
     }
     let again = posterior(&data, &muscle, &options(&names), 7).unwrap().1;
     assert_eq!(again.draws, found.draws);
