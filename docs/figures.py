@@ -31,6 +31,7 @@ PICTURES = {
 FOLDERS = {"docs/drawings/": "python3 docs/drawings.py --bulge PATH"}
 """Pictures below a folder that one command draws."""
 
+CI = (ROOT / ".ci/run").read_text(encoding="utf-8")
 MARKER = re.compile(r"<!-- (table|measured|source): (.*) -->$")
 RULE = re.compile(r"^\|[-| :]+\|$")
 FIGURE = re.compile(r"^[<>~+-]?\s*\d")
@@ -79,6 +80,12 @@ def quoted(command):
     return command if "`" in command else f"`{command}`"
 
 
+def is_compared(command):
+    """Whether CI makes a table again."""
+    asked = re.search(r"docs_table\.py (\w+)", command)
+    return bool(asked) and re.search(rf"docs_table\.py {asked[1]} --check", CI) is not None
+
+
 def command_of(picture):
     folder = next((command for folder, command in FOLDERS.items() if picture.startswith(folder)), None)
     return PICTURES.get(picture) or folder
@@ -98,7 +105,7 @@ def collected():
             title = heading.strip("| ").split("|")[0].strip() or heading.strip("| ").replace("|", ",").strip()
             if what == "table":
                 name, _, command = origin.partition(" (")
-                rows.append((page, f"table {name}", quoted(command.rstrip(")")), "written by the command, compared in CI"))
+                rows.append((page, f"table {name}", quoted(command.rstrip(")")), "written by the command" + ", compared in CI" * is_compared(command)))
             elif what == "measured":
                 parts = [part.strip() for part in origin.split(";", 2)]
                 if len(parts) != 3:
@@ -121,8 +128,8 @@ def collected():
 
 def page(rows):
     """The page of the book."""
-    text = "# Where each figure comes from\n\nWritten from the marks in README and book. Outputs in tutorials, commands in README and docs/python.md, and the tables that a command\n"
-    text += "writes are made again by every run of CI; what depends on the clock carries its date, machine and command.\n\n"
+    text = "# Where each figure comes from\n\nWritten from the marks in README and book. Outputs in tutorials and the snippets in Python are made again by every run of CI, and so\n"
+    text += "are the tables of which that is said; what depends on the clock carries its date, machine and command.\n\n"
     text += "| page | figure | command or source | how |\n|---|---|---|---|\n"
     for where, what, command, how in rows:
         link = f"[{where}]({'repository/README.md' if where == 'README.md' else Path(where).name})"

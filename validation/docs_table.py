@@ -136,6 +136,9 @@ def scored(*names):
     sys.path.insert(0, str(ANSWERS.parent))
     from answers import score
 
+    lacking = [name for name in names if not (ANSWERS / f"{name}.jsonl.gz").exists()]
+    if lacking:
+        sys.exit(f"{ANSWERS / lacking[0]}.jsonl.gz is not there: run the suite (prove.py) and keep its answers (answers.py keep)")
     return [score(ANSWERS / f"{name}.jsonl.gz") for name in names]
 
 
