@@ -141,7 +141,7 @@ fn how_sure_a_fit_is_can_be_drawn_and_read() {
     assert_eq!(fit["fit"]["covariance"].as_array().unwrap().len(), 4);
     assert_eq!((&fit["fit"]["loss"], &fit["fit"]["downweighted"]), (&"squares".into(), &0.into()));
     let svg = std::fs::read_to_string(&picture).unwrap();
-    has_parts(&svg, &["<svg", "friction", "profile likelihood"]);
+    has_parts(&svg, &["<svg", "force [N]", "profile likelihood"]);
     let table = std::fs::read_to_string(&draws).unwrap();
     let mut lines = table.lines();
     assert!(lines.next().unwrap().contains("coulomb-friction.force [N]"));

@@ -64,11 +64,19 @@ pub(crate) fn json(arguments: &[&str]) -> Value {
     serde_json::from_str(&stdout(arguments)).unwrap()
 }
 
-/// Exit status and message of a failing call, which prints nothing on standard output.
+/// Exit status and message of a failing call. Standard output is empty, or the document that says the same.
 pub(crate) fn failure(arguments: &[&str]) -> (i32, String) {
     let output = bulge(arguments);
-    assert!(output.stdout.is_empty(), "{arguments:?} printed {}", String::from_utf8_lossy(&output.stdout));
-    (output.status.code().unwrap(), String::from_utf8(output.stderr).unwrap())
+    let (status, message) = (output.status.code().unwrap(), String::from_utf8(output.stderr).unwrap());
+    if arguments.contains(&"--json") {
+        let document: Value = serde_json::from_slice(&output.stdout).unwrap();
+        assert_eq!((&document["schema"], &document["status"]), (&"bulge.failure/1".into(), &status.into()));
+        assert!(message.contains(document["message"].as_str().unwrap()), "{document} {message}");
+    } else {
+        let printed = String::from_utf8_lossy(&output.stdout);
+        assert!(printed.is_empty(), "{arguments:?} printed {printed}");
+    }
+    (status, message)
 }
 
 /// The message of a call that fails with this status; it is short and has these parts.
