@@ -114,7 +114,9 @@ mod tests {
                     .any(|open| path == *open || path.starts_with(&format!("{open}.")));
                 // Its numbers are of every muscle, its card is of pleats.
                 let is_of_pleats = path.starts_with("effects.limited-unfolding");
-                let owner = if is_of_pleats { Some(Kind::Pleated) } else { keys::owner(&path) };
+                let of_table = || keys::owner(path.rsplit_once('.')?.0);
+                let owner =
+                    if is_of_pleats { Some(Kind::Pleated) } else { keys::owner(&path).or_else(of_table) };
                 let belongs = owner.is_none_or(|owner| owner == kind);
                 let names: Vec<&str> = path.split('.').collect();
                 let stated = names

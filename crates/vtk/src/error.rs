@@ -45,11 +45,6 @@ impl VtkError {
             "{found} facets are too few to draw a round cross-section: use {least} or more"
         ))
     }
-
-    /// The mesh couldn't be turned into XML.
-    pub(crate) fn encode(path: &Path, reason: &str) -> Self {
-        Self::Drawing(format!("{}: the mesh can't be written as VTK XML: {reason}", path.display()))
-    }
 }
 
 /// Checks the extension of a name, by which ParaView chooses its reader.

@@ -139,7 +139,6 @@ pub fn write_vtu(path: impl AsRef<Path>, picture: &MembranePicture) -> Result<()
     let path = path.as_ref();
     check_extension(path, "vtu")?;
     check::check(picture)?;
-    let bytes =
-        xml::encode(Drawing::new(picture)?, picture).map_err(|reason| VtkError::encode(path, &reason))?;
+    let bytes = xml::encode(Drawing::new(picture)?, picture);
     whole_file::write(path, &bytes)
 }

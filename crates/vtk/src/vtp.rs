@@ -4,10 +4,10 @@ use crate::VtkError;
 use crate::bulge::{Bulge, whole};
 use crate::error::check_extension;
 use crate::mesh::Mesh;
-use crate::{whole_file, xml};
+use crate::whole_file;
+use crate::xml::{self, Array, Section, Values};
 use bulge_fibre::Response;
 use std::path::Path;
-use vtkio::model::{Attribute, Attributes, DataSet, PolyDataPiece, VertexNumbers};
 
 /// Writes one shape; the file appears whole or not at all.
 ///
@@ -17,7 +17,7 @@ use vtkio::model::{Attribute, Attributes, DataSet, PolyDataPiece, VertexNumbers}
 pub fn write_vtp(path: impl AsRef<Path>, bulge: &Bulge) -> Result<(), VtkError> {
     let path = path.as_ref();
     check_extension(path, "vtp")?;
-    whole_file::write(path, &encoded(path, bulge)?)
+    whole_file::write(path, &encoded(bulge)?)
 }
 
 /// The bytes of a `.vtp` file, for a pipe.
@@ -25,42 +25,35 @@ pub fn write_vtp(path: impl AsRef<Path>, bulge: &Bulge) -> Result<(), VtkError> 
 /// # Errors
 /// The bulge can't be drawn.
 pub fn vtp_bytes(bulge: &Bulge) -> Result<Vec<u8>, VtkError> {
-    encoded(Path::new("-"), bulge)
+    encoded(bulge)
 }
 
-fn encoded(path: &Path, bulge: &Bulge) -> Result<Vec<u8>, VtkError> {
+fn encoded(bulge: &Bulge) -> Result<Vec<u8>, VtkError> {
     bulge.check()?;
-    encode(Mesh::new(bulge), &bulge.shape.response).map_err(|reason| VtkError::encode(path, &reason))
+    Ok(encode(Mesh::new(bulge), &bulge.shape.response))
 }
 
 /// The bytes of a file.
-fn encode(mesh: Mesh, response: &Response) -> Result<Vec<u8>, String> {
-    xml::bytes(DataSet::inline(piece(mesh)), "PolyData", &xml::numbers(whole(response)))
-}
-
-fn piece(mesh: Mesh) -> PolyDataPiece {
-    let mut cell = vec![Attribute::generic("part", 1).with_data(mesh.part)];
-    cell.extend(
-        mesh.cell_fields.into_iter().map(|(name, values)| Attribute::generic(name, 1).with_data(values)),
-    );
-    let point =
-        mesh.point_fields.into_iter().map(|(name, values)| Attribute::scalars(name, 1).with_data(values));
-    PolyDataPiece {
-        points: mesh.points.into_iter().flatten().collect::<Vec<f64>>().into(),
-        lines: (!mesh.fibres.is_empty()).then(|| cells(mesh.fibres)),
-        polys: Some(cells(mesh.quads)),
-        data: Attributes { point: point.collect(), cell },
-        ..PolyDataPiece::default()
+fn encode(mesh: Mesh, response: &Response) -> Vec<u8> {
+    let counts = [
+        ("NumberOfPoints", mesh.points.len()),
+        ("NumberOfLines", mesh.fibres.len()),
+        ("NumberOfPolys", mesh.quads.len()),
+    ];
+    let fields = |fields: Vec<(&'static str, Vec<f64>)>| {
+        fields.into_iter().map(|(name, values)| Array::scalars(name, Values::Float64(values)))
+    };
+    let active = mesh.point_fields.first().map(|(name, _)| format!(" Scalars=\"{name}\""));
+    let mut point = Section::new("PointData", fields(mesh.point_fields).collect());
+    point.attributes = active.unwrap_or_default();
+    let part = Array::scalars("part", Values::Int32(mesh.part));
+    let cell = Section::new("CellData", std::iter::once(part).chain(fields(mesh.cell_fields)).collect());
+    let mut sections = vec![point, cell, Section::points(mesh.points)];
+    if !mesh.fibres.is_empty() {
+        sections.push(Section::cells("Lines", mesh.fibres));
     }
-}
-
-fn cells<C: IntoIterator<Item = usize>>(cells: impl IntoIterator<Item = C>) -> VertexNumbers {
-    let (mut connectivity, mut offsets) = (Vec::new(), Vec::new());
-    for cell in cells {
-        connectivity.extend(cell.into_iter().map(|vertex| vertex as u64));
-        offsets.push(connectivity.len() as u64);
-    }
-    VertexNumbers::XML { connectivity, offsets }
+    sections.push(Section::cells("Polys", mesh.quads));
+    xml::bytes("PolyData", &xml::numbers(whole(response)), &counts, &sections)
 }
 
 #[cfg(test)]
@@ -69,12 +62,12 @@ mod tests {
     use crate::Style;
     use crate::analytic::barrel;
     use bulge_fibre::Shape;
-    use vtkio::model::Vtk;
+    use vtkio::model::{DataSet, Vtk};
 
     fn drawn(shape: &Shape, facets: u32, fibres: u32) -> String {
         let bulge = Bulge { shape, fibres, style: Style::Revolution, facets };
         bulge.check().unwrap();
-        String::from_utf8(encode(Mesh::new(&bulge), &shape.response).unwrap()).unwrap()
+        String::from_utf8(encode(Mesh::new(&bulge), &shape.response)).unwrap()
     }
 
     #[test]
@@ -98,8 +91,8 @@ mod tests {
         let shape = barrel(20, 1.5);
         let bulge = Bulge { shape: &shape, fibres: 6, style: Style::Revolution, facets: 24 };
         let mesh = Mesh::new(&bulge);
-        let xml = encode(mesh.clone(), &shape.response).unwrap();
-        // vtkio can't read field data either.
+        let xml = encode(mesh.clone(), &shape.response);
+        // vtkio can't read field data.
         let xml = String::from_utf8(xml).unwrap();
         let (head, rest) = xml.split_once("<FieldData>").unwrap();
         let (_, tail) = rest.split_once("</FieldData>").unwrap();

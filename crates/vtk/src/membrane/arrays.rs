@@ -2,8 +2,8 @@
 
 use super::drawing::{Cell, Drawing};
 use super::map::{Vector, unit};
+use crate::xml::{Array, Values};
 use bulge_membrane::{Fields, SheetField, Tension, ThreadField};
-use vtkio::model::Attribute;
 
 /// Name of an array, and the function that reads its values.
 type Reader<T> = (&'static str, fn(&T) -> f64);
@@ -26,10 +26,10 @@ pub(super) fn group_names(fields: &Fields) -> (Vec<&str>, Vec<i32>) {
 }
 
 /// All arrays of the cells.
-pub(super) fn of_cells(drawing: &Drawing, fields: &Fields) -> Vec<Attribute> {
+pub(super) fn of_cells(drawing: &Drawing, fields: &Fields) -> Vec<Array> {
     let (_, indices) = group_names(fields);
     let group: Vec<i32> = drawing.cells.iter().map(|cell| indices[cell.group]).collect();
-    let mut arrays = vec![Attribute::generic("group", 1).with_data(group)];
+    let mut arrays = vec![Array::scalars("group", Values::Int32(group))];
     let layers = |count: fn(&bulge_membrane::GroupFields) -> usize| {
         // The arrays of the first layer are in every file, so that a reader can rely on them.
         fields.groups.iter().map(count).fold(1, usize::max)
@@ -48,7 +48,7 @@ fn name(base: &str, layer: usize) -> String {
     if layer == 0 { base.to_owned() } else { format!("{base}_{}", layer + 1) }
 }
 
-fn sheets(drawing: &Drawing, fields: &Fields, layer: usize) -> Vec<Attribute> {
+fn sheets(drawing: &Drawing, fields: &Fields, layer: usize) -> Vec<Array> {
     let sheet = |cell: &Cell| fields.groups[cell.group].sheets.get(layer)?.get(cell.element);
     let readers: [Reader<SheetField>; 5] = [
         ("membrane_force_1_N_per_m", |sheet| sheet.force[0]),
@@ -57,11 +57,11 @@ fn sheets(drawing: &Drawing, fields: &Fields, layer: usize) -> Vec<Attribute> {
         ("stretch_2", |sheet| sheet.stretch[1]),
         ("folded", |sheet| sheet.folded),
     ];
-    let mut arrays: Vec<Attribute> = readers
+    let mut arrays: Vec<Array> = readers
         .into_iter()
         .map(|(base, read)| {
             let values: Vec<f64> = drawing.cells.iter().map(|cell| sheet(cell).map_or(0.0, read)).collect();
-            Attribute::generic(name(base, layer), 1).with_data(values)
+            Array::scalars(name(base, layer), Values::Float64(values))
         })
         .collect();
     let direction = |cell: &Cell| -> Vector {
@@ -71,13 +71,13 @@ fn sheets(drawing: &Drawing, fields: &Fields, layer: usize) -> Vec<Attribute> {
         drawing.maps[cell.map].of(unit(own))
     };
     let directions: Vec<f64> = drawing.cells.iter().flat_map(direction).collect();
-    arrays.push(Attribute::generic(name("direction_1", layer), 3).with_data(directions));
+    arrays.push(Array::vectors(name("direction_1", layer), directions));
     let states: Vec<i32> = drawing
         .cells
         .iter()
         .map(|cell| sheet(cell).map_or(NO_SHEET, |sheet| number(sheet.tension)))
         .collect();
-    arrays.push(Attribute::generic(name("wrinkle_state", layer), 1).with_data(states));
+    arrays.push(Array::scalars(name("wrinkle_state", layer), Values::Int32(states)));
     arrays
 }
 
@@ -89,7 +89,7 @@ fn number(tension: Tension) -> i32 {
     }
 }
 
-fn threads(drawing: &Drawing, fields: &Fields, layer: usize) -> Vec<Attribute> {
+fn threads(drawing: &Drawing, fields: &Fields, layer: usize) -> Vec<Array> {
     let thread = |cell: &Cell| fields.groups[cell.group].threads.get(layer)?.get(cell.element);
     let readers: [Reader<ThreadField>; 3] = [
         ("fibre_tension_N", |thread| thread.tension),
@@ -100,7 +100,7 @@ fn threads(drawing: &Drawing, fields: &Fields, layer: usize) -> Vec<Attribute> {
         .into_iter()
         .map(|(base, read)| {
             let values: Vec<f64> = drawing.cells.iter().map(|cell| thread(cell).map_or(0.0, read)).collect();
-            Attribute::generic(name(base, layer), 1).with_data(values)
+            Array::scalars(name(base, layer), Values::Float64(values))
         })
         .collect()
 }

@@ -2,14 +2,21 @@
 
 use super::drawing::{Drawing, Shape};
 use super::{MembranePicture, arrays, check};
-use crate::xml;
+use crate::xml::{self, Array, Section, Values};
 use std::fmt::Write as _;
-use vtkio::model::{Attribute, Attributes, CellType, Cells, DataSet, UnstructuredGridPiece, VertexNumbers};
 
-/// The bytes of a file, or the reason why it can't be encoded.
-pub(super) fn encode(drawing: Drawing, picture: &MembranePicture) -> Result<Vec<u8>, String> {
-    let fields = field_data(picture);
-    xml::bytes(DataSet::inline(piece(drawing, picture)), "UnstructuredGrid", &fields)
+/// The bytes of a file.
+pub(super) fn encode(drawing: Drawing, picture: &MembranePicture) -> Vec<u8> {
+    let counts = [("NumberOfPoints", drawing.points.len()), ("NumberOfCells", drawing.cells.len())];
+    let cell = Section::new("CellData", arrays::of_cells(&drawing, picture.fields));
+    let types = drawing.cells.iter().map(|cell| cell_type(cell.shape)).collect();
+    let mut cells = Section::cells("Cells", drawing.cells.iter().map(|cell| cell.nodes().iter().copied()));
+    cells.arrays.push(Array::scalars("types", Values::UInt8(types)));
+    let displacements: Vec<f64> = drawing.displacements.into_iter().flatten().collect();
+    let mut point = Section::new("PointData", vec![Array::vectors("displacement_m", displacements)]);
+    point.attributes = " Vectors=\"displacement_m\"".to_owned();
+    let sections = [point, cell, Section::points(drawing.points), cells];
+    xml::bytes("UnstructuredGrid", &field_data(picture), &counts, &sections)
 }
 
 fn field_data(picture: &MembranePicture) -> String {
@@ -33,29 +40,14 @@ fn field_data(picture: &MembranePicture) -> String {
     xml + "</Array>"
 }
 
-fn piece(drawing: Drawing, picture: &MembranePicture) -> UnstructuredGridPiece {
-    let cell = arrays::of_cells(&drawing, picture.fields);
-    let displacements: Vec<f64> = drawing.displacements.into_iter().flatten().collect();
-    let (mut connectivity, mut offsets, mut types) = (Vec::new(), Vec::new(), Vec::new());
-    for cell in &drawing.cells {
-        connectivity.extend(cell.nodes().iter().map(|node| *node as u64));
-        offsets.push(connectivity.len() as u64);
-        types.push(cell_type(cell.shape));
-    }
-    UnstructuredGridPiece {
-        points: drawing.points.into_iter().flatten().collect::<Vec<f64>>().into(),
-        cells: Cells { cell_verts: VertexNumbers::XML { connectivity, offsets }, types },
-        data: Attributes { point: vec![Attribute::vectors("displacement_m").with_data(displacements)], cell },
-    }
-}
-
-fn cell_type(shape: Shape) -> CellType {
+/// VTK's number of a type of cell.
+fn cell_type(shape: Shape) -> u8 {
     match shape {
-        Shape::Vertex => CellType::Vertex,
-        Shape::Line => CellType::Line,
-        Shape::QuadraticLine => CellType::QuadraticEdge,
-        Shape::Triangle => CellType::Triangle,
-        Shape::QuadraticTriangle => CellType::QuadraticTriangle,
-        Shape::Quadrangle => CellType::Quad,
+        Shape::Vertex => 1,
+        Shape::Line => 3,
+        Shape::QuadraticLine => 21,
+        Shape::Triangle => 5,
+        Shape::QuadraticTriangle => 22,
+        Shape::Quadrangle => 9,
     }
 }
