@@ -69,7 +69,8 @@ def test_every_variable(ppam):
     for name, value in expected.items():
         unit = bulge.Parameter(units.get(name, "1"), typical=1, low=-1e6, high=1e6)
         effect = bulge.Effect("own", f"k * {name} / unit", parameters={"k": N, "unit": unit})
-        assert added(ppam, effect, {"k": 100.0, "unit": 1.0}, eps, p) == pytest.approx(100 * value, rel=1e-9, abs=1e-9), name
+        one = f"1 {units[name]}" if name in units else 1.0
+        assert added(ppam, effect, {"k": 100.0, "unit": one}, eps, p) == pytest.approx(100 * value, rel=1e-9, abs=1e-9), name
 
 
 def hose(eps, k, eps_free):

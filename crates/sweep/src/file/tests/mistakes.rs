@@ -198,7 +198,7 @@ fn mistakes_in_values_methods_and_outputs() {
             ),
             ["s.toml:1:15", "infinite at 0", "contraction = \"20 %\""],
         ),
-        (format!("pressure = \"0 bar\"\n{BRAID}"), ["s.toml:1:12", "the pressure 0 Pa", "1 bar"]),
+        (format!("pressure = \"0 bar\"\n{BRAID}"), ["s.toml:1:12", "the pressure 0 bar", "1 bar"]),
         (
             top("method = \"shoting\""),
             ["s.toml:1:10", "auto, closed-form, shooting", "method = \"shooting\""],
