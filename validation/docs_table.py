@@ -109,7 +109,7 @@ def main():
         tables = {"verification": verification(checks)}
     elif arguments.what == "ratios":
         measured = json.loads((ROOT / "benches/ratios.json").read_text(encoding="utf-8"))
-        tables = {"ratios": ratios(measured, True), "ratios-front": ratios(measured, False)}
+        tables = {"ratios": ratios(measured), "ratios-front": ratios(measured)}
     elif arguments.what == "forms":
         scores = scored("forms-79", "forms-79-among-truth")
         tables = {"forms": forms(scores), "forms-front": forms_front(scores[0])}
@@ -142,12 +142,12 @@ def scored(*names):
     return [score(ANSWERS / f"{name}.jsonl.gz") for name in names]
 
 
-def ratios(measured, whole):
+def ratios(measured):
     """What each question costs here and with a peer, in one run."""
     lines = [f"| {measured['machine']}, {measured['date']} | Bulge | peer | times |", "|---|---|---|---|"]
     for row in measured["rows"]:
-        peer = f"{row['peer_is']}: {_time(row['peer_s'])}"
-        lines.append(f"| {row['question']} | {_time(row['own_s'])} | {peer} | {row['ratio']:.2g} |" if row["ratio"] < 99.5 else f"| {row['question']} | {_time(row['own_s'])} | {peer} | {float(f'{row['ratio']:.2g}'):.0f} |")
+        cells = [row["question"], _time(row["own_s"]), f"{row['peer_is']}: {_time(row['peer_s'])}", f"{float(format(row['ratio'], '.2g')):g}"]
+        lines.append("| " + " | ".join(cells) + " |")
     return "\n".join(lines)
 
 

@@ -10,6 +10,7 @@ pub(crate) mod loss;
 pub(crate) mod nuisance;
 pub(crate) mod posterior;
 pub(crate) mod problem;
+pub(crate) mod report;
 pub(crate) mod restrictions;
 pub(crate) mod search;
 pub(crate) mod states;

@@ -18,6 +18,8 @@ use toml::de::{DeTable, DeValue};
 
 /// The keys of a table, each with a line that shows how it is written.
 pub type Keys = &'static [(&'static str, &'static str)];
+/// What to write instead, from the name of a key and the text of its value.
+type Elsewhere = fn(&str, Option<&str>) -> Option<String>;
 
 /// A parsed settings file.
 ///
@@ -126,21 +128,16 @@ impl<'a> Settings<'a> {
         self.check_keys_or(|_, _| None)
     }
 
-    /// The same. `elsewhere` may know what to write instead of a key, with the text of its value, that resembles none of the
-    /// table.
-    pub(crate) fn check_keys_or(
-        &self,
-        elsewhere: fn(&str, Option<&str>) -> Option<String>,
-    ) -> Result<(), FileError> {
+    /// The same. `elsewhere` may know what to write instead of a key that resembles none of the table.
+    pub(crate) fn check_keys_or(&self, elsewhere: Elsewhere) -> Result<(), FileError> {
         let known = || self.keys.iter().map(|(key, _)| *key);
         let stranger = self.names().into_iter().find(|(name, _)| known().all(|key| key != *name));
         let Some((name, span)) = stranger else { return Ok(()) };
         let near = nearest(name, known()).map(|near| format!("did you mean `{near}`?"));
-        let instead =
-            near.or_else(|| elsewhere(name, self.get(name).and_then(Setting::text))).unwrap_or_else(|| {
-                let known = known().collect::<Vec<_>>().join(", ");
-                format!("known here: {known}; leave the rest out, or write it behind a `#`")
-            });
+        let text = self.get(name).and_then(Setting::text);
+        let known = known().collect::<Vec<_>>().join(", ");
+        let others = || format!("known here: {known}; leave the rest out, or write it behind a `#`");
+        let instead = near.or_else(|| elsewhere(name, text)).unwrap_or_else(others);
         Err(self.error(span, format!("unknown key `{}` in {}", shortened(name), self.title), instead))
     }
 
@@ -491,8 +488,7 @@ impl<'a> Setting<'a> {
     }
 }
 
-/// The name that was probably meant: a slip or two away apart from case and hyphens, or beginning with the
-/// word.
+/// The name that was probably meant: a slip or two away apart from case and hyphens, or with this beginning.
 pub fn nearest<'n>(word: &str, names: impl Iterator<Item = &'n str>) -> Option<&'n str> {
     let plain = |text: &str| text.to_lowercase().replace(['-', ' '], "_");
     let (word, names) = (plain(word), names.collect::<Vec<_>>());

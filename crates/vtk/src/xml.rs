@@ -137,7 +137,7 @@ pub(crate) fn bytes(kind: &str, fields: &str, counts: &[(&str, usize)], sections
         xml.extend(elements.by_ref().take(arrays.len()));
         let _ = write!(xml, "</{element}>");
     }
-    let _ = write!(xml, "</Piece></{kind}></VTKFile>\n");
+    let _ = writeln!(xml, "</Piece></{kind}></VTKFile>");
     xml.into_bytes()
 }
 

@@ -13,8 +13,11 @@ pub(super) fn encode(drawing: Drawing, picture: &MembranePicture) -> Vec<u8> {
     let mut cells = Section::cells("Cells", drawing.cells.iter().map(|cell| cell.nodes().iter().copied()));
     cells.arrays.push(Array::scalars("types", Values::UInt8(types)));
     let displacements: Vec<f64> = drawing.displacements.into_iter().flatten().collect();
-    let mut point = Section::new("PointData", vec![Array::vectors("displacement_m", displacements)]);
-    point.attributes = " Vectors=\"displacement_m\"".to_owned();
+    let point = Section {
+        element: "PointData",
+        attributes: " Vectors=\"displacement_m\"".to_owned(),
+        arrays: vec![Array::vectors("displacement_m", displacements)],
+    };
     let sections = [point, cell, Section::points(drawing.points), cells];
     xml::bytes("UnstructuredGrid", &field_data(picture), &counts, &sections)
 }
