@@ -58,7 +58,8 @@ PREPARED = {
         "data.csv": "crates/cli/data/hidden/data.csv",
         "new.csv": "crates/cli/data/hidden/data.csv",
         "my.toml": "crates/cli/data/hidden/muscle.toml",
-    }
+        "case.toml": "meshes/tube.toml",
+    },
 }
 
 # Blocks that aren't run, by how they begin, where the page has no mark: their data or their muscle are others than those of the blocks before them.
