@@ -116,6 +116,12 @@ impl FitCommand {
             return Ok((learn(data, muscle, options)?, None));
         }
         let (fitting, posterior) = posterior(data, muscle, options, self.seed)?;
+        if posterior.parameters.iter().all(|parameter| parameter.nuisance) {
+            let option = if self.posterior.is_some() { "--posterior" } else { "--draws" };
+            let what =
+                "no number of an effect is fitted, so none has a posterior; fit one, or leave this out";
+            return Err(Failure::Value { option, what: what.to_owned() });
+        }
         let learnt = Learnt::of(fitting)?;
         let [picture, draws] = wanted;
         let title = format!("{}: what the data leave open", muscle.name());

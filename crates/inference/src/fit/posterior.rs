@@ -38,8 +38,6 @@ const BETWEEN: usize = 8;
 const LEVELS: [f64; 3] = [1.0, 2.0, 3.0];
 /// Probabilities of the quantiles: the interval of 95 %, that of 68 %, the median.
 const QUANTILES: [f64; 5] = [0.025, 0.16, 0.5, 0.84, 0.975];
-/// Rows from which a thinned record stands for the whole, with a variance that makes up for it.
-const MANY_ROWS: usize = 4000;
 
 /// The posterior of the fitted parameters.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -100,11 +98,8 @@ pub(crate) fn posterior_of(
         });
     }
     let counting = with_force(&analysis.used.mask, &climbed.force);
-    let rows = counting.iter().filter(|counts| **counts).count();
-    let thin = match some_of_long(&analysis.record) {
-        None if rows > MANY_ROWS => Some(analysis.record.thinned(MANY_ROWS)),
-        long => long,
-    };
+    // The rows of the fit: another choice would have its minimum elsewhere.
+    let thin = some_of_long(&analysis.record);
     let (record, used) = match &thin {
         Some((record, kept)) => (record, kept.iter().map(|row| counting[*row]).collect()),
         None => (&*analysis.record, counting),
@@ -126,11 +121,8 @@ pub(crate) fn posterior_of(
     };
     let problem = problem_of();
     let minimum = settle(&problem, &climbed.theta, false)?;
-    let measured = problem.measured();
-    // A thinned record is as sure as the whole one: its rows stand for their neighbours.
-    let part = measured as f64 / rows.max(1) as f64;
-    let effective = (fit.effective_rows * part).max(1.0);
-    let variance = Scale::new(&minimum, measured, effective, task.loss).variance() * part;
+    let scale = Scale::new(&minimum, problem.measured(), fit.effective_rows, task.loss);
+    let variance = scale.variance();
     let count = minimum.theta.len();
     let shown = |coordinates: &[f64]| -> Vec<f64> {
         let theta = problem.theta(coordinates);
