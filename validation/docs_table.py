@@ -42,9 +42,11 @@ DIAGNOSIS = (
     ("outside the catalogue: not noticed", "outside the catalogue: not noticed", ""),
     ("held-out error over the noise, right class", "held-out error / noise, after the right class", "<= 1.1"),
     ("95 % intervals that hold the true number", "intervals that hold the true parameter", "95 %"),
+    ("first name right where its confidence is 0 to 0.5", "right when the confidence is 0 to 0.5", ""),
+    ("0.5 to 0.7", "right when the confidence is 0.5 to 0.7", ""),
+    ("0.7 to 0.9", "right when the confidence is 0.7 to 0.9", ""),
+    ("0.9 and more", "right when the confidence is 0.9 to 0.97", ""),
     ("confidence less rate of right first names", "calibration: mean distance of confidence and rate", "<= 0.05"),
-    ("seconds a case, one thread: median", "seconds per case, median", ""),
-    ("largest", "seconds per case, largest", ""),
 )
 """What the page says, what score.py calls it, and the target."""
 FRONT = (
@@ -78,8 +80,6 @@ FORMS = (
     ("wrong names, of all names (by family)", "<= 3 %"),
     ("claims that are wrong at the level that they state", ""),
     ("calibration of the family: mean distance of confidence and rate", "<= 0.05"),
-    ("seconds per case, mean", ""),
-    ("seconds per case, 95th percentile", ""),
 )
 """What the page says of the forms suite, as score.py calls it, and the target."""
 
@@ -114,8 +114,8 @@ def main():
         scores = scored("forms-79", "forms-79-among-truth")
         tables = {"forms": forms(scores), "forms-front": forms_front(scores[0])}
     else:
-        seeds = [score["methods"] for score in scored("seed-1", "seed-2")]
-        tables = {"diagnosis": diagnosis(seeds), "diagnosis-front": front(seeds)}
+        methods = scored("seed-2")[0]["methods"]
+        tables = {"diagnosis": diagnosis(methods), "diagnosis-front": front(methods)}
     texts = {}
     for name, table in tables.items():
         paths = [arguments.root / page for page in PAGES if f"<!-- table: {name} " in (arguments.root / page).read_text(encoding="utf-8")]
@@ -201,16 +201,12 @@ def _power(value, digits):
     return f"{value:.{digits}e}".replace(".0e", "e") if value else "0"
 
 
-def diagnosis(seeds):
-    columns = ["seed 1", "seed 2", "target", *PEERS]
-    lines = ["| | " + " | ".join(columns) + " |", "|---" * (len(columns) + 1) + "|"]
+def diagnosis(methods):
+    lines = ["| | " + " | ".join(["Bulge", "target", *PEERS]) + " |", "|---" * (len(PEERS) + 3) + "|"]
     for title, measure, target in DIAGNOSIS:
-        ours = [_cell(_row(methods["diagnose"], measure), True) for methods in seeds]
         # What a peer has no classes or confidence for stays empty.
-        peers = [_cell(_row(seeds[0].get(name, []), measure), False) for name in PEERS.values()]
-        if "seconds" in measure:
-            peers = [""] * len(peers)
-        lines.append(f"| {title} | " + " | ".join([*ours, target, *peers]) + " |")
+        peers = [_cell(_row(methods.get(name, []), measure), False) for name in PEERS.values()]
+        lines.append(f"| {title} | " + " | ".join([_cell(_row(methods["diagnose"], measure), True), target, *peers]) + " |")
     return "\n".join(lines)
 
 
@@ -232,13 +228,12 @@ def forms_front(score):
     return "\n".join(lines)
 
 
-def front(seeds):
-    lines = ["| | seed 1 | seed 2 | BIC, seed 1 |", "|---|---|---|---|"]
+def front(methods):
+    lines = ["| | Bulge | BIC, the same files |", "|---|---|---|"]
     for title, measure, _ in DIAGNOSIS:
-        if measure not in FRONT:
-            continue
-        ours = [_cell(_row(methods["diagnose"], measure), True) for methods in seeds]
-        lines.append(f"| {title} | " + " | ".join([*ours, _cell(_row(seeds[0][PEERS["BIC"]], measure), False)]) + " |")
+        if measure in FRONT:
+            cells = [_cell(_row(methods["diagnose"], measure), True), _cell(_row(methods[PEERS["BIC"]], measure), False)]
+            lines.append(f"| {title} | " + " | ".join(cells) + " |")
     return "\n".join(lines)
 
 

@@ -3,7 +3,7 @@
     python answers.py keep SUITE RESULTS FILE.jsonl.gz --suite exact|forms --seed SEED --bulge PATH      # what run.py wrote
     python answers.py check FILE.jsonl.gz --bulge PATH [--every 60] [--jobs 2]
 
-A line holds a case: its truth, what is scored of the answer, the answers of the usual methods, the seconds. `check` makes every so many cases anew,
+A line holds a case: its truth, what is scored of the answer, the answers of the usual methods. `check` makes every so many cases anew,
 from the seed to the answer, and fails where a truth, a verdict, a name, a class or a confidence (by more than 0.02) isn't that of the file: then the
 program or the generator has changed, and the suite has to be run again (prove.py), kept, and its tables written (validation/docs_table.py).
 """
@@ -59,7 +59,7 @@ def keep(arguments):
         result = arguments.results / f"{case}.json"
         document = json.loads(result.read_text(encoding="utf-8")) if result.exists() else {}
         truth = json.loads(path.read_text(encoding="utf-8"))
-        lines.append({"case": case, "truth": truth, "answer": answer(document), "usual": usual.get(case), "seconds": round(times[case], 2)})
+        lines.append({"case": case, "truth": truth, "answer": answer(document), "usual": usual.get(case)})
     text = "".join(json.dumps(line, separators=(",", ":"), sort_keys=True) + "\n" for line in lines)
     arguments.file.parent.mkdir(parents=True, exist_ok=True)
     # Without the time of writing: the same answers are the same bytes.
@@ -104,7 +104,6 @@ def unpack(file, folder):
         (suite / case["case"] / "truth.json").write_text(json.dumps(case["truth"]), encoding="utf-8")
         if case["answer"]:
             (results / f"{case['case']}.json").write_text(json.dumps(case["answer"]), encoding="utf-8")
-    (results / "times.json").write_text(json.dumps({case["case"]: case["seconds"] for case in cases}), encoding="utf-8")
     usual = {case["case"]: case["usual"] for case in cases if case.get("usual")}
     if usual:
         (suite / "baselines.json").write_text(json.dumps(usual), encoding="utf-8")

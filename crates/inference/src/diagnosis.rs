@@ -31,6 +31,7 @@ pub(crate) mod not_looked_for;
 pub(crate) mod null;
 pub(crate) mod oscillation;
 pub(crate) mod plan;
+pub(crate) mod proposals;
 pub(crate) mod pure_error;
 mod rungs;
 pub(crate) mod search;

@@ -337,17 +337,13 @@ impl<'a> Analysis<'a> {
         self.used.leave_out_spikes(&self.data, self.residuals(first));
         let residuals = self.residuals(first);
         self.used.leave_out_shifted(&self.data, &self.record, &residuals, self.noise.force_n);
-        let sd = doubtful_sd(
-            &self.record,
-            &self.data,
-            &self.used.mask,
-            &self.levels,
-            &residuals,
-            self.noise.force_n,
-        );
-        if let Some((rows, sd)) = sd {
+        let doubtful = self.data.direction_in_doubt();
+        // As the file states them; the record may have those of an earlier comparison.
+        let of_file = (&*doubtful, self.data.force_sd());
+        let sd = self.noise.force_n;
+        if let Some(sd) = doubtful_sd(&self.record, of_file, &self.used.mask, &self.levels, &residuals, sd) {
             self.record = Arc::new(Record::clone(&self.record).with_force_sd(sd));
-            self.doubtful = rows;
+            self.doubtful = doubtful;
         }
         floor
     }

@@ -1,6 +1,5 @@
 //! Rows of unknown direction, weighted by how much the direction matters.
 
-use bulge_measurements::Data;
 use bulge_model::Record;
 
 use crate::comparison::analysis::Analysis;
@@ -12,27 +11,27 @@ const WORTH_TELLING: f64 = 0.9;
 /// Fewest rows of a branch that give its median.
 const FEWEST: usize = 3;
 
-/// The rows of uncertain direction, in ascending order, and the standard deviations of all rows. Rows of
-/// uncertain direction get the variance `sigma^2 + g^2` with the gap `g` between the branches at their
+/// The standard deviations of all rows. Rows of uncertain direction get the variance `sigma^2 + g^2` with the gap `g` between the branches at their
 /// pressure, which is the error of a row that lies on the other branch.
 ///
 /// The gap is the difference between the medians of the residuals while shortening and while lengthening
 /// (filling and venting at held length). None if no gap is larger than the noise, as for a muscle without
 /// friction.
+///
+/// `doubtful` are the rows in question, `stated` the standard deviations that the file states.
 pub(crate) fn doubtful_sd(
     record: &Record,
-    data: &Data,
+    (doubtful, stated): (&[usize], Option<&[f64]>),
     used: &[bool],
     levels: &Levels,
     residuals: &[f64],
     sd_n: f64,
-) -> Option<(Vec<usize>, Vec<f64>)> {
-    let doubtful = data.direction_in_doubt();
+) -> Option<Vec<f64>> {
     if doubtful.is_empty() {
         return None;
     }
     let mut is_doubtful = vec![false; record.len()];
-    for row in &doubtful {
+    for row in doubtful {
         is_doubtful[*row] = true;
     }
     let mut branches = vec![[Vec::new(), Vec::new()]; levels.len()];
@@ -45,14 +44,11 @@ pub(crate) fn doubtful_sd(
     if gaps.iter().all(|gap| *gap <= sd_n) {
         return None;
     }
-    // As the file states it; the record may have the standard deviations of an earlier comparison.
-    let stated = data.force_sd();
     let sd = |row: usize| {
         let own = stated.map_or(sd_n, |sd| sd[row]);
         if is_doubtful[row] { own.hypot(gaps[levels.at(row)]) } else { own }
     };
-    let sd = (0..record.len()).map(sd).collect();
-    Some((doubtful, sd))
+    Some((0..record.len()).map(sd).collect())
 }
 
 fn gap(branches: [Vec<f64>; 2]) -> f64 {

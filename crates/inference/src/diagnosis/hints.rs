@@ -142,7 +142,7 @@ fn nearest(record: &Record, linear: &LinearisedModel) -> Option<String> {
     let row = (0..sum.len()).max_by(|a, b| sum[*a].abs().total_cmp(&sum[*b].abs()))?;
     let moment = &record.moments()[row];
     Some(format!(
-        "the nearest effect of the catalogue, `{}`, explains {:.0} % of it and fails by {} N near contraction {} % at {}",
+        "the nearest of the effects that were looked for, `{}`, explains {:.0} % of it and fails by {} N near contraction {} % at {}",
         linear.sensitivities.effects[best.effect].effect.card().name,
         100.0 * ((explained.gain - 1.0) / whole).clamp(0.0, 1.0),
         significant(sum[row].abs(), 2),

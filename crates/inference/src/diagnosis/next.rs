@@ -6,10 +6,10 @@
 //! ```
 
 use bulge_effects::Parity;
-use bulge_model::{Record, Wanted};
+use bulge_model::Wanted;
 use bulge_muscles::units::significant;
-use serde::Serialize;
 
+use crate::comparison::doubt::doubtful_sd;
 use crate::comparison::levels::Levels;
 use crate::diagnosis::classes::Class;
 use crate::diagnosis::confidence::Confidence;
@@ -17,128 +17,15 @@ use crate::diagnosis::confirm::Confirmed;
 use crate::diagnosis::decision_rule::RULE;
 use crate::diagnosis::document::NextExperiment;
 use crate::diagnosis::linearised_model::Context;
+use crate::diagnosis::proposals::{Limits, proposals, rounded};
 use crate::fit::weights::Noise;
 use crate::noise::law::{CorrelationTime, NoiseLaw};
 use crate::noise::whitening::Whitening;
-use crate::protocol::bench::{Block, Path, Protocol, ReadingNoise};
-use crate::vector::range;
+use crate::protocol::bench::{Protocol, ReadingNoise};
+use crate::vector::minus;
 
 /// Most repeats of a proposal.
 const MOST_REPEATS: usize = 20;
-/// Rows of each sweep of a proposal.
-const ROWS: u32 = 60;
-
-/// Limits of the next experiment; the ranges of the data if nothing is stated.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
-pub struct NextLimits {
-    /// Least and largest pressure \[Pa\].
-    pub pressure_pa: Option<[f64; 2]>,
-    /// Least and largest contraction.
-    pub contraction: Option<[f64; 2]>,
-}
-
-/// The number of pressures as it appears in proposals.
-const COUNTS: [&str; 8] = [
-    ", at two pressures",
-    " at the lowest and the highest pressure",
-    " at two pressures",
-    " at three pressures",
-    ", at four pressures",
-    " at six pressures",
-    " at one pressure",
-    " of eight pressures",
-];
-
-/// Highest gauge pressure \[Pa\], and contractions that a bench can set, as for a protocol.
-const MOST_PRESSURE: f64 = 1e8;
-const CONTRACTIONS: [f64; 2] = [-1.0, 0.6];
-
-impl NextLimits {
-    /// Checks whether a bench can keep within the limits.
-    ///
-    /// # Errors
-    /// The name of the impossible limit, and what is wrong with it.
-    pub fn check(&self) -> Result<(), (&'static str, String)> {
-        let [least, most] = CONTRACTIONS;
-        if let Some([low, high]) = self.pressure_pa
-            && !(low > 0.0 && low < high && high <= MOST_PRESSURE)
-        {
-            let what = format!(
-                "{low} to {high} Pa is not possible: gauge pressures lie above 0 and up to 1000 bar; write such as \"1 bar..6 bar\""
-            );
-            return Err(("pressure", what));
-        }
-        if let Some([low, high]) = self.contraction
-            && !(low >= least && low < high && high <= most)
-        {
-            let what = format!(
-                "{} to {} % is not possible: contractions lie within -100 % and 60 %; write such as \"0 %..20 %\"",
-                significant(100.0 * low, 4),
-                significant(100.0 * high, 4)
-            );
-            return Err(("contraction", what));
-        }
-        Ok(())
-    }
-}
-
-/// The limits in effect.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Limits {
-    pressure_pa: [f64; 2],
-    contraction: [f64; 2],
-    /// Period of one loop of the data \[s\].
-    period_s: f64,
-}
-
-impl Limits {
-    /// The stated limits, completed by the ranges of a record.
-    pub(crate) fn of(record: &Record, stated: NextLimits) -> Self {
-        let range = |of: fn(&bulge_effects::Moment) -> f64| range(record.moments().iter().map(of));
-        let levels = Levels::of(record, &vec![true; record.len()]);
-        let [low, high] = range(|m| m.pressure);
-        let kept = [levels.mean.first().copied().unwrap_or(low), levels.mean.last().copied().unwrap_or(high)];
-        // The cycle number continues from sweep to sweep.
-        let mut periods: Vec<f64> = record
-            .sweeps()
-            .iter()
-            .map(|sweep| {
-                let rows = || record.moments()[sweep.clone()].iter();
-                let [first, last] = rows().fold([f64::INFINITY, 0.0], |[first, last]: [f64; 2], m| {
-                    [first.min(m.cycle), last.max(m.cycle)]
-                });
-                rows().map(|m| m.time).fold(0.0, f64::max) / ((last - first).max(0.0).floor() + 1.0)
-            })
-            .collect();
-        periods.sort_by(f64::total_cmp);
-        let period = periods.get(periods.len() / 2).map_or(60.0, |period| period.clamp(1.0, 1e4));
-        Self {
-            pressure_pa: stated.pressure_pa.unwrap_or(kept),
-            contraction: stated.contraction.unwrap_or_else(|| range(|m| m.contraction)),
-            period_s: if record.has_time() { period } else { 60.0 },
-        }
-    }
-
-    fn pressures_in_words(&self) -> String {
-        let [low, high] = self.pressure_pa.map(|p| significant(p / 1e5, 3));
-        if low == high { format!("at {low} bar") } else { format!("between {low} and {high} bar") }
-    }
-
-    /// A proposal in words, without its number of pressures if only one may be used.
-    fn without_count(&self, says: &str) -> String {
-        let one = self.pressures(2).len() == 1;
-        let counts = COUNTS.iter().find(|counts| one && says.contains(**counts));
-        counts.map_or_else(|| says.to_owned(), |counts| says.replacen(counts, "", 1))
-    }
-
-    fn pressures(&self, count: usize) -> Vec<f64> {
-        let [low, high] = self.pressure_pa;
-        if high - low <= 1e-3 * high {
-            return vec![high];
-        }
-        (0..count).map(|i| low + (high - low) * i as f64 / (count - 1).max(1) as f64).collect()
-    }
-}
 
 /// A named effect with its class, and the two models with and without it.
 pub(crate) struct Judged {
@@ -146,117 +33,6 @@ pub(crate) struct Judged {
     pub(crate) confidence: Confidence,
     /// The model with the effect, and the one without it.
     pub(crate) models: Option<(Confirmed, Confirmed)>,
-}
-
-/// A protocol with its description.
-struct Proposal {
-    says: &'static str,
-    protocol: Protocol,
-}
-
-impl Proposal {
-    /// Whether the muscle is held in between.
-    fn holds(&self) -> bool {
-        self.protocol.blocks.iter().any(|block| matches!(block.path, Path::Stairs { .. }))
-    }
-}
-
-/// The experiments to choose from.
-fn proposals(limits: &Limits) -> Vec<Proposal> {
-    let [low, high] = limits.contraction;
-    // A loop needs a range. If the force is unbounded at rest, evaluating the model reports it.
-    let whole = [low, high.max(low + 0.01)];
-    let block = |pressures: usize, contraction: [f64; 2], path: Path, period: f64, cycles: u32| Block {
-        path,
-        cycles,
-        rows: ROWS,
-        ..Block::loops(limits.pressures(pressures), contraction, period)
-    };
-    let slow = limits.period_s;
-    let one = |says, blocks: Vec<Block>| Proposal { says, protocol: Protocol::new(blocks) };
-    let third_of_stroke = [whole[0], whole[0] + (whole[1] - whole[0]) / 3.0];
-    let small = [whole[0], (whole[0] + 0.25 * (high - whole[0])).max(whole[0] + 0.01)];
-    vec![
-        one(
-            "loops at six pressures over the whole range of contraction",
-            vec![block(6, whole, Path::Triangle, slow, 1)],
-        ),
-        one(
-            "loops at the lowest and the highest pressure, three times each",
-            vec![block(2, whole, Path::Triangle, slow, 3)],
-        ),
-        one(
-            "the same loops, and then ten times slower, at two pressures",
-            vec![block(2, whole, Path::Triangle, slow, 1), block(2, whole, Path::Triangle, 10.0 * slow, 1)],
-        ),
-        one(
-            "the same loops, and then ten times faster, at two pressures",
-            vec![block(2, whole, Path::Triangle, slow, 1), block(2, whole, Path::Triangle, slow / 10.0, 1)],
-        ),
-        one(
-            "the same loops, and then ten times slower and ten times faster, at two pressures",
-            [slow, 10.0 * slow, slow / 10.0]
-                .map(|period| block(2, whole, Path::Triangle, period, 1))
-                .to_vec(),
-        ),
-        one(
-            "loops over a third of the stroke, and over all of it at the same speed, at two pressures",
-            vec![
-                block(2, third_of_stroke, Path::Triangle, slow / 3.0, 2),
-                block(2, whole, Path::Triangle, slow, 1),
-            ],
-        ),
-        one(
-            "sines at three pressures, whose speed goes through 0 at the ends",
-            vec![block(3, whole, Path::Sine, slow, 2)],
-        ),
-        one(
-            "small loops near the largest force, at four pressures",
-            vec![block(4, small, Path::Triangle, slow, 2)],
-        ),
-        one(
-            "steps of contraction with holds of a minute, at two pressures",
-            vec![block(2, whole, Path::Stairs { steps: 4, hold_s: 60.0 }, 8.0 * 70.0, 1)],
-        ),
-        one(
-            "twelve loops at one pressure, one after the other",
-            vec![block(1, whole, Path::Triangle, slow, 12)],
-        ),
-        one("a static map of eight pressures", vec![Block::map(limits.pressures(8), whole, 20)]),
-    ]
-    .into_iter()
-    .chain(filled(limits, whole))
-    .collect()
-}
-
-/// Experiments at held length in which the pressure rises and falls.
-fn filled(limits: &Limits, whole: [f64; 2]) -> Vec<Proposal> {
-    let slow = limits.period_s;
-    let one = |says, blocks: Vec<Block>| Proposal { says, protocol: Protocol::new(blocks) };
-    let [low_pressure, high_pressure] = limits.pressure_pa;
-    let third = low_pressure.max(high_pressure / 3.0);
-    let filling = |from: f64, lengths: u32, period: f64| {
-        let from = from.min(0.9 * high_pressure);
-        let held = (0..lengths)
-            .map(|i| whole[0] + (whole[1] - whole[0]) * (0.1 + 0.8 * f64::from(i) / f64::from(lengths - 1)));
-        let block = Block::isometric([from, high_pressure], held.collect(), period);
-        Block { cycles: 2, rows: ROWS, ..block }
-    };
-    vec![
-        one("filling and venting at three held lengths, twice each", vec![filling(low_pressure, 3, slow)]),
-        one(
-            "filling and venting at two held lengths, from the lowest pressure and from a third of the highest",
-            vec![filling(low_pressure, 2, slow), filling(third, 2, slow)],
-        ),
-        one(
-            "filling and venting at two held lengths, and then ten times slower",
-            vec![filling(low_pressure, 2, slow), filling(low_pressure, 2, 10.0 * slow)],
-        ),
-        one(
-            "filling and venting at two held lengths, and then ten times slower and ten times faster",
-            [slow, 10.0 * slow, slow / 10.0].map(|period| filling(low_pressure, 2, period)).to_vec(),
-        ),
-    ]
 }
 
 /// The experiment that best separates the effects of the first class with several members; none if every
@@ -320,11 +96,10 @@ pub(crate) fn next_experiment(
     };
     Some(NextExperiment {
         says: format!(
-            "measure {}, {} and between {} and {} % of contraction, {times}: that tells `{named}` from {} ({} sigma){but}",
+            "measure {}, {} and {} of contraction, {times}: that tells `{named}` from {} ({} sigma){but}",
             limits.without_count(best.says),
             limits.pressures_in_words(),
-            significant(100.0 * limits.contraction[0], 2),
-            significant(100.0 * limits.contraction[1], 3),
+            limits.contractions_in_words(),
             listed(&told),
             significant(best.after, 2)
         ),
@@ -342,15 +117,14 @@ fn noise_of(context: &Context<'_>, protocol: &Protocol) -> ReadingNoise {
         _ => None,
     };
     let correlated_n = seconds.map_or(0.0, |_| context.law.correlated_n);
+    let force_n =
+        if seconds.is_some() { context.row_n } else { context.row_n.hypot(context.law.correlated_n) };
+    // Noise isn't known better than by three digits.
     ReadingNoise {
-        force_n: if seconds.is_some() {
-            context.row_n
-        } else {
-            context.row_n.hypot(context.law.correlated_n)
-        },
-        correlated_n,
-        correlation_time_s: seconds.filter(|_| correlated_n > 0.0).unwrap_or(0.0),
-        offset_n: context.law.offset_n,
+        force_n: rounded(force_n, 3),
+        correlated_n: rounded(correlated_n, 3),
+        correlation_time_s: rounded(seconds.filter(|_| correlated_n > 0.0).unwrap_or(0.0), 3),
+        offset_n: rounded(context.law.offset_n, 3),
         ..ReadingNoise::default()
     }
 }
@@ -409,14 +183,22 @@ fn separations(
     (named, rivals): (&String, &[String]),
     protocol: &Protocol,
 ) -> Option<Vec<f64>> {
-    let record = protocol.moments_within(&with.prepared.model, &with.theta).ok()?;
+    let (record, doubtful) = protocol.moments_in_doubt(&with.prepared.model, &with.theta).ok()?;
     let model = &without.prepared.model;
     let readings = Wanted { parameters: Vec::new(), readings: true };
     let prediction = model.evaluate(&record, &without.theta, &readings).ok()?;
     let noise = Noise::of(model.muscle(), context.row_n);
     let slopes = prediction.by_pressure.iter().zip(&prediction.by_contraction);
-    let variances: Vec<f64> =
+    let mut variances: Vec<f64> =
         slopes.map(|(p, e)| (p * noise.pressure_pa).powi(2) + (e * noise.contraction).powi(2)).collect();
+    // Rows of uncertain direction will tell nothing of friction, as in the data at hand.
+    let all = vec![true; record.len()];
+    let signal = minus(record.force(), &prediction.force);
+    let levels = Levels::of(&record, &all);
+    if let Some(sd) = doubtful_sd(&record, (&doubtful, None), &all, &levels, &signal, context.row_n) {
+        let further = sd.iter().map(|sd| sd * sd - context.row_n.powi(2));
+        variances.iter_mut().zip(further).for_each(|(variance, further)| *variance += further);
+    }
     let reading = noise_of(context, protocol);
     let timed = reading.correlated_n > 0.0;
     let law = NoiseLaw {
@@ -426,7 +208,7 @@ fn separations(
         ..context.law.clone()
     };
     let record = record.with_force(prediction.force);
-    let whitening = Whitening::new(&law, &record, &vec![true; record.len()], &variances).ok()?;
+    let whitening = Whitening::new(&law, &record, &all, &variances).ok()?;
     // Coordinates span the candidates only. Without the effect itself among them, most of its signal would be
     // lost.
     let only: Vec<String> = rivals.iter().chain([named]).cloned().collect();
@@ -449,18 +231,6 @@ fn separations(
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn with_one_pressure_no_proposal_speaks_of_several() {
-        let limits = |high| Limits { pressure_pa: [2e5, high], contraction: [0.0, 0.2], period_s: 60.0 };
-        for proposal in proposals(&limits(2e5)) {
-            let says = limits(2e5).without_count(proposal.says);
-            assert!(!says.contains("pressures") || says.contains("from the lowest pressure"), "{says}");
-            let pressures = proposal.protocol.blocks.iter().filter(|block| block.held.is_empty());
-            assert!(pressures.into_iter().all(|block| block.pressures_pa == [2e5]), "{says}");
-            assert_eq!(limits(4e5).without_count(proposal.says), proposal.says);
-        }
-    }
 
     #[test]
     fn a_rival_that_no_test_tells_does_not_take_the_others_away() {

@@ -200,7 +200,12 @@ impl Findings<'_> {
         } else {
             format!("a structure of {size} that")
         };
-        let says = format!("these data hold {structure} no effect of the catalogue explains");
+        let explains = if self.context.only.is_some() {
+            "none of the effects that were looked for explains"
+        } else {
+            "no effect of the catalogue explains"
+        };
+        let says = format!("these data hold {structure} {explains}");
         Said::nothing(Verdict::Unknown, says)
     }
 

@@ -119,6 +119,18 @@ impl Protocol {
         self.check()?;
         Ok(done(model, theta, self)?.exact())
     }
+
+    /// The same, and the rows of uncertain direction.
+    pub(crate) fn moments_in_doubt(
+        &self,
+        model: &Model,
+        theta: &[f64],
+    ) -> Result<(Record, Vec<usize>), InferenceError> {
+        self.check()?;
+        let done = done(model, theta, self)?;
+        let doubtful = done.data.direction_in_doubt();
+        Ok((done.exact(), doubtful))
+    }
 }
 
 impl Done {
