@@ -11,6 +11,7 @@ program or the generator has changed, and the suite has to be run again (prove.p
 import argparse
 import gzip
 import json
+import re
 import subprocess
 import sys
 import tempfile
@@ -34,6 +35,7 @@ def main():
     keeping.add_argument("--suite", choices=("exact", "forms"), default="exact")
     keeping.add_argument("--seed", type=int, required=True)
     keeping.add_argument("--among-truth", action="store_true", help="the hidden effects were the only ones that were looked for")
+    keeping.add_argument("--only", default="", help="regular expression that the names of the cases must contain")
     keeping.add_argument("--bulge", required=True, help="the program that answered")
     checking = commands.add_parser("check")
     checking.add_argument("file", type=Path, metavar="FILE")
@@ -54,7 +56,7 @@ def keep(arguments):
     lines = [head]
     for path in sorted(arguments.folder.glob("*/truth.json")):
         case = path.parent.name
-        if case not in times:
+        if case not in times or not re.search(arguments.only, case):
             continue
         result = arguments.results / f"{case}.json"
         document = json.loads(result.read_text(encoding="utf-8")) if result.exists() else {}

@@ -65,57 +65,44 @@ fn promised_and_measured(next: &Value, after: &Value) -> [f64; 2] {
     [next["sigma"].as_f64().unwrap(), measured]
 }
 
+/// A test that leaves something open is made, then the one that is proposed, as it is written: that decides, by as many sigmas as promised.
 #[test]
 fn what_is_proposed_decides_what_was_open() {
     let folder = Folder::new("next-friction");
     let one = folder.write("one.toml", &format!("{LOOP}{NOISE}"));
-    // At one pressure, friction proportional to the pressure can't be distinguished from constant friction.
-    let [data, muscle] = simulated(&folder, "one", [&one, "2"], &["--with", "coulomb-friction=14 N"]);
-    let arguments = ["next", &data, "--muscle", &muscle, "--pressure", "2 bar..5 bar"];
-    let second = folder.path("second.toml");
-    let found = json(&[&arguments[..], &["--json", "--out", &second]].concat());
-    let class = class(&found);
-    assert!(class.contains(&"coulomb-friction") && class.contains(&"pressure-friction"), "{class:?}");
-    let next = &found["next_experiment"];
-    let says = next["says"].as_str().unwrap();
-    assert!(next["sigma"].as_f64().unwrap() > 3.29 && next["repeats"].as_u64() == Some(1), "{next}");
-    assert!(says.contains("between 2.00 and 5.00 bar"), "{says}");
-    let words = words(&arguments);
-    has_parts(&words, &["next: measure ", &format!("bulge diagnose {data} NEW.csv")]);
-    let [more, _] = simulated(&folder, "second", [&second, "12"], &["--with", "coulomb-friction=14 N"]);
-    let after = json(&["next", &data, &more, "--muscle", &muscle, "--json"]);
-    let [promised, measured] = promised_and_measured(next, &after);
-    assert!((0.75..1.4).contains(&(measured / promised)), "{measured} for {promised}");
-    assert_eq!(after["missing"][0]["effect"], "coulomb-friction", "{after}");
-    let left = after["missing"][0]["class"].as_array().unwrap();
-    for name in ["pressure-friction", "viscous-damping", "force-lag"] {
-        assert!(!left.contains(&name.into()), "{left:?}");
+    for (hidden, protocol, open) in [
+        // At one pressure, friction proportional to the pressure can't be distinguished from constant friction.
+        ("coulomb-friction=14 N", [&*one, "2"], ["coulomb-friction", "pressure-friction"]),
+        // At one speed drag is indistinguishable from dry friction.
+        ("viscous-damping", [PROTOCOL, "7"], ["viscous-damping", "coulomb-friction"]),
+    ] {
+        let [data, muscle] = simulated(&folder, open[0], protocol, &["--with", hidden]);
+        let arguments = ["next", &data, "--muscle", &muscle, "--pressure", "2 bar..5 bar"];
+        let second = folder.path("second.toml");
+        let found = json(&[&arguments[..], &["--json", "--out", &second]].concat());
+        let class = class(&found);
+        assert!(open.iter().all(|name| class.contains(name)), "{class:?}");
+        let next = &found["next_experiment"];
+        let says = next["says"].as_str().unwrap();
+        assert!(next["sigma"].as_f64().unwrap() > 3.29 && next["repeats"].as_u64() == Some(1), "{next}");
+        assert!(says.contains("between 2.00 and 5.00 bar"), "{says}");
+        let words = words(&arguments);
+        has_parts(&words, &["next: measure ", &format!("bulge diagnose {data} NEW.csv")]);
+        // Set points as one writes them, not as they were read.
+        has_parts(
+            &fs::read_to_string(&second).unwrap(),
+            &["contraction = \"1 %..20 %\"\n", "\"2 bar\"", "\"5 bar\""],
+        );
+        let [more, _] =
+            simulated(&folder, &format!("{}-second", open[0]), [&second, "12"], &["--with", hidden]);
+        let after = json(&["diagnose", &data, &more, "--muscle", &muscle, "--json"]);
+        let left = after["missing"][0]["class"].as_array().unwrap();
+        assert!(left.contains(&open[0].into()) && !left.contains(&open[1].into()), "{left:?}");
+        let [promised, measured] = promised_and_measured(next, &after);
+        // What was named first may have been the twin: then the promise is that of another pair.
+        let most = if found["missing"][0]["effect"] == open[0] { 1.5 } else { 5.0 };
+        assert!((0.7..most).contains(&(measured / promised)), "{hidden}: {measured} for {promised}");
     }
-}
-
-#[test]
-fn rivals_that_differ_by_their_rate_alone_are_measured_slower_and_faster() {
-    let folder = Folder::new("next-rate");
-    // At one speed drag is indistinguishable from dry friction.
-    let [data, muscle] = simulated(&folder, "one", [PROTOCOL, "7"], &["--with", "viscous-damping"]);
-    let second = folder.path("second.toml");
-    let found = json(&["next", &data, "--muscle", &muscle, "--json", "--out", &second]);
-    let class = class(&found);
-    assert!(class.contains(&"coulomb-friction") && class.contains(&"viscous-damping"), "{class:?}");
-    let next = &found["next_experiment"];
-    let says = next["says"].as_str().unwrap();
-    assert!(says.contains("ten times slower and ten times faster"), "{says}");
-    assert!(next["sigma"].as_f64().unwrap() > 3.29 && next["repeats"].as_u64() == Some(1), "{next}");
-    let written = fs::read_to_string(&second).unwrap();
-    // Set points as one writes them, not as they were read.
-    has_parts(&written, &["contraction = \"1 %..20 %\"", "period = \"500 s\"", "period = \"5 s\""]);
-    let [more, _] = simulated(&folder, "second", [&second, "12"], &["--with", "viscous-damping"]);
-    let after = json(&["next", &data, &more, "--muscle", &muscle, "--json"]);
-    let left = after["missing"][0]["class"].as_array().unwrap();
-    assert!(
-        left.contains(&"viscous-damping".into()) && !left.contains(&"coulomb-friction".into()),
-        "{left:?}"
-    );
 }
 
 #[test]

@@ -130,14 +130,18 @@ impl Limits {
 
 /// A measured value with as many digits as one sets or states on a bench.
 pub(crate) fn rounded(value: f64, digits: i32) -> f64 {
+    if value == 0.0 || !value.is_finite() {
+        return value;
+    }
     #[expect(clippy::cast_possible_truncation, reason = "a power of ten of a double")]
     let last = value.abs().log10().floor() as i32 + 1 - digits;
-    match last {
-        _ if value == 0.0 || !value.is_finite() => value,
-        0.. => (value / 10.0_f64.powi(last)).round() * 10.0_f64.powi(last),
+    let rounded = if last >= 0 {
+        (value / 10.0_f64.powi(last)).round() * 10.0_f64.powi(last)
+    } else {
         // Division by a whole number gives the decimal itself.
-        _ => (value * 10.0_f64.powi(-last)).round() / 10.0_f64.powi(-last),
-    }
+        (value * 10.0_f64.powi(-last)).round() / 10.0_f64.powi(-last)
+    };
+    if rounded.is_finite() { rounded } else { value }
 }
 
 /// The range of contraction in steps of 0.1 % within a measured one; the measured one if it holds no step.

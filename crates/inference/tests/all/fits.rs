@@ -663,3 +663,18 @@ fn the_posterior_of_a_straight_model_is_normal() {
     let again = posterior(&data, &muscle, &options(&names), 7).unwrap().1;
     assert_eq!(again.draws, found.draws);
 }
+
+/// A zero that the data sheet knows better than the data has the posterior of both together.
+#[test]
+fn a_data_sheet_enters_the_posterior() {
+    let sheet = 0.1_f64;
+    let muscle =
+        muscle(&format!("{PLEATED}[instruments]\nforce = {{ noise = \"2 N\", zero = \"{sheet} N\" }}\n"));
+    let data = measured(&muscle, &[("coulomb-friction", &[12.0])], 2.0, 5);
+    let (_, found) = posterior(&data, &muscle, &options(&["coulomb-friction"]), 7).unwrap();
+    let zero = found.parameters.iter().find(|p| p.nuisance).unwrap();
+    let of_data = 2.0 / 150.0_f64.sqrt();
+    let sd = (sheet.powi(-2) + of_data.powi(-2)).sqrt().recip();
+    let [low, _, _, _, high] = zero.quantiles;
+    assert!(((high - low) / (2.0 * 1.96 * sd) - 1.0).abs() < 0.1, "{low} to {high}, sd {sd}");
+}
