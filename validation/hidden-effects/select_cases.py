@@ -45,13 +45,13 @@ class Wish:
 
 
 WISHES = {
-    "null": Wish(16),
-    "rig-within": Wish(6),
-    "single": Wish(16, 8.0, alone=True, most_rows=900),
-    "rig-beyond": Wish(6),
-    "confusable": Wish(6),
-    "pair": Wish(6, 6.0),
-    "unknown": Wish(6, 11.0),
+    "null": Wish(6),
+    "rig-within": Wish(2),
+    "single": Wish(12, 8.0, alone=True, most_rows=900),
+    "rig-beyond": Wish(2),
+    "confusable": Wish(3),
+    "pair": Wish(3, 6.0),
+    "unknown": Wish(3, 11.0),
 }
 
 

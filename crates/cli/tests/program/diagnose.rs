@@ -332,7 +332,7 @@ fn sentences_of_a_diagnosis_agree_with_each_other_and_a_tolerance_only_weakens_t
         ("missing", case("confusable-011")),
         ("missing", case("confusable-002")),
         ("missing", case("pair-010")),
-        ("unknown", case("unknown-pressure-window-3")),
+        ("unknown", case("unknown-one-way-2")),
         ("cannot-tell", [off, muscle.clone()]),
         ("missing", [spiked, muscle]),
         ("missing", three),

@@ -529,11 +529,11 @@ fn ramp_while_moving(noise: f64, ripple: f64, seed: u64) -> Data {
 
 #[test]
 fn slow_noise_of_one_run_is_no_structure_and_structure_no_slow_noise() {
-    let claimed: Vec<u64> = (0..16)
+    let claimed: Vec<u64> = (0..8)
         .filter(|seed| diagnosed(&ramp_while_moving(2.0, 0.0, *seed)).verdict != Verdict::Adequate)
         .collect();
     // Five of the first 32 are.
-    assert!(claimed.len() <= 3, "{claimed:?}");
+    assert!(claimed.len() <= 2, "{claimed:?}");
     let found = diagnosed(&ramp_while_moving(2.0, 8.0, 1));
     assert_eq!(found.verdict, Verdict::Unknown, "{}", found.says);
 }
@@ -543,7 +543,7 @@ fn more_rows_do_not_make_the_noise_larger() {
     // Friction with presliding, viscous damping and an offset, with noise of 1.2 N.
     let effects: [(&str, &[f64]); 3] =
         [("presliding-hysteresis", &[12.0, 0.01]), ("viscous-damping", &[800.0]), ("force-offset", &[8.0])];
-    for (cycles, rows) in [(1, 25), (5, 50), (40, 25)] {
+    for (cycles, rows) in [(1, 25), (5, 50), (16, 25)] {
         let block = Block {
             path: Path::Sine,
             cycles,

@@ -17,16 +17,7 @@ use bulge_muscles::from_toml;
 use rayon::prelude::*;
 
 /// Cases with a known wrong name. A case that comes out right must leave the list.
-const WRONG: [&str; 5] = [
-    "null-006",
-    "pair-002",
-    "rig-beyond-force-drift-029",
-    "unknown-pressure-squared-0",
-    "unknown-root-pressure-4",
-];
-/// Cases in which nothing wrong is said, but not all hidden effects are found: the name of a second effect is
-/// more likely wrong than right, or hardly leads a model without it.
-const MISSED: [&str; 2] = ["pair-023", "pair-035"];
+const WRONG: [&str; 3] = ["null-006", "pair-002", "unknown-pressure-squared-0"];
 
 /// What a case hides.
 #[derive(Debug)]
@@ -109,13 +100,13 @@ fn no_wrong_name_on_the_published_cases() {
         count(&Answer::is_right),
         count(&Answer::names_wrongly)
     );
-    assert!(answers.len() >= 60, "{} cases", answers.len());
+    assert!(answers.len() >= 30, "{} cases", answers.len());
     let differs = |known: &[&str], is: &dyn Fn(&Answer) -> bool| -> Vec<String> {
         let new = answers.iter().filter(|a| is(a) != known.contains(&a.case.as_str()));
         new.map(Answer::says).collect()
     };
     let named = differs(&WRONG, &Answer::names_wrongly);
     assert!(named.is_empty(), "not as known:\n{}", named.join("\n"));
-    let missed = differs(&MISSED, &|answer| !answer.names_wrongly() && !answer.is_right());
+    let missed = differs(&[], &|answer| !answer.names_wrongly() && !answer.is_right());
     assert!(missed.is_empty(), "not as known:\n{}", missed.join("\n"));
 }
