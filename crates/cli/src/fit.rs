@@ -1,10 +1,10 @@
 //! `bulge fit`: effects fitted to measurements, and the muscle file that contains them.
 
 use bulge_inference::{
-    DrawnForms, Options, Posterior, PosteriorParameter, drawn_forms, fit_effects, posterior,
+    DrawnForms, Options, Posterior, PosteriorParameter, drawn_forms, fit_effects, posterior, predict,
 };
 use bulge_measurements::Data;
-use bulge_muscles::Muscle;
+use bulge_muscles::{Muscle, units::significant};
 use bulge_report::{Learnt, posterior_svg};
 use clap::Args;
 use std::fmt::Write;
@@ -20,6 +20,8 @@ use crate::text::{table, with_interval};
 
 /// Potential scale reduction from which draws are said to be too few.
 const MIXED: f64 = 1.05;
+/// An error is worth a warning if it exceeds the fitted one by this factor.
+const WORSE: f64 = 1.2;
 
 /// Fits the named effects, and writes the muscle with what was learnt: a file for `shape`, `curve` and the next `compare`.
 #[derive(Debug, Args)]
@@ -95,6 +97,7 @@ impl FitCommand {
         for (name, why) in &learnt.extension.left_out {
             let _ = writeln!(text, "  {name} is not in the file: {why}");
         }
+        text.push_str(&as_written(&data, &learnt, &options)?);
         text.push_str(&drawn.map_or_else(String::new, |(_, says)| says));
         text.push_str(&posterior.map_or_else(String::new, |(_, says)| says));
         if let Some(path) = &self.out {
@@ -148,6 +151,25 @@ impl FitCommand {
         files::are_apart(&written, &read)?;
         written.iter().try_for_each(|(_, path)| files::can_be_written(path))
     }
+}
+
+/// A warning if the file, without what was fitted beside its effects, leaves a larger error on these data.
+fn as_written(data: &Data, learnt: &Learnt, options: &Options) -> Result<String, Failure> {
+    let Learnt { fitting, extension, .. } = learnt;
+    if extension.left_out.is_empty() {
+        return Ok(String::new());
+    }
+    let found = predict(data, &extension.muscle, &options.catalogue, &options.excluded)?;
+    let error_n = found.against.map_or(0.0, |against| against.rmse_n);
+    Ok(if error_n > WORSE * fitting.rmse_n {
+        format!(
+            "  ! without them the file leaves an error of {} N on these data, {} N with them: `bulge predict` uses the file\n",
+            significant(error_n, 3),
+            significant(fitting.rmse_n, 3)
+        )
+    } else {
+        String::new()
+    })
 }
 
 /// The quantiles of the posterior as text, and a warning where the draws are too few.

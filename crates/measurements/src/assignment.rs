@@ -170,7 +170,7 @@ fn unit_in(field: Field, name: &str, beneath: Option<&str>) -> Option<crate::uni
 /// The column that a user names: by its heading, by the heading without the unit, or by its number.
 fn find(header: &Header, column: &str) -> Result<usize, MeasurementError> {
     let plain = |text: &str| text.trim().to_lowercase();
-    let bare = |text: &str| plain(text.split(['[', '(']).next().unwrap_or_default());
+    let bare = |text: &str| plain(text.split(['[', '(', '/']).next().unwrap_or_default());
     let wanted = plain(column);
     let by = |name: &dyn Fn(&str) -> String, wanted: &str| -> Vec<usize> {
         (0..header.names.len()).filter(|place| name(&header.names[*place]) == wanted).collect()

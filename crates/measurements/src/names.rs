@@ -76,6 +76,8 @@ const WORDS: &[(&str, Field, bool)] = &[
     ("l", Field::Length, true),
     ("contraction", Field::Contraction, false),
     ("kontraktion", Field::Contraction, false),
+    ("verkuerzung", Field::Contraction, false),
+    ("stauchung", Field::Contraction, false),
     ("shortening", Field::Contraction, false),
     ("strain", Field::Contraction, false),
     ("eps", Field::Contraction, true),
@@ -87,6 +89,8 @@ const WORDS: &[(&str, Field, bool)] = &[
     ("weg", Field::Displacement, false),
     ("hub", Field::Displacement, true),
     ("verschiebung", Field::Displacement, false),
+    ("verkuerzung", Field::Displacement, false),
+    ("stauchung", Field::Displacement, false),
     ("deplacement", Field::Displacement, false),
     ("desplazamiento", Field::Displacement, false),
     ("spostamento", Field::Displacement, false),
@@ -153,6 +157,9 @@ const ASIDE: &[&str] = &[
     "filtered",
 ];
 
+/// Beginnings of compound words of that kind: "Solldruck", "Versorgungsdruck".
+const ASIDE_BEGINNINGS: &[&str] = &["soll", "versorgung", "umgebung"];
+
 /// Words for a pressure above vacuum.
 const ABSOLUTE: &[&str] = &["absolute", "abs", "absolut", "absolutdruck"];
 
@@ -188,8 +195,11 @@ pub(crate) fn guesses(heading: &str, unit_beneath: Option<&str>) -> Vec<Guess> {
                 None => !says_unit || field.is_label(),
             };
             if is_known && found.iter().all(|guess| guess.field != field) {
-                let is_aside =
-                    words.iter().any(|word| ASIDE.contains(&word.as_str())) && field != Field::ForceSd;
+                let is_word_aside = |word: &String| {
+                    ASIDE.contains(&word.as_str())
+                        || ASIDE_BEGINNINGS.iter().any(|start| word.starts_with(start))
+                };
+                let is_aside = words.iter().any(is_word_aside) && field != Field::ForceSd;
                 let strength = match (&unit, is_aside) {
                     _ if is_exact(&heading, field, unit.as_ref()) => Strength::Exact,
                     (_, true) => Strength::Aside,

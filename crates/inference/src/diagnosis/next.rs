@@ -86,7 +86,7 @@ pub(crate) fn next_experiment(
     let (nearest, _) = nearest(&best.rivals)?;
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 1 and 20")]
     let repeats = best.repeats as usize;
-    let times = if repeats == 1 { "once".to_owned() } else { format!("{repeats} times") };
+    let times = if repeats == 1 { String::new() } else { format!(", all of it {repeats} times") };
     let told: Vec<String> = best.rivals.iter().map(|rival| rival.0.clone()).collect();
     let left: Vec<String> = names.into_iter().filter(|name| !told.contains(name)).collect();
     let but = if left.is_empty() {
@@ -96,7 +96,7 @@ pub(crate) fn next_experiment(
     };
     Some(NextExperiment {
         says: format!(
-            "measure {}, {} and {} of contraction, {times}: that tells `{named}` from {} ({} sigma){but}",
+            "measure {}, {} and {} of contraction{times}: that tells `{named}` from {} ({} sigma){but}",
             limits.without_count(best.says),
             limits.pressures_in_words(),
             limits.contractions_in_words(),

@@ -234,7 +234,7 @@ impl Findings<'_> {
     }
 
     /// The part of the last model's residuals that no smooth function follows, in words.
-    fn unsmooth(&self) -> Option<String> {
+    pub(crate) fn unsmooth(&self) -> Option<String> {
         Some(match self.last().adequacy.unsmooth? {
             Unsmooth::Oscillation(period) => {
                 format!("an oscillation with a period of {} s", significant(period, 3))

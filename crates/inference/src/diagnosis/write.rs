@@ -12,6 +12,7 @@ use crate::diagnosis::claim::{Levels, form_error};
 use crate::diagnosis::classes::{Class, Rival};
 use crate::diagnosis::confidence::Confidence;
 use crate::diagnosis::decision_rule::RULE;
+use crate::diagnosis::document::Located;
 use crate::diagnosis::document::{
     CandidateResult, DiagnosedData, DiagnosedNoise, Diagnosis, ExplainedStep, LadderStep, Missing,
     NextExperiment, ParameterResult, Remaining, RivalResult, Verdict,
@@ -101,7 +102,7 @@ pub(crate) fn document(
             misfit_interval_n,
             by_formulas: (named && !last.added.is_empty()).then(|| last.by_formulas(&search.stages[0])),
             unseen_below_n: if named { found.unseen_below_n() } else { None },
-            hints: if adequate { Vec::new() } else { hints(context.record, &last.linear, &left) },
+            hints: if adequate { Vec::new() } else { found.hints(&left) },
             surface: surface(context.record, &last.linear),
         },
         geometry: Geometry::default(),
@@ -219,12 +220,15 @@ impl Findings<'_> {
         for rival in near {
             let card = rival.effect.card();
             if card.family == own {
-                if !names.iter().any(|name| name == card.name) {
+                if card.name != class.effect.card().name && !names.iter().any(|name| name == card.name) {
                     forms.push(card.name.to_owned());
                 }
             } else if !families.contains(&card.family) {
                 families.push(card.family);
-                names.push(card.name.to_owned());
+                // A name may stand there already: as that of the claim, under which another form was fitted.
+                if !names.iter().any(|name| name == card.name) {
+                    names.push(card.name.to_owned());
+                }
             }
         }
         (names, forms)
@@ -239,6 +243,12 @@ impl Findings<'_> {
         level.says(&label, class.effect.card().mechanism.name(), &self.names(class).0)
     }
 
+    /// What the misfit that remains looks like; first what no smooth function follows, such as a jump.
+    fn hints(&self, located: &[Located]) -> Vec<String> {
+        let smooth = hints(self.context.record, &self.last().linear, located);
+        self.unsmooth().map(|what| format!("it is {what}")).into_iter().chain(smooth).collect()
+    }
+
     fn missing(&self, class: &Class, sure: Confidence) -> Missing {
         let card = class.effect.card();
         let fitted = card.name.to_owned();
@@ -246,11 +256,13 @@ impl Findings<'_> {
         let levels = Levels::of(class, &sure, self.classes.len());
         let bent = &self.last().linear.form.effects;
         let bent = bent.iter().find(|bent| bent.effect.card().name == card.name);
-        let mut rivals: Vec<RivalResult> =
-            class.rivals.iter().map(|rival| rival_result(rival, class)).collect();
+        let label = self.label(&class.effect);
+        // The form under whose name the claim stands is no rival of it.
+        let others = class.rivals.iter().filter(|rival| rival.effect.card().name != label);
+        let mut rivals: Vec<RivalResult> = others.map(|rival| rival_result(rival, class)).collect();
         rivals.sort_by(|a, b| a.behind.total_cmp(&b.behind));
         Missing {
-            effect: self.label(&class.effect),
+            effect: label,
             class: names,
             fitted,
             forms,

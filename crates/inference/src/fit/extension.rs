@@ -48,7 +48,12 @@ pub fn extended(model: &Model, fit: &Fit) -> Result<Extension, ModelError> {
             (0..model.parameters().len()).filter(|i| model.parameters()[*i].effect == name).collect();
         let nuisance = |i: &usize| fitted(model, fit, *i).is_some_and(|(_, found)| found.nuisance);
         if places.iter().any(nuisance) {
-            extension.left_out.push((name, "it is an error of the rig, which the next data set has anew"));
+            let why = if card.group == Group::Rig {
+                "it is an error of the rig, which the next data set has anew"
+            } else {
+                "the muscle file states it with a width (`+-`), and keeps its own value"
+            };
+            extension.left_out.push((name, why));
             continue;
         }
         let (numbers, widths): (Vec<f64>, Vec<Option<f64>>) =

@@ -92,7 +92,10 @@ fn answer<'a>(diagnosis: &'a Diagnosis, catalogue: &Catalogue, limits: NextLimit
             }
         }
         (verdict, None) => {
-            let why = if verdict == Verdict::Missing {
+            let is_open = diagnosis.missing.iter().any(|missing| missing.class.len() > 1);
+            let why = if verdict == Verdict::Missing && is_open {
+                "what these data leave open are forms of one effect, which further tests like these hardly tell apart"
+            } else if verdict == Verdict::Missing {
                 "these data tell every effect that was found from all others"
             } else {
                 "no effect is missing that could be taken for another one"
