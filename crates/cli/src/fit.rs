@@ -97,7 +97,7 @@ impl FitCommand {
         for (name, why) in &learnt.extension.left_out {
             let _ = writeln!(text, "  {name} is not in the file: {why}");
         }
-        text.push_str(&as_written(&data, &learnt, &options)?);
+        text.push_str(&as_written(&data, &learnt, &options));
         text.push_str(&drawn.map_or_else(String::new, |(_, says)| says));
         text.push_str(&posterior.map_or_else(String::new, |(_, says)| says));
         if let Some(path) = &self.out {
@@ -154,14 +154,18 @@ impl FitCommand {
 }
 
 /// A warning if the file, without what was fitted beside its effects, leaves a larger error on these data.
-fn as_written(data: &Data, learnt: &Learnt, options: &Options) -> Result<String, Failure> {
+fn as_written(data: &Data, learnt: &Learnt, options: &Options) -> String {
     let Learnt { fitting, extension, .. } = learnt;
     if extension.left_out.is_empty() {
-        return Ok(String::new());
+        return String::new();
     }
-    let found = predict(data, &extension.muscle, &options.catalogue, &options.excluded)?;
+    let found = match predict(data, &extension.muscle, &options.catalogue, &options.excluded) {
+        Ok(found) => found,
+        // The fit stands whatever its file can do.
+        Err(error) => return format!("  ! without them the file can't predict these data: {error}\n"),
+    };
     let error_n = found.against.map_or(0.0, |against| against.rmse_n);
-    Ok(if error_n > WORSE * fitting.rmse_n {
+    if error_n > WORSE * fitting.rmse_n {
         format!(
             "  ! without them the file leaves an error of {} N on these data, {} N with them: `bulge predict` uses the file\n",
             significant(error_n, 3),
@@ -169,7 +173,7 @@ fn as_written(data: &Data, learnt: &Learnt, options: &Options) -> Result<String,
         )
     } else {
         String::new()
-    })
+    }
 }
 
 /// The quantiles of the posterior as text, and a warning where the draws are too few.

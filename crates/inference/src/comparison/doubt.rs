@@ -11,8 +11,8 @@ const WORTH_TELLING: f64 = 0.9;
 /// Fewest rows of a branch that give its median.
 const FEWEST: usize = 3;
 
-/// The standard deviations of all rows. Rows of uncertain direction get the variance `sigma^2 + g^2` with the gap `g` between the branches at their
-/// pressure, which is the error of a row that lies on the other branch.
+/// The standard deviations of all rows. Rows of uncertain direction get the variance `sigma^2 + g^2` with the
+/// gap `g` between the branches at their pressure, which is the error of a row that lies on the other branch.
 ///
 /// The gap is the difference between the medians of the residuals while shortening and while lengthening
 /// (filling and venting at held length). None if no gap is larger than the noise, as for a muscle without

@@ -391,6 +391,9 @@ pub struct Remaining {
     pub unseen_below_n: Option<f64>,
     /// Description of the misfit, in words.
     pub hints: Vec<String>,
+    /// A jump within a sweep, with its size and place in words: something happened there.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub jump: Option<String>,
     /// The systematic misfit over pressure, contraction and direction, if there is structure.
     pub surface: Vec<SurfaceCurve>,
 }

@@ -7,7 +7,7 @@
 
 use bulge_effects::Parity;
 use bulge_model::Wanted;
-use bulge_muscles::units::significant;
+use bulge_muscles::units::{rounded, significant};
 
 use crate::comparison::doubt::doubtful_sd;
 use crate::comparison::levels::Levels;
@@ -17,7 +17,7 @@ use crate::diagnosis::confirm::Confirmed;
 use crate::diagnosis::decision_rule::RULE;
 use crate::diagnosis::document::NextExperiment;
 use crate::diagnosis::linearised_model::Context;
-use crate::diagnosis::proposals::{Limits, proposals, rounded};
+use crate::diagnosis::proposals::{Limits, proposals};
 use crate::fit::weights::Noise;
 use crate::noise::law::{CorrelationTime, NoiseLaw};
 use crate::noise::whitening::Whitening;

@@ -1,7 +1,7 @@
 //! Experiments within the limits of a bench, from which the next one is chosen.
 
 use bulge_model::Record;
-use bulge_muscles::units::significant;
+use bulge_muscles::units::{rounded, significant};
 use serde::Serialize;
 
 use crate::comparison::levels::Levels;
@@ -126,22 +126,6 @@ impl Limits {
         }
         (0..count).map(|i| low + (high - low) * i as f64 / (count - 1).max(1) as f64).collect()
     }
-}
-
-/// A measured value with as many digits as one sets or states on a bench.
-pub(crate) fn rounded(value: f64, digits: i32) -> f64 {
-    if value == 0.0 || !value.is_finite() {
-        return value;
-    }
-    #[expect(clippy::cast_possible_truncation, reason = "a power of ten of a double")]
-    let last = value.abs().log10().floor() as i32 + 1 - digits;
-    let rounded = if last >= 0 {
-        (value / 10.0_f64.powi(last)).round() * 10.0_f64.powi(last)
-    } else {
-        // Division by a whole number gives the decimal itself.
-        (value * 10.0_f64.powi(-last)).round() / 10.0_f64.powi(-last)
-    };
-    if rounded.is_finite() { rounded } else { value }
 }
 
 /// The range of contraction in steps of 0.1 % within a measured one; the measured one if it holds no step.
@@ -269,16 +253,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn limits_of_readings_can_be_set_on_a_bench() {
-        for (read, set) in [
-            (2.00031e5, "200000"),
-            (99_987.0, "100000"),
-            (0.002_045_9, "0.00205"),
-            (-49.6667, "-49.7"),
-            (0.0, "0"),
-        ] {
-            assert_eq!(rounded(read, 3).to_string(), set);
-        }
+    fn ranges_of_readings_can_be_set_on_a_bench() {
         // Within a hair a step is reached; a range without a step stays.
         for (read, set) in [
             ([-0.0003, 0.14993], [0.0, 0.149]),

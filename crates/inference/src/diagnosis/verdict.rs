@@ -244,6 +244,14 @@ impl Findings<'_> {
         })
     }
 
+    /// A jump that the last model leaves, in words.
+    pub(crate) fn jump_left(&self) -> Option<String> {
+        match self.last().adequacy.unsmooth? {
+            Unsmooth::Jump(jump) => Some(self.jump(jump)),
+            Unsmooth::Oscillation(_) | Unsmooth::Recurs => None,
+        }
+    }
+
     /// A jump and its location, in words.
     fn jump(&self, jump: Jump) -> String {
         let record = self.context.record;

@@ -103,6 +103,7 @@ pub(crate) fn document(
             by_formulas: (named && !last.added.is_empty()).then(|| last.by_formulas(&search.stages[0])),
             unseen_below_n: if named { found.unseen_below_n() } else { None },
             hints: if adequate { Vec::new() } else { found.hints(&left) },
+            jump: found.jump_left().filter(|_| !adequate),
             surface: surface(context.record, &last.linear),
         },
         geometry: Geometry::default(),

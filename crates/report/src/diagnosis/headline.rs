@@ -20,8 +20,6 @@ const CANNOT_TELL: &str = "these data can't tell: ";
 const ADEQUATE: &str = "the model explains these data within noise and tolerance";
 const UNKNOWN: &str = "these data hold a structure that no effect of the catalogue explains";
 const TOO_FEW: &str = "these data are too few or too noisy for a verdict";
-/// Beginning of the hint that tells of a jump.
-const JUMP: &str = "it is a jump";
 
 /// The verdict, one line per statement. Each line begins with `missing: `, `remains: `, `adequate: `,
 /// `unknown: `, `cannot tell: `, `nearest: `, `not looked for: ` or `geometry: `.
@@ -76,10 +74,8 @@ fn verdict(diagnosis: &Diagnosis) -> Vec<String> {
                 };
                 format!("nearest: {} ({why})", missing.effect)
             }));
-            let jump = diagnosis.remaining.hints.iter().find_map(|hint| hint.strip_prefix(JUMP));
-            if let Some(jump) = jump {
-                lines
-                    .push(format!("remains: a jump{jump}: see what happened there before you accept a name"));
+            if let Some(jump) = &diagnosis.remaining.jump {
+                lines.push(format!("remains: {jump}: see what happened there before you accept a name"));
             } else if diagnosis.remaining.structured {
                 let may_bend = diagnosis.added().any(|added| added.form_error.is_some());
                 let what = if diagnosis.added().count() >= MOST_EFFECTS {

@@ -97,6 +97,19 @@ fn plots_are_those_for_which_there_are_numbers() {
 }
 
 #[test]
+fn a_jump_stands_in_the_head_in_the_place_of_advice_to_go_on() {
+    let mut diagnosis = missing(comparison());
+    diagnosis.remaining.structured = true;
+    diagnosis.remaining.jump = Some("a jump of 9.9 N within a sweep".to_owned());
+    let lines = headlines(&diagnosis);
+    assert!(
+        lines.iter().any(|line| line.starts_with("remains: a jump of 9.9 N within a sweep: see")),
+        "{lines:?}"
+    );
+    assert!(lines.iter().all(|line| !line.contains("accept them")), "{lines:?}");
+}
+
+#[test]
 fn verdicts_stand_in_the_first_lines() {
     for (diagnosis, begins) in [
         (

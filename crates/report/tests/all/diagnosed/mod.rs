@@ -45,6 +45,7 @@ pub(crate) fn missing(mut comparison: Comparison) -> Diagnosis {
             by_formulas: Some(0.95),
             unseen_below_n: Some(0.32),
             hints: vec!["grows with the pressure".to_owned()],
+            jump: None,
             surface: surface(),
         },
         geometry: Geometry::default(),
