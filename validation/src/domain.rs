@@ -12,8 +12,10 @@ use crate::check::{Check, Claim};
 use crate::integrals;
 use crate::sample::Sampler;
 
+mod invariants;
 mod muscles;
 
+pub use invariants::{Broken, equilibria};
 use muscles::{KINDS, reference};
 
 /// Largest residual of the end conditions that an answer may have. Its square remains after the last step.
@@ -286,10 +288,17 @@ fn both(seed: u64, number: usize) -> Option<Both> {
 /// Never, unless a range here is wrong.
 pub fn drawn(seed: u64, number: usize) -> Result<(Muscle, Pressure, Option<Given>), MuscleError> {
     let mut sampler = Sampler::new(seed.wrapping_add(number as u64).wrapping_mul(0x2545_F491_4F6C_DD1D));
-    let (_, draw) = KINDS[number % KINDS.len()];
-    let muscle = draw(&mut sampler)?;
+    drawn_of(number % KINDS.len(), &mut sampler)
+}
+
+pub(crate) fn drawn_of(
+    kind: usize,
+    sampler: &mut Sampler,
+) -> Result<(Muscle, Pressure, Option<Given>), MuscleError> {
+    let (_, draw) = KINDS[kind];
+    let muscle = draw(sampler)?;
     let pressure = Pressure::pa(reference(&muscle));
-    let question = question(&mut sampler, &muscle, pressure);
+    let question = question(sampler, &muscle, pressure);
     Ok((muscle, pressure, question))
 }
 

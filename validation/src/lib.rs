@@ -7,6 +7,7 @@
 mod braid;
 mod check;
 mod closed_form;
+pub mod decisions;
 mod derivative;
 mod design;
 mod difference;

@@ -9,16 +9,33 @@ use bulge_muscles::{
 #[derive(Debug, Clone)]
 pub struct Sampler {
     state: u64,
+    /// What the first numbers are made of, two bytes each, in reverse.
+    bytes: Vec<u8>,
 }
 
 impl Sampler {
     /// The sequence of a seed.
     #[must_use]
     pub fn new(seed: u64) -> Self {
-        Self { state: seed }
+        Self { state: seed, bytes: Vec::new() }
+    }
+
+    /// A sequence whose first numbers follow two bytes each, so that a fuzzer that changes some bytes changes
+    /// some numbers of a muscle.
+    #[must_use]
+    pub fn of_bytes(bytes: &[u8]) -> Self {
+        Self { state: 0, bytes: bytes.iter().rev().copied().collect() }
     }
 
     fn bits(&mut self) -> u64 {
+        let random = self.random();
+        match (self.bytes.pop(), self.bytes.pop()) {
+            (Some(high), Some(low)) => u64::from(high) << 56 | u64::from(low) << 48 | random >> 16,
+            _ => random,
+        }
+    }
+
+    fn random(&mut self) -> u64 {
         self.state = self.state.wrapping_add(0x9E37_79B9_7F4A_7C15);
         let z = (self.state ^ (self.state >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
         let z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
@@ -48,6 +65,11 @@ impl Sampler {
     /// True with a probability.
     pub fn chance(&mut self, probability: f64) -> bool {
         self.between(0.0, 1.0) < probability
+    }
+
+    /// An index below `count`, which is above 0.
+    pub fn below(&mut self, count: usize) -> usize {
+        (self.between(0.0, count as f64) as usize).min(count - 1)
     }
 
     /// A gauge pressure between 0.1 and 8 bar.

@@ -118,13 +118,15 @@ impl<E: Fn(&Found) -> f64> Walk<'_, E> {
         let mut good = None;
         let mut x = start;
         let mut stride = (0.5 * start.abs()).max(1e-3);
-        let mut failures = 0;
+        let mut failures = 0_u32;
         // Go to smaller contractions, in growing strides, until the excess is positive.
         for _ in 0..80 {
             match (self.at(x, false), good) {
                 (Ok(found), _) if (self.excess)(&found) > 0.0 => return Ok((x, x)),
                 (Ok(_), _) => {
                     good = Some(x);
+                    // Elastic fibres can be drawn out farther; beside an end of the range strides stay small.
+                    failures -= u32::from(failures > 0 && self.problem.net.compliance > 0.0);
                     stride *= if failures == 0 { 1.6 } else { 1.0 };
                 }
                 // No equilibrium here: go back to the last one and take smaller strides.
@@ -297,6 +299,33 @@ impl Problem {
                 Err(FibreError::NotConverged { contraction: at, residual: value, iterations: 100 })
             }
         }
+    }
+}
+
+impl Problem {
+    /// The equilibrium of a muscle that is drawn out to a contraction below the start of searches, step by
+    /// step from there. A cold start finds it only nearby.
+    pub(crate) fn drawn_to(&self, scheme: Scheme, contraction: f64) -> Option<Found> {
+        let start = self.contraction_start();
+        if contraction >= start {
+            return None;
+        }
+        let excess = |_: &Found| 0.0;
+        let mut walk = Walk { problem: self, scheme, near: None, seen: &mut { Seen::NOTHING }, excess };
+        walk.at(start, false).ok()?;
+        let (mut x, mut stride) = (start, 0.25 * (start - contraction));
+        for _ in 0..MOST_STEPS {
+            let next = (x - stride).max(contraction);
+            match walk.at(next, false) {
+                Ok(found) if next <= contraction => return Some(found),
+                Ok(_) => (x, stride) = (next, 2.0 * stride),
+                Err(_) => stride *= 0.25,
+            }
+            if stride < SMALLEST {
+                break;
+            }
+        }
+        None
     }
 }
 

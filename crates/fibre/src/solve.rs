@@ -121,15 +121,17 @@ impl Problem {
     /// # Errors
     /// See [`FibreError`].
     pub fn follow(&self, contraction: f64, approach: Approach) -> Result<Response, FibreError> {
-        let scheme = self.scheme(approach)?;
-        let found = self.at(scheme, contraction, None).or_else(|error| {
+        self.followed(self.scheme(approach)?, contraction, approach).map(|found| found.response)
+    }
+
+    fn followed(&self, scheme: Scheme, contraction: f64, approach: Approach) -> Result<Found, FibreError> {
+        self.at(scheme, contraction, None).or_else(|error| {
             let error = self.explained(error, contraction, approach);
-            if !matches!(error, FibreError::NotConverged { .. }) {
+            if !is_lost(&error) {
                 return Err(error);
             }
             self.walked(scheme, contraction, false).ok_or(error)
-        });
-        found.map(|found| found.response)
+        })
     }
 
     /// Explains an error beyond the limit, where a long braid or a soft one would bulge in more than one
@@ -148,6 +150,11 @@ impl Problem {
 
     /// The equilibrium at a contraction, step by step from where one is found, or from a path.
     pub(crate) fn walked(&self, scheme: Scheme, contraction: f64, must_pull: bool) -> Option<Found> {
+        if let Some(found) =
+            self.drawn_to(scheme, contraction).filter(|found| self.pulls(&found.response) || !must_pull)
+        {
+            return Some(found);
+        }
         let start = self.contraction_start().min(contraction);
         let mut seen = Seen::NOTHING;
         let walked =
@@ -217,7 +224,16 @@ impl Problem {
         });
         let pressure = Dual::variable(self.pressure, 2);
         let net = parts.net(pressure);
-        let outcome = self.outcome_of_many(self.scheme(approach)?, contraction, &net, None, EXACT)?;
+        let scheme = self.scheme(approach)?;
+        let outcome = self.outcome_of_many(scheme, contraction, &net, None, EXACT).or_else(|error| {
+            // A cold start doesn't lead everywhere that a walk does.
+            let from =
+                if is_lost(&error) { self.followed(scheme, contraction, approach)?.unknowns() } else { None };
+            match from {
+                Some(_) => self.outcome_of_many(scheme, contraction, &net, from, EXACT),
+                None => Err(error),
+            }
+        })?;
         let radius = parts.radius;
         let out = |scale: Dual<N>, total: &Total<N>| {
             let mut gradient = total.by_parameter;
@@ -272,9 +288,7 @@ impl Problem {
         match self.longest() {
             Some(limit) if contraction <= limit => Err(FibreError::TooLong { contraction, limit }),
             // Go step by step from an equilibrium that exists.
-            _ if matches!(error, FibreError::NotConverged { .. }) => {
-                self.walked(scheme, contraction, true).ok_or(error)
-            }
+            _ if is_lost(&error) => self.walked(scheme, contraction, true).ok_or(error),
             _ => Err(error),
         }
     }
@@ -293,16 +307,30 @@ impl Problem {
         let mut seen = Seen::NOTHING;
         let way = [self.contraction_start(), FAR];
         match self.root(scheme, way, &mut seen, |found| found.response.force_n - force) {
-            Err(error @ (FibreError::NotConverged { .. } | FibreError::Overstretched { .. })) => {
+            Err(error) if is_lost(&error) || matches!(error, FibreError::Overstretched { .. }) => {
                 let Seen { force: high_n, contraction, .. } = seen;
-                if high_n.is_finite() && high_n < force {
-                    return Err(FibreError::ForceTooLarge { force_n: force, high_n, contraction });
+                let too_large = (high_n.is_finite() && high_n < force).then_some(FibreError::ForceTooLarge {
+                    force_n: force,
+                    high_n,
+                    contraction,
+                });
+                // A walk that ended where the muscle would undulate has not seen the largest force.
+                if let Some(error) =
+                    too_large.clone().filter(|_| !matches!(error, FibreError::Undulates { .. }))
+                {
+                    return Err(error);
                 }
                 self.on_a_path(scheme, Goal::Force(force), true, &seen).map_or_else(
-                    || match self.at_limit(scheme, &mut { Seen::NOTHING }) {
-                        // The force is less than where the fibres slacken.
-                        Err(slack @ FibreError::Slack { limit: Some(_), .. }) => Err(slack),
-                        _ => Err(error),
+                    || {
+                        if let Some(error) = too_large {
+                            Err(error)
+                        } else {
+                            match self.at_limit(scheme, &mut { Seen::NOTHING }) {
+                                // The force is less than where the fibres slacken.
+                                Err(slack @ FibreError::Slack { limit: Some(_), .. }) => Err(slack),
+                                _ => Err(error),
+                            }
+                        }
                     },
                     Ok,
                 )
@@ -401,6 +429,11 @@ impl Problem {
         };
         Found { response, solution: outcome.solution }
     }
+}
+
+/// Whether a search ended without an equilibrium, where another way may lead to one.
+fn is_lost(error: &FibreError) -> bool {
+    matches!(error, FibreError::NotConverged { .. } | FibreError::Undulates { .. })
 }
 
 /// dF/dl with the gas enclosed, (p + pa) V^g constant: dp/dl = -g (p + pa) V_l/(V + g (p + pa) V_p) in

@@ -144,10 +144,11 @@ impl Problem {
         }
     }
 
-    /// The equilibrium with the largest volume up to the end of the range.
+    /// The equilibrium with the largest volume up to the end of the range. It may lie before the end even
+    /// where the volume rises at the end: on wide fittings it falls first.
     fn fullest(&self, scheme: Scheme, end: &Most) -> Most {
         let rising = |found: &Found| -found.response.volume_slope_m2;
-        if self.is_scale_free() || rising(&end.found) >= 0.0 {
+        if self.is_scale_free() {
             return *end;
         }
         let mut seen = Seen::NOTHING;

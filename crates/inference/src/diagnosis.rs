@@ -14,6 +14,7 @@ pub(crate) mod diagnose;
 pub(crate) mod document;
 pub(crate) mod drawn;
 mod either;
+mod event;
 mod exchange;
 pub(crate) mod explained;
 pub(crate) mod fits;

@@ -40,7 +40,7 @@ pub use comparison::options::Options;
 pub use comparison::row_by_row::Rows;
 pub use comparison::rows::UNPRESSURISED;
 pub use comparison::stated::{Stated, StatementError, Statements, rows_to_exclude};
-pub use diagnosis::confidence::Confidence;
+pub use diagnosis::confidence::{Confidence, wilson};
 pub use diagnosis::decision_rule::SEPARATION;
 pub use diagnosis::diagnose::{DiagnoseOptions, diagnose};
 pub use diagnosis::document::*;

@@ -14,6 +14,9 @@ use std::io::Cursor;
 const ZIP_MAGIC: &[u8] = b"PK\x03\x04";
 /// Most bytes of a sheet as text.
 const MOST_BYTES: usize = 1 << 30;
+/// Rows and columns of a sheet of Excel.
+const MAX_ROWS: u32 = 1 << 20;
+const MAX_COLUMNS: u32 = 1 << 14;
 /// Seconds of a day: dates are stored in days.
 const DAY: f64 = 86_400.0;
 
@@ -112,6 +115,13 @@ fn text(book: &mut Xlsx<Cursor<&[u8]>>, name: &str) -> Result<String, XlsxError>
     let (mut text, mut line, mut field) = (String::new(), 0, 0);
     while let Some(cell) = cells.next_cell()? {
         let (row, column) = cell.get_position();
+        // A damaged workbook may put a cell anywhere below 2^32, and every line up to there would be written.
+        if row >= MAX_ROWS {
+            return Err(XlsxError::RowNumberOverflow);
+        }
+        if column >= MAX_COLUMNS {
+            return Err(XlsxError::ColumnNumberOverflow);
+        }
         // A cell out of order would belong to a line that is complete already.
         if row < line || (row == line && column < field) || text.len() > MOST_BYTES {
             continue;
@@ -213,7 +223,7 @@ mod tests {
     const HEAD: &str = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>";
     const MAIN: &str = "http://schemas.openxmlformats.org/spreadsheetml/2006/main";
 
-    /// A workbook with sheets of cells, which are text or numbers.
+    /// A workbook with sheets of cells, which are text or numbers, or a number at another place (`A7|5`).
     pub(crate) fn workbook(sheets: &[&[&[&str]]]) -> Vec<u8> {
         let package = "http://schemas.openxmlformats.org/package/2006";
         let office = "http://schemas.openxmlformats.org/officeDocument/2006/relationships";
@@ -230,7 +240,9 @@ mod tests {
                 let _ = write!(data, "<row r=\"{}\">", row + 1);
                 for (column, cell) in cells.iter().enumerate().filter(|(_, cell)| !cell.is_empty()) {
                     let place = format!("{}{}", char::from(b'A' + u8::try_from(column).unwrap()), row + 1);
-                    let _ = if let Some(date) = cell.strip_prefix('@') {
+                    let _ = if let Some((place, value)) = cell.split_once('|') {
+                        write!(data, "<c r=\"{place}\"><v>{value}</v></c>")
+                    } else if let Some(date) = cell.strip_prefix('@') {
                         write!(data, "<c r=\"{place}\" s=\"1\"><v>{date}</v></c>")
                     } else if cell.parse::<f64>().is_ok() {
                         write!(data, "<c r=\"{place}\"><v>{cell}</v></c>")
@@ -317,6 +329,18 @@ mod tests {
         assert!(notes.contains("the sheet `S1`, not from `S2`: name each"), "{notes}");
         let error = crate::Data::read(&[name("S4")]).unwrap_err().to_string();
         assert!(error.contains("no sheet `S4`: there are `S1`, `S2`, `S3`"), "{error}");
+    }
+
+    #[test]
+    fn cells_far_outside_of_a_sheet_are_errors() {
+        for place in ["A4000000000|5", "ZZZZ7|5"] {
+            let bytes = workbook(&[&[&["pressure [bar]", "length [mm]", "force [N]"], &["1", "300", place]]]);
+            let error = read("d.xlsx", &bytes, None, &ReadOptions::default()).unwrap_err().to_string();
+            assert!(
+                error.contains("can't be read as an Excel workbook (") && error.contains("number overflow"),
+                "{error}"
+            );
+        }
     }
 
     #[test]

@@ -290,7 +290,8 @@ impl Claim {
 }
 
 /// Wilson's 95 % interval of a rate.
-pub(crate) fn wilson(good: usize, all: usize) -> [f64; 2] {
+#[must_use]
+pub fn wilson(good: usize, all: usize) -> [f64; 2] {
     const Z: f64 = 1.959_964;
     if all == 0 {
         return [0.0, 1.0];

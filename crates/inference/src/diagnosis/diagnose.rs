@@ -19,6 +19,7 @@ use crate::diagnosis::classes::Class;
 use crate::diagnosis::confidence::{Confidence, confidence};
 use crate::diagnosis::document::Diagnosis;
 use crate::diagnosis::either::quieter;
+use crate::diagnosis::event::Sides;
 use crate::diagnosis::fits::Fits;
 use crate::diagnosis::geometry::{Doubt, geometry};
 use crate::diagnosis::linearised_model::Context;
@@ -107,7 +108,7 @@ fn answered(
     muscles: [&Muscle; 2],
     options: &DiagnoseOptions,
 ) -> Result<Diagnosis, InferenceError> {
-    match diagnosed(data, muscles, options) {
+    match diagnosed(data, muscles, options, Across::NoEvent) {
         Err(error @ (InferenceError::TooFewRows { .. } | InferenceError::Identical { .. })) => {
             Ok(cannot_tell(&*of_specimens(data, muscles[0])?, muscles[0], &error.to_string()))
         }
@@ -115,10 +116,20 @@ fn answered(
     }
 }
 
+/// What an answer may stretch across.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Across {
+    /// No jump, unless both sides of it say the same.
+    NoEvent,
+    /// Anything: the answer for one side of a jump.
+    Anything,
+}
+
 fn diagnosed(
     data: &Data,
     [stated, muscle]: [&Muscle; 2],
     options: &DiagnoseOptions,
+    across: Across,
 ) -> Result<Diagnosis, InferenceError> {
     let mut analysis = Analysis::new(data, muscle, &options.base)?;
     analysis.ask()?;
@@ -129,8 +140,12 @@ fn diagnosed(
     }
     let first = analysis.begin()?;
     let mut base = analysis.climb(options.base.effects.len(), Some(&first.climbed))?;
+    let sides = |row| {
+        let ask = |options: &DiagnoseOptions| diagnosed(data, [stated, muscle], options, Across::Anything);
+        (across == Across::NoEvent).then(|| Sides::of(&analysis.data, options, row, ask))
+    };
     let (diagnosis, used) = where_it_has_a_state(&analysis, &mut base, |base, used| {
-        on_rows(&analysis, &first, base, used, options)
+        on_rows(&analysis, &first, base, used, (options, &sides))
     })?;
     Ok(diagnosis.without(&analysis, &used))
 }
@@ -178,13 +193,16 @@ impl Diagnosis {
     }
 }
 
+/// The diagnoses of both sides of an event at a row of the files; none where an answer may stretch across it.
+type OfSides<'a> = &'a dyn Fn(usize) -> Option<Sides>;
+
 /// The diagnosis on some of the rows.
 fn on_rows(
     analysis: &Analysis<'_>,
     first: &First,
     base: &mut Climbed,
     used: &[bool],
-    options: &DiagnoseOptions,
+    (options, sides): (&DiagnoseOptions, OfSides<'_>),
 ) -> Result<Diagnosis, Stop> {
     let progress = &options.progress;
     progress.at(0.1, "the noise");
@@ -221,10 +239,10 @@ fn on_rows(
     let quieter = quieter.map_err(|error| Stop::at_means(error, &averaged_data.averaged, analysis))?;
     if let Some((law, whitening)) = &quieter {
         let quiet = Context { whitening, law, fits: None, ..context };
-        return concluded((analysis, first), (&quiet, averaged_data), &model, search, options);
+        return concluded((analysis, first), (&quiet, averaged_data), &model, search, (options, sides));
     }
     context.exchange(&model, &mut search);
-    concluded((analysis, first), (&context, averaged_data), &model, search, options)
+    concluded((analysis, first), (&context, averaged_data), &model, search, (options, sides))
 }
 
 /// Classes, confidence and the ladder for the result of a search.
@@ -233,7 +251,7 @@ fn concluded(
     (context, averaged_data): (&Context<'_>, &AveragedData),
     model: &Model,
     mut search: Search,
-    options: &DiagnoseOptions,
+    (options, sides): (&DiagnoseOptions, OfSides<'_>),
 ) -> Result<Diagnosis, Stop> {
     let progress = &options.progress;
     progress.at(0.6, "rivals");
@@ -255,7 +273,7 @@ fn concluded(
     let classes: Vec<(Class, Confidence)> =
         judged.into_iter().map(|judged| (judged.class, judged.confidence)).collect();
     let sd_n = row_sd(context.law, averaged_data);
-    let found = Findings {
+    let mut found = Findings {
         context,
         search: &search,
         classes: &classes,
@@ -264,7 +282,15 @@ fn concluded(
         known: options.base.effects.len(),
         tolerance_n: options.tolerance_n,
         next,
+        event: None,
     };
+    if let Some(row) =
+        found.event_row().and_then(|row| averaged_data.averaged.groups.get(row)?.first().copied())
+        && let Some(sides) = sides(row)
+        && !sides.name_each(&found.families())
+    {
+        found.event = found.jump_left().map(|jump| sides.says(&jump));
+    }
     let effects: Vec<Arc<dyn Effect>> = options.base.effects.iter().chain(found.shown()).cloned().collect();
     let answer = compare_after(first, analysis, &effects, found.last().confirmed.numbers())?;
     progress.at(1.0, "done");

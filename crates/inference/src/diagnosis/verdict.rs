@@ -55,6 +55,9 @@ impl Findings<'_> {
 
     /// The verdict, a sentence or two, and the names of the effects that are claimed.
     pub(crate) fn verdict(&self) -> (Verdict, String, Vec<String>) {
+        if let Some(event) = &self.event {
+            return (Verdict::CannotTell, event.clone(), Vec::new());
+        }
         let Said { verdict, says, claimed } = self.said();
         let is_known = self.context.law.source != NoiseSource::Instruments;
         let Some(tolerance) = self.tolerance_n.filter(|_| is_known) else {
@@ -250,6 +253,22 @@ impl Findings<'_> {
             Unsmooth::Jump(jump) => Some(self.jump(jump)),
             Unsmooth::Oscillation(_) | Unsmooth::Recurs => None,
         }
+    }
+
+    /// The row of the record from which on a jump is left, if effects would be named across it, or nothing
+    /// explains it.
+    pub(crate) fn event_row(&self) -> Option<usize> {
+        match self.last().adequacy.unsmooth? {
+            Unsmooth::Jump(jump) => self.verdict().0.shows_effects().then_some(jump.row),
+            Unsmooth::Oscillation(_) | Unsmooth::Recurs => None,
+        }
+    }
+
+    /// Families of the effects that are claimed.
+    pub(crate) fn families(&self) -> Vec<&str> {
+        let claimed = self.verdict().2;
+        let is_claimed = |effect: &&Arc<dyn Effect>| claimed.iter().any(|name| name == effect.card().name);
+        self.last().added.iter().filter(is_claimed).map(|effect| effect.card().family).collect()
     }
 
     /// A jump and its location, in words.

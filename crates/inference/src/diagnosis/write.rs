@@ -53,6 +53,8 @@ pub(crate) struct Findings<'a> {
     /// RMS misfit that doesn't matter \[N\].
     pub(crate) tolerance_n: Option<f64>,
     pub(crate) next: Option<NextExperiment>,
+    /// What is said of an event that no effect may be named across.
+    pub(crate) event: Option<String>,
 }
 
 /// The diagnosis.

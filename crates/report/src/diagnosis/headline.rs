@@ -20,6 +20,7 @@ const CANNOT_TELL: &str = "these data can't tell: ";
 const ADEQUATE: &str = "the model explains these data within noise and tolerance";
 const UNKNOWN: &str = "these data hold a structure that no effect of the catalogue explains";
 const TOO_FEW: &str = "these data are too few or too noisy for a verdict";
+const EVENT: &str = "something happened during the test, and no effect is named across it";
 
 /// The verdict, one line per statement. Each line begins with `missing: `, `remains: `, `adequate: `,
 /// `unknown: `, `cannot tell: `, `nearest: `, `not looked for: ` or `geometry: `.
@@ -94,7 +95,10 @@ fn verdict(diagnosis: &Diagnosis) -> Vec<String> {
         }
         Verdict::Adequate => ("adequate", ADEQUATE, nearest("not needed")),
         Verdict::Unknown => ("unknown", UNKNOWN, nearest("it lowers the error and leaves the structure")),
-        Verdict::CannotTell => ("cannot tell", TOO_FEW, nearest("a ranking, not a claim")),
+        Verdict::CannotTell => {
+            let why = if diagnosis.remaining.jump.is_some() { EVENT } else { TOO_FEW };
+            ("cannot tell", why, nearest("a ranking, not a claim"))
+        }
     };
     let own = diagnosis.says.trim();
     let says = if opens_alike(own, says) { own } else { says };

@@ -111,6 +111,8 @@ fn a_jump_stands_in_the_head_in_the_place_of_advice_to_go_on() {
 
 #[test]
 fn verdicts_stand_in_the_first_lines() {
+    let mut knocked = cannot_tell(comparison());
+    knocked.remaining.jump = Some("a jump of 9.9 N within a sweep".to_owned());
     for (diagnosis, begins) in [
         (
             missing(comparison()),
@@ -128,6 +130,7 @@ fn verdicts_stand_in_the_first_lines() {
             ],
         ),
         (cannot_tell(comparison()), &["cannot tell: these data are too few or too noisy for a verdict"]),
+        (knocked, &["cannot tell: something happened during the test, and no effect is named across it"]),
     ] {
         assert_eq!(headlines(&diagnosis), begins);
         let page = words(&html(&diagnosis).unwrap());
