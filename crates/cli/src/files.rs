@@ -1,7 +1,6 @@
 //! Files that appear whole or not at all.
 
 use bulge_muscles::output;
-use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -91,7 +90,7 @@ pub(crate) fn folder(path: &Path) -> Result<(), Failure> {
         let source = io::Error::new(io::ErrorKind::NotADirectory, "it is a file; give the name of a folder");
         return Err(Failure::Output { path: path.to_path_buf(), source });
     }
-    fs::create_dir_all(path).map_err(|source| Failure::Output { path: path.to_path_buf(), source })
+    output::create_folder(path).map_err(|source| Failure::Output { path: path.to_path_buf(), source })
 }
 
 /// A file that a command reads or writes, with its name on the command line.

@@ -1,10 +1,11 @@
 //! `bulge open`: the workbench in a browser.
 
-use bulge_muscles::PRESETS;
+use bulge_muscles::{PRESETS, output};
 use bulge_workbench::{Choices, ChosenEffect, DataFile, MuscleFile, Start, serve};
 use clap::Args;
 use serde_json::json;
 use std::collections::BTreeMap;
+use std::fs::{File, TryLockError};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
@@ -52,6 +53,7 @@ pub(crate) struct OpenCommand {
 
 impl OpenCommand {
     pub(crate) fn run(&self) -> Result<String, Failure> {
+        let _lock = self.session.as_deref().map(lock).transpose()?;
         let is_stated = !self.data.is_empty() || self.muscle.is_some() || !self.with.is_empty();
         // The temporary files of the tour are removed when this value is dropped.
         let tour = tempfile::Builder::new()
@@ -134,6 +136,23 @@ impl OpenCommand {
         }
         Ok(())
     }
+}
+
+/// Locks the folder of a session for as long as the file is open: two workbenches would overwrite each other's
+/// choices. The system releases the lock when a process ends, for whatever reason.
+fn lock(session: &Path) -> Result<File, Failure> {
+    files::folder(session)?;
+    let path = session.join(".lock");
+    let file = output::lock_file(&path).map_err(|source| Failure::Output { path, source })?;
+    if let Err(TryLockError::WouldBlock) = file.try_lock() {
+        let what = format!(
+            "{} is open in another workbench: end that one, or give another folder",
+            session.display()
+        );
+        return Err(Failure::Value { option: "--session", what });
+    }
+    // Where the file system has no locks, nothing can be told.
+    Ok(file)
 }
 
 /// The content of a text file.

@@ -1,6 +1,7 @@
 //! Reasons why a comparison or a fit is impossible.
 
 use bulge_model::ModelError;
+use bulge_muscles::memory::Shortage;
 use bulge_muscles::{Fault, FileError};
 
 /// What went wrong.
@@ -11,6 +12,18 @@ pub enum InferenceError {
     NoRows {
         /// Why the rows were left out.
         left_out: String,
+    },
+    /// The rows don't fit into the memory.
+    #[error(
+        "{files}: what is asked of {rows} rows {shortage}: keep fewer rows per second, take fewer files at once, or allow more memory"
+    )]
+    Memory {
+        /// The files.
+        files: String,
+        /// Their rows.
+        rows: usize,
+        /// The memory that is needed, and that is left.
+        shortage: Shortage,
     },
     /// The specimens that the muscle file states are not those that were measured.
     #[error(transparent)]

@@ -6,12 +6,14 @@
 use crate::assignment::{Header, assign};
 use crate::encoding;
 use crate::error::MeasurementError;
+use crate::heading::Heading;
 use crate::layout::{self, Layout};
 use crate::line::{Separator, checked_length, unpad, without_line_end};
 use crate::quote::quoted;
 use crate::reading::ReadOptions;
 use crate::slot::Slot;
-use crate::table::{Draft, Table};
+use crate::source::has_room;
+use crate::table::{Draft, Table, bytes_per_row};
 
 /// Most rows of a file.
 pub(crate) const MOST_ROWS: usize = 20_000_000;
@@ -45,18 +47,16 @@ pub(crate) fn read_text(
         first: &layout.first,
     };
     let assignment = assign(&header, options)?;
-    // Estimate from the length of the header. Too small an estimate costs a few copies, too large a one only
-    // address space.
-    let rows =
-        (text.len() / layout.names.iter().map(|name| name.len() + 1).sum::<usize>().max(1)).min(1 << 20);
-    let (mut places, mut slots) = (Vec::new(), Vec::new());
-    for (place, heading) in assignment.headings.into_iter().enumerate() {
-        if let Some(heading) = heading {
-            places.push(place);
-            slots.push(Slot::new(heading, rows));
-        }
-    }
+    let headings = assignment.headings.into_iter().enumerate();
+    let (places, headings): (Vec<usize>, Vec<Heading>) =
+        headings.filter_map(|(place, heading)| Some((place, heading?))).unzip();
+    // At most one row for each line, and a digit with a separator for each of its fields.
+    let lines = text.bytes().filter(|byte| char::from(*byte) == line_end).count() + 1;
+    let rows = lines.min(text.len() / (2 * places.len()).max(1) + 1).min(MOST_ROWS);
+    has_room(file, (rows * bytes_per_row(places.len())) as u64)?;
+    let slots = headings.into_iter().map(|heading| Slot::new(heading, rows)).collect();
     let mut draft = Draft::new(slots, assignment.uses, "line");
+    draft.lines.reserve_exact(rows);
     draft.notes.extend(layout.notes.iter().map(|note| format!("{file}: {note}")));
     let mut fields = Vec::new();
     for (i, line) in text.split(line_end).enumerate().skip(layout.rows_from) {

@@ -2,6 +2,7 @@
 //! instruments.
 
 use crate::error::MeasurementError;
+use crate::source::has_room;
 use std::borrow::Cow;
 
 /// Number of bytes that are searched for UTF-16 without a mark.
@@ -21,20 +22,35 @@ pub(crate) fn text<'a>(
     bytes: &'a [u8],
 ) -> Result<(Cow<'a, str>, Option<&'static str>), MeasurementError> {
     if let Some(little) = utf16(bytes) {
-        let units: Vec<u16> = bytes
+        let units = bytes
             .chunks_exact(2)
             .map(|pair| if little { [pair[0], pair[1]] } else { [pair[1], pair[0]] })
-            .map(u16::from_le_bytes)
-            .collect();
-        let text = String::from_utf16_lossy(&units);
-        let text = text.strip_prefix('\u{feff}').map_or(text.clone(), ToOwned::to_owned);
+            .map(u16::from_le_bytes);
+        let characters = char::decode_utf16(units)
+            .map(|character| character.unwrap_or(char::REPLACEMENT_CHARACTER))
+            .enumerate()
+            .filter(|(place, character)| (*place, *character) != (0, '\u{feff}'));
+        let text = collected(file, bytes.len() / 2, characters.map(|(_, character)| character))?;
         return checked(file, Cow::Owned(text), Some("UTF-16"));
     }
     if let Ok(text) = std::str::from_utf8(bytes) {
         return checked(file, Cow::Borrowed(text.strip_prefix('\u{feff}').unwrap_or(text)), None);
     }
-    let text: String = bytes.iter().map(|byte| western(*byte)).collect();
+    let text = collected(file, bytes.len(), bytes.iter().map(|byte| western(*byte)))?;
     checked(file, Cow::Owned(text), Some("Latin-1 (Windows-1252)"))
+}
+
+/// The text of characters, of which nearly all take one byte.
+fn collected(
+    file: &str,
+    count: usize,
+    characters: impl Iterator<Item = char>,
+) -> Result<String, MeasurementError> {
+    let expected = count + count / 8;
+    has_room(file, expected as u64)?;
+    let mut text = String::with_capacity(expected);
+    text.extend(characters);
+    Ok(text)
 }
 
 fn western(byte: u8) -> char {

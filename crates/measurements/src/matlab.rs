@@ -6,9 +6,11 @@
 use crate::assignment::{Header, assign};
 use crate::csv_file::MOST_ROWS;
 use crate::error::MeasurementError;
+use crate::heading::Heading;
 use crate::reading::ReadOptions;
 use crate::slot::Slot;
-use crate::table::{Draft, Table};
+use crate::source::has_room;
+use crate::table::{Draft, Table, bytes_per_row};
 use flate2::read::ZlibDecoder;
 use std::io::Read;
 
@@ -53,7 +55,7 @@ pub(crate) fn read(file: &str, bytes: &[u8], options: &ReadOptions) -> Result<Ta
         Some(b"MI") => true,
         _ => return Err(damaged()),
     };
-    variables(&Elements { bytes: &bytes[START..], is_big }, &mut all).ok_or_else(damaged)?;
+    variables(file, &Elements { bytes: &bytes[START..], is_big }, &mut all)?.ok_or_else(damaged)?;
     // The table consists of the vectors of the most common length; among equally common ones, the longest.
     let rows = all.iter().map(|variable| variable.values.len()).filter(|length| *length > 1);
     let count = |rows: usize| all.iter().filter(|variable| variable.values.len() == rows).count();
@@ -73,19 +75,18 @@ pub(crate) fn read(file: &str, bytes: &[u8], options: &ReadOptions) -> Result<Ta
         .collect();
     let header = Header { file, line: 1, names: &names, units: None, first: &first };
     let assignment = assign(&header, options)?;
-    let used = assignment
-        .headings
-        .into_iter()
-        .zip(&columns)
-        .filter_map(|(heading, column)| Some((heading?, column)));
-    let (slots, columns): (Vec<Slot>, Vec<&Variable>) =
-        used.map(|(heading, column)| (Slot::new(heading, rows), column)).unzip();
+    let used =
+        assignment.headings.into_iter().zip(columns).filter_map(|(heading, column)| Some((heading?, column)));
+    let (headings, columns): (Vec<Heading>, Vec<Variable>) = used.unzip();
+    has_room(file, (rows * bytes_per_row(columns.len())) as u64)?;
+    let slots = headings.into_iter().map(|heading| Slot::new(heading, rows)).collect();
     let mut draft = Draft::new(slots, assignment.uses, "row");
     if !others.is_empty() {
         let names: Vec<&str> = others.iter().take(10).map(|variable| variable.name.as_str()).collect();
         draft.notes.push(format!("{file}: of another length than {rows}, and ignored: {}", names.join(", ")));
     }
-    for (slot, column) in columns.iter().enumerate() {
+    // Each variable is dropped when its values are taken.
+    for (slot, column) in columns.into_iter().enumerate() {
         for (row, value) in column.values.iter().enumerate() {
             if let Err(problem) = draft.slots[slot].push_number(*value) {
                 draft.spoilt(slot, row, &problem);
@@ -169,22 +170,46 @@ impl<'a> Elements<'a> {
 }
 
 /// All variables of a file; none if it is damaged.
-fn variables(elements: &Elements<'_>, found: &mut Vec<Variable>) -> Option<()> {
+fn variables(
+    file: &str,
+    elements: &Elements<'_>,
+    found: &mut Vec<Variable>,
+) -> Result<Option<()>, MeasurementError> {
     let mut elements = elements.within(elements.bytes);
     while elements.bytes.len() >= 8 {
-        let (kind, bytes) = elements.next()?;
-        if kind == MATRIX {
-            array(&elements.within(bytes), None, DEEPEST, found)?;
+        let Some((kind, bytes)) = elements.next() else { return Ok(None) };
+        let is_sound = if kind == MATRIX {
+            // The values as numbers, and the columns of a matrix.
+            has_room(file, 2 * bytes.len() as u64)?;
+            array(&elements.within(bytes), None, DEEPEST, found).is_some()
         } else if kind == COMPRESSED {
-            let mut unpacked = Vec::new();
-            ZlibDecoder::new(bytes).take(MOST_BYTES).read_to_end(&mut unpacked).ok()?;
+            let Some(unpacked) = unpacked(file, bytes, elements.is_big)? else { return Ok(None) };
             let mut inner = Elements { bytes: &unpacked, is_big: elements.is_big };
-            if let Some((MATRIX, bytes)) = inner.next() {
-                array(&inner.within(bytes), None, DEEPEST, found)?;
+            match inner.next() {
+                Some((MATRIX, bytes)) => array(&inner.within(bytes), None, DEEPEST, found).is_some(),
+                _ => true,
             }
+        } else {
+            true
+        };
+        if !is_sound {
+            return Ok(None);
         }
     }
-    Some(())
+    Ok(Some(()))
+}
+
+/// The bytes of a compressed element; none if it is damaged. It begins with its type and its length.
+fn unpacked(file: &str, bytes: &[u8], is_big: bool) -> Result<Option<Vec<u8>>, MeasurementError> {
+    let mut decoder = ZlibDecoder::new(bytes);
+    let mut bytes = vec![0; 8];
+    if decoder.read_exact(&mut bytes).is_err() {
+        return Ok(None);
+    }
+    let length = Elements { bytes: &bytes, is_big }.word(4).map_or(0, u64::from).min(MOST_BYTES);
+    // Itself, its values as numbers, and the columns of a matrix.
+    has_room(file, 3 * length)?;
+    Ok(decoder.take(length).read_to_end(&mut bytes).ok().map(|_| bytes))
 }
 
 /// The columns of an array: one for a vector, several for a matrix, those of its fields for a structure; none
@@ -213,8 +238,12 @@ fn array(elements: &Elements<'_>, name: Option<&str>, depth: usize, found: &mut 
         return Some(());
     }
     let (rows, columns) = if count(0) == 1 { (count(1), 1) } else { (count(0), count(1)) };
+    if columns == 1 {
+        found.push(Variable { name: name.to_owned(), values });
+        return Some(());
+    }
     for column in 0..columns {
-        let name = if columns == 1 { name.to_owned() } else { format!("{name}(:,{})", column + 1) };
+        let name = format!("{name}(:,{})", column + 1);
         found.push(Variable { name, values: values.get(column * rows..(column + 1) * rows)?.to_vec() });
     }
     Some(())

@@ -10,7 +10,8 @@ use crate::parquet_page::{CheckedPages, checked_place};
 use crate::quote::quoted;
 use crate::reading::ReadOptions;
 use crate::slot::Slot;
-use crate::table::{Draft, Table};
+use crate::source::has_room;
+use crate::table::{Draft, Table, bytes_per_row};
 use parquet::basic::{ConvertedType, LogicalType, Type};
 use parquet::column::reader::ColumnReaderImpl;
 use parquet::data_type::{ByteArrayType, DataType, DoubleType, FloatType, Int32Type, Int64Type};
@@ -42,6 +43,10 @@ pub(crate) fn read<R: ChunkReader + 'static>(
             slots.push(Slot::new(heading, 0));
         }
     }
+    // The number of rows that the file states is checked by reading them. A column has room for twice its
+    // values at most.
+    let stated = usize::try_from(reader.metadata().file_metadata().num_rows()).unwrap_or(0).min(MOST_ROWS);
+    has_room(file, (stated * bytes_per_row(2 * slots.len())) as u64)?;
     let mut draft = Draft::new(slots, assignment.uses, "row");
     let mut rows = vec![0; places.len()];
     for group in 0..reader.num_row_groups() {

@@ -10,6 +10,7 @@ use crate::parquet_file;
 use crate::reading::{ReadOptions, Reading};
 use crate::spreadsheet;
 use crate::table::Table;
+use bulge_muscles::memory;
 use serde::Serialize;
 use sha2::{Digest, Sha256};
 use std::fs::File;
@@ -18,6 +19,8 @@ use std::path::Path;
 
 /// Most bytes of a file.
 const MOST_BYTES: u64 = 2 << 30;
+/// Bytes that are read at once if fewer are expected.
+const LEAST_READ: u64 = 1 << 16;
 /// The first bytes of every Parquet file.
 const PARQUET_MAGIC: &[u8] = b"PAR1";
 
@@ -71,7 +74,8 @@ impl Source {
     pub(crate) fn read(name: &str, path: &Path, options: &ReadOptions) -> Result<Self, MeasurementError> {
         let is_stdin = path == Path::new(STDIN);
         let (path, sheet) = sheet_of(path);
-        let bytes = if is_stdin { read_all(name, std::io::stdin().lock()) } else { read_file(name, path) }?;
+        let bytes =
+            if is_stdin { read_all(name, std::io::stdin().lock(), 0) } else { read_file(name, path) }?;
         let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
         let is_parquet = bytes.starts_with(PARQUET_MAGIC);
         if !is_parquet && ["parquet", "pq"].contains(&extension.as_str()) {
@@ -177,13 +181,40 @@ fn read_file(name: &str, path: &Path) -> Result<Vec<u8>, MeasurementError> {
     if metadata.len() > MOST_BYTES {
         return Err(too_large(name, metadata.len()));
     }
-    read_all(name, file)
+    read_all(name, file, metadata.len())
 }
 
-fn read_all(name: &str, source: impl Read) -> Result<Vec<u8>, MeasurementError> {
+/// Reads everything: first as many bytes as are expected, then as many again, and so on. Memory is taken for no
+/// more than that.
+pub(crate) fn read_all(
+    name: &str,
+    mut source: impl Read,
+    expected: u64,
+) -> Result<Vec<u8>, MeasurementError> {
     let mut bytes = Vec::new();
-    source.take(MOST_BYTES + 1).read_to_end(&mut bytes).map_err(|error| unreadable(name, error))?;
-    if bytes.len() as u64 > MOST_BYTES { Err(too_large(name, bytes.len() as u64)) } else { Ok(bytes) }
+    // The byte beyond the expected ones would show that there are more.
+    let mut more = (expected + 1).max(LEAST_READ);
+    loop {
+        has_room(name, more)?;
+        bytes.reserve_exact(usize::try_from(more).unwrap_or(usize::MAX));
+        let read = source.by_ref().take(more).read_to_end(&mut bytes);
+        if (read.map_err(|error| unreadable(name, error))? as u64) < more {
+            return Ok(bytes);
+        }
+        more = bytes.len() as u64;
+        if more > MOST_BYTES {
+            return Err(too_large(name, more));
+        }
+    }
+}
+
+/// Refuses what needs more memory than there is, before it is taken: an allocation that fails would end the
+/// process.
+pub(crate) fn has_room(file: &str, bytes: u64) -> Result<(), MeasurementError> {
+    memory::check(bytes).map_err(|shortage| {
+        let cure = "split the file, keep fewer rows per second, or allow more memory";
+        MeasurementError::of_file(file, format!("{shortage}: {cure}"))
+    })
 }
 
 /// Checks equal lengths, finite numbers, valid directions.

@@ -5,6 +5,7 @@ use crate::error::MeasurementError;
 use crate::line::Separator;
 use crate::quote::quoted;
 use crate::reading::ReadOptions;
+use crate::source::has_room;
 use crate::table::Table;
 use calamine::{DataRef, ExcelDateTime, Reader, Xlsx, XlsxError};
 use std::fmt::Write;
@@ -92,14 +93,14 @@ fn one(
     sheet: &str,
     options: &ReadOptions,
 ) -> Option<Result<Table, MeasurementError>> {
-    Some(match text(book, sheet) {
+    Some(match text(book, file, sheet) {
         Ok(text) if text.trim().is_empty() => return None,
         Ok(text) if text.len() > MOST_BYTES => {
             let (bytes, limit) = (text.len() as u64, MOST_BYTES as u64);
             Err(MeasurementError::TooLarge { file: file.to_owned(), bytes, limit })
         }
         Ok(text) => csv_file::read_text(file, &text, Some(Separator::Byte(b'\t')), options),
-        Err(error) => Err(refused(file, &error)),
+        Err(error) => Err(error),
     })
 }
 
@@ -110,10 +111,17 @@ fn refused(file: &str, why: &XlsxError) -> MeasurementError {
 }
 
 /// A sheet as tab-separated lines with the same line numbers.
-fn text(book: &mut Xlsx<Cursor<&[u8]>>, name: &str) -> Result<String, XlsxError> {
-    let mut cells = book.worksheet_cells_reader(name)?;
+fn text(book: &mut Xlsx<Cursor<&[u8]>>, file: &str, name: &str) -> Result<String, MeasurementError> {
+    let refused = |error: XlsxError| refused(file, &error);
+    let mut cells = book.worksheet_cells_reader(name).map_err(refused)?;
     let (mut text, mut line, mut field) = (String::new(), 0, 0);
-    while let Some(cell) = cells.next_cell()? {
+    let mut checked = 0;
+    while let Some(cell) = cells.next_cell().map_err(refused)? {
+        // The text takes twice its memory while it grows.
+        if text.len() >= checked {
+            checked = 2 * text.len();
+            has_room(file, checked as u64)?;
+        }
         let (row, column) = cell.get_position();
         // A damaged workbook may put a cell anywhere below 2^32, and every line up to there would be written.
         if row >= MAX_ROWS {

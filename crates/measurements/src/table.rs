@@ -28,6 +28,12 @@ const MOST_KINDS: usize = 8;
 /// Number of first lines listed for each kind.
 const FIRST_LINES: usize = 3;
 
+/// Bytes that a row of so many columns takes while it is read: its values, its line, and what the check of its
+/// order and of its motion takes.
+pub(crate) fn bytes_per_row(columns: usize) -> usize {
+    8 * columns + 4 + 16
+}
+
 /// Columns during reading, and the problems of their rows.
 pub(crate) struct Draft {
     pub(crate) slots: Vec<Slot>,

@@ -50,6 +50,7 @@ mod keys;
 mod learnt;
 mod learnt_table;
 mod material;
+pub mod memory;
 mod muscle;
 pub mod output;
 mod parameter;

@@ -1,5 +1,7 @@
 //! Files that appear whole or not at all, and targets that are no regular file.
 
+mod fault;
+
 use std::ffi::OsStr;
 use std::fs::{self, File};
 use std::io::{self, Write};
@@ -31,13 +33,128 @@ enum Target {
 /// # Errors
 /// Those of the system. Nothing is left of the file then, and an older one stays as it was.
 pub fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    write_with(path, bytes, false)
+}
+
+/// As [`write()`], but a new file can be read by its owner alone.
+///
+/// # Errors
+/// As [`write()`].
+pub fn write_private(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    write_with(path, bytes, true)
+}
+
+fn write_with(path: &Path, bytes: &[u8], is_private: bool) -> io::Result<()> {
     match target(path)? {
-        Target::File(path) => replace(&path, bytes),
+        Target::File(path) => replace(&path, bytes, is_private),
         Target::Stream(path) => {
             // Appending: another program's output may be in the same file, as behind /dev/stdout.
             let mut stream = File::options().append(true).open(path)?;
-            stream.write_all(bytes)?;
+            fault::write(&mut stream, bytes)?;
             stream.flush()
+        }
+    }
+}
+
+/// Creates a folder with its parents if it doesn't exist.
+///
+/// # Errors
+/// Those of the system.
+pub fn create_folder(path: &Path) -> io::Result<()> {
+    fault::check()?;
+    fs::create_dir_all(path)
+}
+
+/// Removes a file.
+///
+/// # Errors
+/// Those of the system.
+pub fn remove(path: &Path) -> io::Result<()> {
+    fault::check()?;
+    fs::remove_file(path)
+}
+
+/// Opens a file that processes lock. It is created if needed, and stays empty.
+///
+/// # Errors
+/// Those of the system.
+pub fn lock_file(path: &Path) -> io::Result<File> {
+    fault::check()?;
+    File::options().create(true).truncate(false).write(true).open(path)
+}
+
+/// A file under a temporary name. If it isn't published, it is removed.
+#[derive(Debug)]
+pub struct Unfinished {
+    path: PathBuf,
+    file: File,
+    is_published: bool,
+}
+
+impl Unfinished {
+    /// A new file in a folder. `name` is a part of its temporary name.
+    ///
+    /// # Errors
+    /// Those of the system.
+    pub fn new(folder: &Path, name: &OsStr) -> io::Result<Self> {
+        Self::create(folder, name, false)
+    }
+
+    fn create(folder: &Path, name: &OsStr, is_private: bool) -> io::Result<Self> {
+        static COUNT: AtomicU64 = AtomicU64::new(0);
+        // A name of the full length leaves no room for more.
+        let name: String = name.to_string_lossy().chars().take(40).collect();
+        let mut options = File::options();
+        options.write(true).create_new(true);
+        #[cfg(unix)]
+        if is_private {
+            std::os::unix::fs::OpenOptionsExt::mode(&mut options, 0o600);
+        }
+        loop {
+            let count = COUNT.fetch_add(1, Ordering::Relaxed);
+            let path = folder.join(format!("{UNFINISHED}{}-{count}-{name}", std::process::id()));
+            fault::check()?;
+            match options.open(&path) {
+                // Left by a killed process with the same number.
+                Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
+                found => return found.map(|file| Self { path, file, is_published: false }),
+            }
+        }
+    }
+
+    /// Its temporary path.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Writes further bytes.
+    ///
+    /// # Errors
+    /// Those of the system.
+    pub fn write(&mut self, bytes: &[u8]) -> io::Result<()> {
+        fault::write(&mut self.file, bytes)
+    }
+
+    /// Forces the file to the disk and renames it to `path`, in the same folder.
+    ///
+    /// # Errors
+    /// Those of the system. If the new name can't be forced to the disk, the file has it nevertheless.
+    pub fn publish(mut self, path: &Path) -> io::Result<()> {
+        fault::check()?;
+        self.file.sync_all()?;
+        fault::check()?;
+        fs::rename(&self.path, path)?;
+        self.is_published = true;
+        sync(folder_of(path))
+    }
+}
+
+impl Drop for Unfinished {
+    fn drop(&mut self) {
+        if !self.is_published {
+            // If this fails too, the name tells what the file is.
+            let _ = remove(&self.path);
         }
     }
 }
@@ -58,6 +175,7 @@ pub fn file_of(path: &Path) -> Option<PathBuf> {
 /// # Errors
 /// Those of the system.
 pub fn sync(folder: &Path) -> io::Result<()> {
+    fault::check()?;
     if cfg!(unix) { File::open(folder)?.sync_all() } else { Ok(()) }
 }
 
@@ -95,41 +213,14 @@ fn folder_of(path: &Path) -> &Path {
     path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
-fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    let folder = folder_of(path);
-    let (temporary, file) = unfinished(folder, path.file_name().unwrap_or_default())?;
-    let published = fill(file, path, bytes).and_then(|()| fs::rename(&temporary, path));
-    if let Err(error) = published {
-        // The first error is the one to report.
-        let _ = fs::remove_file(&temporary);
-        return Err(error);
-    }
-    sync(folder)
-}
-
-/// A new file with a name of its own.
-fn unfinished(folder: &Path, name: &OsStr) -> io::Result<(PathBuf, File)> {
-    static COUNT: AtomicU64 = AtomicU64::new(0);
-    // A name of the full length leaves no room for more.
-    let name: String = name.to_string_lossy().chars().take(40).collect();
-    loop {
-        let count = COUNT.fetch_add(1, Ordering::Relaxed);
-        let path = folder.join(format!("{UNFINISHED}{}-{count}-{name}", std::process::id()));
-        match File::create_new(&path) {
-            // Left by a killed process with the same number.
-            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
-            found => return found.map(|file| (path, file)),
-        }
-    }
-}
-
-fn fill(mut file: File, path: &Path, bytes: &[u8]) -> io::Result<()> {
+fn replace(path: &Path, bytes: &[u8], is_private: bool) -> io::Result<()> {
+    let mut file = Unfinished::create(folder_of(path), path.file_name().unwrap_or_default(), is_private)?;
     if let Ok(older) = fs::metadata(path) {
         // A file system without permissions has nothing to keep.
-        let _ = file.set_permissions(older.permissions());
+        let _ = file.file.set_permissions(older.permissions());
     }
-    file.write_all(bytes)?;
-    file.sync_all()
+    file.write(bytes)?;
+    file.publish(path)
 }
 
 #[cfg(test)]
@@ -199,7 +290,7 @@ mod tests {
         fs::create_dir_all(&occupied).unwrap();
         assert_eq!(write(&occupied, b"x").unwrap_err().kind(), io::ErrorKind::IsADirectory);
         // A rename that fails at the last moment.
-        assert!(replace(&occupied, b"x").is_err());
+        assert!(replace(&occupied, b"x", false).is_err());
         assert!(write(&folder.0.join("absent").join("a"), b"x").is_err());
         assert_eq!(folder.names(), ["occupied"]);
     }

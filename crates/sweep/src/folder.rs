@@ -10,9 +10,10 @@
 //! ```
 //! Every file is written under another name, forced to the disk and renamed; then its folder is forced to the
 //! disk. After a crash or a power loss a file is therefore either complete or absent. A chunk is computed
-//! again if its file doesn't have the hash in its promise.
+//! again if its file doesn't have the hash in its promise. The promises also name the plan, by its hash: if
+//! `plan.json` is lost, they tell which sweep the folder holds.
 
-use bulge_muscles::output::{UNFINISHED, sync};
+use bulge_muscles::output::{UNFINISHED, create_folder, lock_file, remove, sync};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::fs::{self, File};
@@ -62,7 +63,7 @@ impl Folder {
     /// Creates the folder and its subfolders.
     pub(crate) fn create(&self, csv: bool) -> io::Result<()> {
         for name in ["points", "chunks"].into_iter().chain(csv.then_some("csv")) {
-            fs::create_dir_all(self.0.join(name))?;
+            create_folder(&self.0.join(name))?;
         }
         // The subfolders may be new, and so may the folder itself within its parent.
         sync(&self.0)?;
@@ -79,6 +80,25 @@ impl Folder {
             .any(|name| fs::read_dir(self.0.join(name)).is_ok_and(|mut entries| entries.any(finished)))
     }
 
+    /// Number of the promises of a plan, and the paths of those of other plans. Damaged ones tell nothing.
+    pub(crate) fn promises(&self, plan: &str) -> io::Result<(usize, Vec<PathBuf>)> {
+        let (mut own, mut others) = (0, Vec::new());
+        let entries = match fs::read_dir(self.0.join("chunks")) {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok((own, others)),
+            entries => entries?,
+        };
+        for entry in entries {
+            let path = entry?.path();
+            match fs::read(&path).ok().and_then(|text| serde_json::from_slice::<ChunkManifest>(&text).ok()) {
+                Some(promise) if promise.plan == plan => own += 1,
+                Some(_) => others.push(path),
+                None => {}
+            }
+        }
+        others.sort();
+        Ok((own, others))
+    }
+
     /// Locks the folder, and tells whether this process is alone in it.
     ///
     /// A process that is alone holds the lock exclusively until [`Self::share`], so no other process begins
@@ -86,7 +106,7 @@ impl Folder {
     /// holder. The system releases the lock when a process ends, for whatever reason. The returned lock
     /// is none where the file system has no locks.
     pub(crate) fn lock(&self) -> io::Result<(Option<File>, bool)> {
-        let file = File::options().create(true).truncate(false).write(true).open(self.0.join(".lock"))?;
+        let file = lock_file(&self.0.join(".lock"))?;
         let is_alone = file.try_lock().is_ok();
         let is_held = is_alone || file.lock_shared().is_ok();
         Ok((is_held.then_some(file), is_alone))
@@ -126,7 +146,7 @@ impl Folder {
                 let path = entry?.path();
                 let unfinished =
                     path.file_name().is_some_and(|n| n.to_string_lossy().starts_with(UNFINISHED));
-                match unfinished.then(|| fs::remove_file(path)) {
+                match unfinished.then(|| remove(&path)) {
                     Some(Err(error)) if error.kind() != io::ErrorKind::NotFound => return Err(error),
                     _ => {}
                 }

@@ -57,7 +57,7 @@ pub struct Summary {
     pub chunks: u64,
     /// Number of these chunks that were computed now; the others were found in the folder.
     pub computed: u64,
-    /// Damaged files, whose chunks were computed again.
+    /// Damaged or missing files, which were made again with their chunks.
     pub damaged: Vec<String>,
     /// Whether all chunks of the sweep are there and the manifest is written.
     pub is_complete: bool,
@@ -137,7 +137,8 @@ impl Plan {
 /// # Errors
 /// [`SweepError`].
 pub fn begin(plan: &Plan, path: &Path, options: &RunOptions) -> Result<(), SweepError> {
-    open(&Folder::new(path), path, &plan.canonical()?, options).map(drop)
+    let canonical = plan.canonical()?;
+    open(&Folder::new(path), path, (&canonical, &hash(canonical.as_bytes())), options).map(drop)
 }
 
 /// Runs a sweep into a folder. `told` receives the progress; it is called from several threads.
@@ -161,10 +162,10 @@ pub fn run(
     let canonical = plan.canonical()?;
     let key = hash(canonical.as_bytes());
     let folder = Folder::new(path);
-    let _lock = open(&folder, path, &canonical, options)?;
-    let damaged = Mutex::new(Vec::new());
+    let (_lock, lost) = open(&folder, path, (&canonical, &key), options)?;
+    let damaged = Mutex::new(Vec::from_iter(lost));
     for from in &options.merge {
-        merge(&folder, from, &canonical, (&key, all), &damaged)?;
+        merge(&folder, from, (&canonical, &key), all, &damaged)?;
     }
     let run = Run {
         plan,
@@ -371,13 +372,15 @@ impl SweepError {
         Self::Folder { path: path.to_owned(), what: what.into() }
     }
 
-    /// The folder holds another sweep: the plan before, and the one now.
-    fn changed(path: &Path, before: &str, now: &str) -> Self {
+    /// The folder holds another sweep: the plan before, and the one now, of which the chunks may be.
+    fn changed(path: &Path, [before, now]: [&str; 2], is_of_chunks: bool) -> Self {
         let difference = difference(before, now);
-        let what = format!(
-            "holds another sweep; the plans differ in\n{difference}\ntake another folder, or undo the change"
-        );
-        Self::folder(path, what)
+        let cure = if is_of_chunks {
+            "take another folder; or, since its chunks are of this sweep, delete its plan.json and add `--resume`"
+        } else {
+            "take another folder, or undo the change"
+        };
+        Self::folder(path, format!("holds another sweep; the plans differ in\n{difference}\n{cure}"))
     }
 
     fn no_such_chunks(asked: &Range<u64>, all: u64) -> Self {
@@ -399,67 +402,117 @@ fn write(path: &Path, bytes: &[u8]) -> Result<(), SweepError> {
     output::write(path, bytes).map_err(at(path))
 }
 
-/// Prepares the folder, or refuses it for this sweep.
+/// What a folder holds, unless it is another sweep.
+enum Holds {
+    Nothing,
+    ThisSweep,
+    /// Chunks of this sweep, with what is wrong with their plan.
+    ChunksWithoutPlan(String),
+}
+
+impl Holds {
+    /// Compares the plan in a folder with a plan and its hash. If there is no sound plan, the chunks decide.
+    fn of(folder: &Folder, path: &Path, (canonical, key): (&str, &str)) -> Result<Self, SweepError> {
+        let plan = folder.plan();
+        let promises = || folder.promises(key).map_err(at(path));
+        let what = match fs::read(&plan) {
+            Ok(before) if before == canonical.as_bytes() => return Ok(Self::ThisSweep),
+            Ok(before) => {
+                if let Some(before) = sound(&before, canonical) {
+                    let is_of_chunks = promises().is_ok_and(|(own, others)| own > 0 && others.is_empty());
+                    return Err(SweepError::changed(path, [before, canonical], is_of_chunks));
+                }
+                if !folder.has_chunks() {
+                    let what = "is damaged: take another folder, or delete this file";
+                    return Err(SweepError::folder(&plan, what));
+                }
+                "is damaged"
+            }
+            Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(at(&plan)(error)),
+            Err(_) if !folder.has_chunks() => return Ok(Self::Nothing),
+            Err(_) => "is missing",
+        };
+        let what = format!("{} {what}", plan.display());
+        match promises()? {
+            (own, others) if own > 0 && others.is_empty() => Ok(Self::ChunksWithoutPlan(what)),
+            (own, others) => {
+                let why = match others.as_slice() {
+                    [] => "no chunk tells of which sweep it is".to_owned(),
+                    [first, ..] => format!(
+                        "chunks of another sweep are there ({} of {}, such as {})",
+                        others.len(),
+                        own + others.len(),
+                        first.display()
+                    ),
+                };
+                let what =
+                    format!("can't be resumed: {what}, and {why}; take another folder, or move them away");
+                Err(SweepError::folder(path, what))
+            }
+        }
+    }
+}
+
+/// The text of another plan, unless it isn't sound.
+fn sound<'a>(before: &'a [u8], canonical: &str) -> Option<&'a str> {
+    let text = std::str::from_utf8(before).ok()?;
+    let [before, now] = [text, canonical].map(serde_json::from_str::<serde_json::Value>);
+    let before = before.ok().filter(|plan| plan["schema"] == SCHEMA)?;
+    // The same plan, if only blanks differ, is a damaged one.
+    now.is_ok_and(|now| now != before).then_some(text)
+}
+
+/// Prepares the folder, or refuses it for this sweep. Beside the lock it returns what was wrong with the plan,
+/// if it had to be written again.
 fn open(
     folder: &Folder,
     path: &Path,
-    canonical: &str,
+    plan: (&str, &str),
     options: &RunOptions,
-) -> Result<Option<fs::File>, SweepError> {
+) -> Result<(Option<fs::File>, Option<String>), SweepError> {
     folder.create(options.csv).map_err(at(path))?;
-    let plan = folder.plan();
     let (lock, is_alone) = folder.lock().map_err(at(path))?;
-    // Other processes may be working on other chunks; their unfinished files must stay.
-    let sweep_up = || if is_alone { folder.sweep_up().map_err(at(path)) } else { Ok(()) };
-    match fs::read_to_string(&plan) {
-        Ok(before) if before == canonical => {
-            if !options.resume && options.chunks.is_none() && options.merge.is_empty() {
-                let what =
-                    "holds this sweep already: add `--resume` to go on with it, or take another folder";
-                return Err(SweepError::folder(path, what));
-            }
-            sweep_up()?;
-        }
-        Ok(before) if serde_json::from_str::<serde_json::Value>(&before).is_err() => {
-            return Err(SweepError::folder(&plan, "is damaged: take another folder, or delete this one"));
-        }
-        Ok(before) => return Err(SweepError::changed(path, &before, canonical)),
-        Err(error) if error.kind() == io::ErrorKind::NotFound && folder.has_chunks() => {
-            let what = "holds chunks of an unknown sweep, without a plan.json: take another folder, or empty this one";
-            return Err(SweepError::folder(path, what));
-        }
-        // A process may have been killed before it wrote the plan.
-        Err(error) if error.kind() == io::ErrorKind::NotFound => {
-            sweep_up()?;
-            write(&plan, canonical.as_bytes())?;
-        }
-        Err(error) => return Err(at(&plan)(error)),
+    let holds = Holds::of(folder, path, plan)?;
+    let goes_on = options.resume || options.chunks.is_some() || !options.merge.is_empty();
+    if !matches!(holds, Holds::Nothing) && !goes_on {
+        let what = "holds this sweep already: add `--resume` to go on with it, or take another folder";
+        return Err(SweepError::folder(path, what));
     }
+    // Other processes may be working on other chunks; their unfinished files must stay.
+    if is_alone {
+        folder.sweep_up().map_err(at(path))?;
+    }
+    let lost = match holds {
+        Holds::ThisSweep => None,
+        // A process may have been killed before it wrote the plan.
+        Holds::Nothing => {
+            write(&folder.plan(), plan.0.as_bytes())?;
+            None
+        }
+        Holds::ChunksWithoutPlan(what) => {
+            write(&folder.plan(), plan.0.as_bytes())?;
+            Some(what)
+        }
+    };
     if let (Some(lock), true) = (&lock, is_alone) {
         Folder::share(lock).map_err(at(path))?;
     }
-    Ok(lock)
+    Ok((lock, lost))
 }
 
 /// Takes over all finished, undamaged chunks from another folder of the same sweep.
 fn merge(
     folder: &Folder,
     from: &Path,
-    canonical: &str,
-    (key, all): (&str, u64),
+    plan: (&str, &str),
+    all: u64,
     damaged: &Mutex<Vec<String>>,
 ) -> Result<(), SweepError> {
     let other = Folder::new(from);
-    let plan = match fs::read_to_string(other.plan()) {
-        Ok(plan) => plan,
-        Err(error) if error.kind() == io::ErrorKind::NotFound => {
-            return Err(SweepError::folder(from, "holds no sweep: it has no plan.json"));
-        }
-        Err(error) => return Err(at(&other.plan())(error)),
-    };
-    if plan != canonical {
-        return Err(SweepError::changed(from, &plan, canonical));
+    if let Holds::Nothing = Holds::of(&other, from, plan)? {
+        return Err(SweepError::folder(from, "holds no sweep: it has no plan.json"));
     }
+    let (_, key) = plan;
     for chunk in 0..all {
         let standing =
             |folder: &Folder| folder.standing(chunk, key, false).map_err(at(&folder.promise(chunk)));
@@ -478,7 +531,7 @@ fn merge(
         };
         let mut files = vec![(other.parquet(chunk), folder.parquet(chunk))];
         if promise.csv_sha256.is_some() {
-            fs::create_dir_all(folder.csv(chunk).with_file_name("")).map_err(at(&folder.csv(chunk)))?;
+            output::create_folder(&folder.csv(chunk).with_file_name("")).map_err(at(&folder.csv(chunk)))?;
             files.push((other.csv(chunk), folder.csv(chunk)));
         }
         // The promise is copied last, because a chunk counts as finished once its promise is there.

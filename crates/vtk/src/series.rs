@@ -2,8 +2,8 @@
 
 use crate::bulge::Bulge;
 use crate::{VtkError, whole_file, write_vtp};
+use bulge_muscles::output;
 use std::fmt::Write as _;
-use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Writes `stem_0000.vtp`, `stem_0001.vtp`, ... into the folder `dir`, which is created if needed. Then it
@@ -32,7 +32,7 @@ pub fn write_series(
 
 /// Creates the folder of a series and its parents.
 pub(crate) fn create(dir: &Path) -> Result<(), VtkError> {
-    fs::create_dir_all(dir).map_err(|source| VtkError::File {
+    output::create_folder(dir).map_err(|source| VtkError::File {
         path: dir.to_path_buf(),
         action: "create the folder",
         source,
@@ -93,6 +93,7 @@ mod tests {
     use super::*;
     use crate::Style;
     use crate::analytic::barrel;
+    use std::fs;
 
     #[test]
     fn writes_members_and_collection() {

@@ -1,6 +1,6 @@
 //! The folder of a session: the choices, and the files dropped on the page.
 
-use bulge_muscles::output;
+use bulge_muscles::output::{self, Unfinished};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::fs;
@@ -84,7 +84,7 @@ impl Folder {
             (None, Some(made)) => made.path().to_path_buf(),
             (path, _) => std::path::absolute(path.unwrap_or(Path::new(".")))?,
         };
-        fs::create_dir_all(path.join(DATA))?;
+        output::create_folder(&path.join(DATA))?;
         Ok(Self { path, _temporary: temporary })
     }
 
@@ -117,7 +117,7 @@ impl Folder {
         let text = serde_json::to_string(kept).map_err(Refusal::at(Place::Request))?;
         let path = self.path.join(STATE);
         // Private, since the state contains the token.
-        private(&path).and_then(|()| output::write(&path, text.as_bytes())).map_err(|error| {
+        output::write_private(&path, text.as_bytes()).map_err(|error| {
             Refusal::new(Place::Request, format!("cannot write {}: {error}", path.display()))
         })
     }
@@ -134,16 +134,15 @@ impl Folder {
         Ok(Diagnosed { document: document?, report: report? })
     }
 
-    /// Path of a file that is being received. It is in the folder of the complete files, under a name that
-    /// none of them has.
-    pub(crate) fn unfinished(&self, number: u64) -> PathBuf {
-        self.path.join(DATA).join(format!("{}{number}", output::UNFINISHED))
+    /// The folder of the dropped files.
+    pub(crate) fn data(&self) -> PathBuf {
+        self.path.join(DATA)
     }
 
     /// Moves a dropped file to its place. An existing file with the same name and other content is kept,
     /// since undo may need it.
-    pub(crate) fn place(&self, name: &str, received: &Path) -> io::Result<PathBuf> {
-        let folder = self.path.join(DATA);
+    pub(crate) fn place(&self, name: &str, received: Unfinished) -> io::Result<PathBuf> {
+        let folder = self.data();
         let path = Path::new(name);
         let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let end = path.extension().map_or_else(String::new, |end| format!(".{}", end.to_string_lossy()));
@@ -151,28 +150,14 @@ impl Folder {
             let other =
                 if number == 1 { folder.join(name) } else { folder.join(format!("{stem}-{number}{end}")) };
             if !other.exists() {
-                fs::rename(received, &other)?;
+                received.publish(&other)?;
                 return Ok(other);
             }
-            if is_same(&other, received)? {
-                fs::remove_file(received)?;
+            if is_same(&other, received.path())? {
                 return Ok(other);
             }
         }
         Err(io::Error::other("all names are taken"))
-    }
-}
-
-/// Creates a file that other users of the machine can't read, if it doesn't exist. Its replacement keeps the
-/// permissions.
-fn private(path: &Path) -> io::Result<()> {
-    let mut options = fs::OpenOptions::new();
-    options.write(true).create_new(true);
-    #[cfg(unix)]
-    std::os::unix::fs::OpenOptionsExt::mode(&mut options, 0o600);
-    match options.open(path) {
-        Err(error) if error.kind() != io::ErrorKind::AlreadyExists => Err(error),
-        _ => Ok(()),
     }
 }
 
@@ -206,12 +191,13 @@ mod tests {
     fn a_file_of_the_same_name_stays() {
         let folder = Folder::open(None).unwrap();
         let receive = |bytes: &[u8]| {
-            let path = folder.unfinished(7);
-            fs::write(&path, bytes).unwrap();
-            folder.place("a.csv", &path).unwrap()
+            let mut file = Unfinished::new(&folder.data(), "a.csv".as_ref()).unwrap();
+            file.write(bytes).unwrap();
+            folder.place("a.csv", file).unwrap()
         };
         let [first, second, third] = [receive(b"1"), receive(b"2"), receive(b"1")];
         assert_eq!((fs::read(&first).unwrap(), fs::read(&second).unwrap()), (b"1".to_vec(), b"2".to_vec()));
         assert!(first == third && first != second);
+        assert_eq!(fs::read_dir(folder.data()).unwrap().count(), 2);
     }
 }

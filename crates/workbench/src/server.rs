@@ -9,13 +9,12 @@ use axum::response::{IntoResponse, Response};
 use bulge_effects::Known;
 use bulge_inference::Protocol;
 use bulge_muscles::Muscle;
+use bulge_muscles::output::Unfinished;
 use futures_util::StreamExt;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::collections::HashMap;
-use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use tokio::io::AsyncWriteExt;
 use tokio::sync::watch;
 
 use crate::ahead::Waiting;
@@ -54,7 +53,6 @@ pub(crate) struct Workbench {
     /// The muscle whose shape was requested last, with its revision.
     shaped: Mutex<Option<(u64, Shaped)>>,
     pub(crate) revision: watch::Sender<u64>,
-    received: AtomicU64,
 }
 
 impl Workbench {
@@ -69,7 +67,6 @@ impl Workbench {
             waiting,
             shaped: Mutex::default(),
             revision,
-            received: AtomicU64::new(0),
         }
     }
 
@@ -225,32 +222,26 @@ async fn receive(
     if length.is_some_and(|length| length > MOST_DATA) {
         return Err(too_large());
     }
-    let number = workbench.received.fetch_add(1, Ordering::Relaxed);
-    let received = workbench.session().folder.unfinished(number);
+    let folder = workbench.session().folder.data();
     let failed = |error: std::io::Error| Refusal::new(Place::Data, format!("cannot keep {name}: {error}"));
-    let written = async {
-        let mut file = tokio::fs::File::create(&received).await.map_err(failed)?;
-        let mut stream = body.into_data_stream();
-        let mut bytes = 0;
-        while let Some(part) = stream.next().await {
-            let part = part.map_err(|error| {
-                Refusal::new(Place::Data, format!("{name} did not arrive whole: {error}"))
-            })?;
-            bytes += part.len() as u64;
-            if bytes > MOST_DATA {
-                return Err(too_large());
-            }
-            file.write_all(&part).await.map_err(failed)?;
+    // An error, or a page that goes away, drops the file, and thereby removes it.
+    let mut file = Unfinished::new(&folder, name.as_ref()).map_err(failed)?;
+    let mut stream = body.into_data_stream();
+    let mut bytes = 0;
+    while let Some(part) = stream.next().await {
+        let part =
+            part.map_err(|error| Refusal::new(Place::Data, format!("{name} did not arrive whole: {error}")))?;
+        bytes += part.len() as u64;
+        if bytes > MOST_DATA {
+            return Err(too_large());
         }
-        file.flush().await.map_err(failed)
-    };
-    if let Err(refusal) = written.await {
-        // An incomplete file is useless.
-        let _ = tokio::fs::remove_file(&received).await;
-        return Err(refusal);
+        // The system takes the bytes into its memory, which is faster than another thread that would.
+        file.write(&part).map_err(failed)?;
     }
     blocking(workbench, move |w| {
-        let path = w.session().folder.place(&name, &received).map_err(Refusal::at(Place::Data))?;
+        let placed = w.session().folder.place(&name, file);
+        let path =
+            placed.map_err(|error| Refusal::new(Place::Data, format!("cannot keep {name}: {error}")))?;
         w.change(|session| session.take(name, path, beside))
     })
     .await

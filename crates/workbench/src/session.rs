@@ -144,20 +144,20 @@ impl Session {
         if let Some(excluded) = change.excluded {
             next.excluded = self.exclude(excluded)?;
         }
-        if let Some(view) = change.view {
-            if view.to_string().len() > MOST_VIEW {
-                return Err(Refusal::new(
-                    Place::Request,
-                    format!("a view of more than {MOST_VIEW} bytes is not kept"),
-                ));
+        if change.view.as_ref().is_some_and(|view| view.to_string().len() > MOST_VIEW) {
+            let what = format!("a view of more than {MOST_VIEW} bytes is not kept");
+            return Err(Refusal::new(Place::Request, what));
+        }
+        self.keep(|own| {
+            if let Some(view) = change.view {
+                own.kept.view = view;
             }
-            self.kept.view = view;
-        }
-        if change.goes_on && next != self.kept.choices && !self.kept.past.is_empty() {
-            drop(self.go_to(next));
-            return self.folder.keep(&self.kept);
-        }
-        self.step(next)
+            if change.goes_on && next != own.kept.choices && !own.kept.past.is_empty() {
+                drop(own.go_to(next));
+            } else {
+                own.step(next);
+            }
+        })
     }
 
     /// Takes a file of measurements: it replaces the present ones, or is added to them if `beside`.
@@ -174,27 +174,42 @@ impl Session {
             (next.data, next.columns) = (vec![file], None);
         }
         next.excluded = Vec::new();
-        self.step(next)
+        self.keep(|own| own.step(next))
     }
 
     /// Goes back one step.
     pub(crate) fn undo(&mut self) -> Result<(), Refusal> {
-        let Some(before) = self.kept.past.pop() else { return Ok(()) };
-        let now = self.go_to(before);
-        self.kept.future.push(now);
-        self.folder.keep(&self.kept)
+        self.keep(|own| {
+            if let Some(before) = own.kept.past.pop() {
+                let now = own.go_to(before);
+                own.kept.future.push(now);
+            }
+        })
     }
 
     /// Goes forward one step.
     pub(crate) fn redo(&mut self) -> Result<(), Refusal> {
-        let Some(after) = self.kept.future.pop() else { return Ok(()) };
-        let now = self.go_to(after);
-        self.kept.past.push(now);
-        self.folder.keep(&self.kept)
+        self.keep(|own| {
+            if let Some(after) = own.kept.future.pop() {
+                let now = own.go_to(after);
+                own.kept.past.push(now);
+            }
+        })
+    }
+
+    /// Makes a change and writes the state. If it can't be written, nothing is changed.
+    fn keep(&mut self, make: impl FnOnce(&mut Self)) -> Result<(), Refusal> {
+        let before = (self.kept.clone(), self.inputs.clone(), self.revision);
+        make(self);
+        let written = self.folder.keep(&self.kept);
+        if written.is_err() {
+            (self.kept, self.inputs, self.revision) = before;
+        }
+        written
     }
 
     /// Adds a step; steps that were undone are discarded.
-    fn step(&mut self, next: Choices) -> Result<(), Refusal> {
+    fn step(&mut self, next: Choices) {
         if next != self.kept.choices {
             let before = self.go_to(next);
             self.kept.past.push(before);
@@ -202,7 +217,6 @@ impl Session {
             let surplus = self.kept.past.len().saturating_sub(MOST_STEPS);
             self.kept.past.drain(..surplus);
         }
-        self.folder.keep(&self.kept)
     }
 
     /// Replaces the choices and returns the previous ones.
@@ -303,9 +317,10 @@ impl Session {
     /// Stores a diagnosis of some choices.
     pub(crate) fn diagnosed(&mut self, found: &Diagnosed, about: Choices) -> Result<(), Refusal> {
         self.folder.keep_diagnosis(found).map_err(Refusal::at(Place::Request))?;
-        self.kept.diagnosed = Some(about);
-        self.revision += 1;
-        self.folder.keep(&self.kept)
+        self.keep(|own| {
+            own.kept.diagnosed = Some(about);
+            own.revision += 1;
+        })
     }
 
     /// The last diagnosis.

@@ -1,36 +1,18 @@
 //! `bulge sweep` and `bulge table` as seen by a user: exit statuses, messages, JSON names, and nothing lost
 //! or doubled when a run is killed.
 
-use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use crate::support::{Folder, failure, has_parts, json, refused, stdout};
+use crate::support::{Folder, failure, files, has_parts, json, next, refused, stdout};
 use serde_json::Value;
 
 const SWEEP: &str = "name = \"small family\"\nmuscle = \"ppam-2-r16\"\npressure = \"1 bar\"\noutputs = [\"force_f\", \"volume_v\", \"force\"]\n\
     chunk = 50\n[axes.contraction]\nrange = \"2 %..45 %\"\npoints = 44\n[axes.slenderness]\nrange = \"4..12\"\npoints = 5\n";
 const TABLE: &str = "name = \"small table\"\nmuscle = \"ppam-2-r16\"\n[axes.contraction]\nrange = \"2 %..limit\"\n\
     [axes.slenderness]\nrange = \"6..8\"\n[table]\ntolerance = 1e-3\ngradient = 1e-2\nchecks = 100000\n";
-
-/// Every file below a folder, by its relative path.
-fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
-    let mut found = BTreeMap::new();
-    let mut folders = vec![folder.to_owned()];
-    while let Some(next) = folders.pop() {
-        for entry in std::fs::read_dir(next).unwrap() {
-            let path = entry.unwrap().path();
-            if path.is_dir() {
-                folders.push(path);
-            } else if path.file_name().is_some_and(|name| name != ".lock") {
-                found.insert(path.strip_prefix(folder).unwrap().to_owned(), std::fs::read(&path).unwrap());
-            }
-        }
-    }
-    found
-}
 
 fn start(arguments: &[&str]) -> Child {
     let mut command = Command::new(env!("CARGO_BIN_EXE_bulge"));
@@ -305,15 +287,6 @@ fn several_processes_share_a_folder() {
         (Some(4), Some(44))
     );
     assert!(files(Path::new(&out)) == files(Path::new(&whole)));
-}
-
-/// SplitMix64: the times of the kills are the same in each run of the test.
-fn next(state: &mut u64) -> f64 {
-    *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-    let mut z = *state;
-    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
 }
 
 #[test]

@@ -15,7 +15,7 @@ use crate::comparison::levels::{Folds, Levels};
 use crate::comparison::loops::branches;
 use crate::comparison::mismatch::questions;
 use crate::comparison::options::Options;
-use crate::comparison::requirements::{check_needs, check_size};
+use crate::comparison::requirements::{COMPARED, check_memory, check_needs, check_size};
 use crate::comparison::rows::{BY_HAND, Used, full_scale, lines, used};
 use crate::comparison::specimens::of_specimens;
 use crate::comparison::{loops, residuals};
@@ -85,6 +85,7 @@ impl<'a> Analysis<'a> {
         muscle: &'a Muscle,
         options: &'a Options,
     ) -> Result<Self, InferenceError> {
+        check_memory(data, COMPARED)?;
         let data = of_specimens(data, muscle)?;
         let options = Cow::Borrowed(options);
         let record = Arc::new(Record::new(&data, muscle.length().si()));

@@ -3,7 +3,7 @@
 use bulge_effects::{Effect, Needs};
 use bulge_measurements::Data;
 use bulge_model::Record;
-use bulge_muscles::{Muscle, Quantity};
+use bulge_muscles::{Muscle, Quantity, memory};
 use std::ops::RangeInclusive;
 use std::sync::Arc;
 
@@ -14,6 +14,19 @@ use crate::error::InferenceError;
 /// Contractions that a muscle can have. A braid with fibres at less than 60 deg is straight before it reaches
 /// twice its rest length, and no pleated muscle shortens by more than 54.3 %.
 const POSSIBLE: RangeInclusive<f64> = -1.0..=0.6;
+
+/// Bytes that a row takes beside its columns. Measured on 10^6 rows in time: 240 in a comparison, with and
+/// without effects, while the record is made from the motion; 410 in a diagnosis.
+pub(crate) const COMPARED: u64 = 280;
+pub(crate) const DIAGNOSED: u64 = 460;
+
+/// Refuses rows that don't fit into the memory: an allocation that fails would end the process.
+pub(crate) fn check_memory(data: &Data, bytes_per_row: u64) -> Result<(), InferenceError> {
+    memory::check(data.len() as u64 * bytes_per_row).map_err(|shortage| {
+        let files: Vec<&str> = data.files().iter().map(|file| file.name.as_str()).collect();
+        InferenceError::Memory { files: files.join(", "), rows: data.len(), shortage }
+    })
+}
 
 /// Refuses contractions that no muscle can have: the data are those of another one.
 pub(crate) fn check_size(

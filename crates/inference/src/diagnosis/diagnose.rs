@@ -10,6 +10,7 @@ use std::sync::Arc;
 use crate::comparison::analysis::{Analysis, Climbed, First};
 use crate::comparison::compare::{compare_after, compare_with_rows};
 use crate::comparison::options::Options;
+use crate::comparison::requirements::{DIAGNOSED, check_memory};
 use crate::comparison::rows::lines;
 use crate::comparison::specimens::of_specimens;
 use crate::diagnosis::averaged_data::{
@@ -86,6 +87,7 @@ pub fn diagnose(
 ) -> Result<Diagnosis, InferenceError> {
     // On a thread of the pool, so that small evaluations aren't handed over to it one by one.
     rayon::scope(|_| {
+        check_memory(data, DIAGNOSED)?;
         let doubt = Doubt::of(muscle);
         let found = answered(data, [muscle, &doubt.doubted], options)?;
         let silent = DiagnoseOptions { progress: Progress::default(), ..options.clone() };

@@ -14,7 +14,7 @@ use std::sync::Arc;
 
 use crate::comparison::document::LeftOut;
 use crate::comparison::levels::sweep_of;
-use crate::comparison::requirements::{check_needs, check_size};
+use crate::comparison::requirements::{COMPARED, check_memory, check_needs, check_size};
 use crate::comparison::row_by_row::short;
 use crate::comparison::rows::{BY_HAND, lines, used};
 use crate::comparison::specimens::{note, of_specimens};
@@ -50,6 +50,7 @@ fn predicted(
 ) -> Result<Predicted, InferenceError> {
     let data = &*of_specimens(data, muscle)?;
     let known = known(muscle, catalogue).map_err(|error| InferenceError::Specimens(Box::new(error)))?;
+    check_memory(data, COMPARED)?;
     let record = Record::new(data, muscle.length().si());
     let idle = known.iter().filter_map(|(effect, _)| does_nothing(effect, &record));
     let idle: Vec<String> = idle.collect();

@@ -332,16 +332,107 @@ fn many_begin_at_once_and_none_removes_what_another_writes() {
     }
 }
 
+/// The chunks say of which plan they are: a lost plan is written again, and they are used.
 #[test]
-fn chunks_without_a_plan_are_nobodys() {
+fn a_lost_plan_is_written_again() {
     let plan = plan(CLOSED);
-    let folder = whole(&plan, false);
-    fs::remove_file(folder.path().join("plan.json")).unwrap();
-    let error = go(&plan, folder.path(), &resume()).unwrap_err().to_string();
-    assert!(error.contains("without a plan.json"), "{error}");
-    fs::write(folder.path().join("plan.json"), "{").unwrap();
-    let error = go(&plan, folder.path(), &resume()).unwrap_err().to_string();
-    assert!(error.contains("plan.json is damaged"), "{error}");
+    let folder = whole(&plan, true);
+    let expected = bytes(folder.path());
+    let path = folder.path().join("plan.json");
+    let sound = fs::read(&path).unwrap();
+    let again = |what: &str| {
+        let summary = go(&plan, folder.path(), &resume()).unwrap();
+        assert_eq!((summary.computed, summary.damaged), (0, vec![format!("{} {what}", path.display())]));
+        assert!(bytes(folder.path()) == expected, "{what}");
+    };
+    fs::remove_file(&path).unwrap();
+    let error = go(&plan, folder.path(), &RunOptions::default()).unwrap_err().to_string();
+    assert!(error.contains("holds this sweep already: add `--resume`") && !path.exists(), "{error}");
+    again("is missing");
+    for length in [0, 1, 2, 10, sound.len() / 2, sound.len() - 2, sound.len() - 1] {
+        fs::write(&path, &sound[..length]).unwrap();
+        again("is damaged");
+    }
+    for foreign in [&b"null"[..], b"{}", b"\xff\xfe", &[&sound[..], b"\n"].concat()] {
+        fs::write(&path, foreign).unwrap();
+        again("is damaged");
+    }
+    // A flipped bit is seen at once, or makes another plan: that is refused until the file is gone.
+    let mut refused = 0;
+    for place in (0..sound.len()).step_by(37) {
+        let mut flipped = sound.clone();
+        flipped[place] ^= 1 << (place % 8);
+        fs::write(&path, &flipped).unwrap();
+        match go(&plan, folder.path(), &resume()) {
+            Ok(summary) => assert_eq!((summary.computed, summary.damaged.len()), (0, 1)),
+            Err(error) => {
+                let error = error.to_string();
+                assert!(
+                    error.contains("holds another sweep") && error.contains("delete its plan.json"),
+                    "{error}"
+                );
+                assert!(fs::read(&path).unwrap() == flipped);
+                fs::remove_file(&path).unwrap();
+                again("is missing");
+                refused += 1;
+            }
+        }
+        assert!(bytes(folder.path()) == expected, "byte {place}");
+    }
+    assert!(refused > 0);
+    // The chunks of a folder without a plan can be taken over too.
+    fs::remove_file(&path).unwrap();
+    let other = TempDir::new().unwrap();
+    let options = RunOptions { merge: vec![folder.path().to_owned()], csv: true, ..RunOptions::default() };
+    assert_eq!(go(&plan, other.path(), &options).unwrap().computed, 0);
+    assert!(bytes(other.path()) == expected);
+}
+
+#[test]
+fn chunks_that_a_lost_plan_leaves_to_others_stay() {
+    let (own, other) = (plan(CLOSED), plan(&CLOSED.replace("1 bar", "2 bar")));
+    let folder = whole(&own, false);
+    let at = |name: &str| folder.path().join(name);
+    let sound = fs::read(at("plan.json")).unwrap();
+    let foreign = whole(&other, false);
+    let refuses = |plan: &Plan, parts: &[&str]| {
+        let before = bytes(folder.path());
+        for options in [resume(), RunOptions { chunks: Some(0..1), ..resume() }] {
+            let error = go(plan, folder.path(), &options).unwrap_err().to_string();
+            assert!(parts.iter().all(|part| error.contains(part)), "{error}");
+        }
+        assert!(bytes(folder.path()) == before);
+    };
+    // The plan of another sweep.
+    fs::copy(foreign.path().join("plan.json"), at("plan.json")).unwrap();
+    refuses(
+        &own,
+        &["holds another sweep", "100000.0", "200000.0", "delete its plan.json and add `--resume`"],
+    );
+    // To that sweep the chunks are damaged ones, which the plan in the folder has it make again; without a
+    // plan they are another's.
+    fs::remove_file(at("plan.json")).unwrap();
+    refuses(&other, &["plan.json is missing", "chunks of another sweep", "000000.json"]);
+    // One chunk of another sweep.
+    for name in ["chunks/000001.json", "points/000001.parquet"] {
+        fs::copy(foreign.path().join(name), at(name)).unwrap();
+    }
+    refuses(&own, &["plan.json is missing", "chunks of another sweep are there (1 of", "000001.json"]);
+    // Points that nothing tells of.
+    fs::remove_dir_all(at("chunks")).unwrap();
+    fs::create_dir(at("chunks")).unwrap();
+    refuses(&own, &["plan.json is missing", "no chunk tells"]);
+    fs::write(at("plan.json"), "{").unwrap();
+    refuses(&own, &["plan.json is damaged", "no chunk tells"]);
+    // With its plan the folder is this sweep's, whatever is left of it.
+    fs::write(at("plan.json"), sound).unwrap();
+    go(&own, folder.path(), &resume()).unwrap();
+    assert!(bytes(folder.path()) == bytes(whole(&own, false).path()));
+    // A damaged plan of nothing.
+    let empty = TempDir::new().unwrap();
+    fs::write(empty.path().join("plan.json"), "{").unwrap();
+    let error = go(&own, empty.path(), &resume()).unwrap_err().to_string();
+    assert!(error.contains("plan.json is damaged") && error.contains("delete this file"), "{error}");
 }
 
 #[test]

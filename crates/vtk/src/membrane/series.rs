@@ -65,7 +65,7 @@ impl MembraneSeries {
 
 /// Removes a file; returns whether it existed.
 pub(super) fn remove(path: &Path) -> Result<bool, VtkError> {
-    match std::fs::remove_file(path) {
+    match bulge_muscles::output::remove(path) {
         Ok(()) => Ok(true),
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(false),
         Err(source) => Err(VtkError::File { path: path.to_path_buf(), action: "remove the earlier", source }),
