@@ -9,6 +9,7 @@ use crate::error::MeasurementError;
 use crate::reading::ReadOptions;
 use crate::slot::Slot;
 use crate::table::{Draft, Table};
+use bulge_muscles::shown::listed;
 use flate2::read::ZlibDecoder;
 use std::io::Read;
 
@@ -82,8 +83,8 @@ pub(crate) fn read(file: &str, bytes: &[u8], options: &ReadOptions) -> Result<Ta
         used.map(|(heading, column)| (Slot::new(heading, rows), column)).unzip();
     let mut draft = Draft::new(slots, assignment.uses, "row");
     if !others.is_empty() {
-        let names: Vec<&str> = others.iter().take(10).map(|variable| variable.name.as_str()).collect();
-        draft.notes.push(format!("{file}: of another length than {rows}, and ignored: {}", names.join(", ")));
+        let names = listed(10, "", others.iter().map(|variable| &variable.name));
+        draft.notes.push(format!("{file}: of another length than {rows}, and ignored: {names}"));
     }
     for (slot, column) in columns.iter().enumerate() {
         for (row, value) in column.values.iter().enumerate() {
