@@ -6,6 +6,7 @@ mod commands;
 mod compare;
 mod design;
 mod diagnose;
+mod hostile;
 mod joint;
 mod membrane;
 mod next;
