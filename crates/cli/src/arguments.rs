@@ -4,6 +4,7 @@ use bulge_effects::{Catalogue, Effect, known};
 use bulge_fibre::{Approach, FibreError};
 use bulge_model::{MuscleWithEffects, MuscleWithEffectsError, specimen};
 use bulge_muscles::settings::nearest;
+use bulge_muscles::shown::{listed, shortened};
 use bulge_muscles::units::Quantity;
 use bulge_muscles::{Muscle, PRESETS, Pressure, Specimen, UnitError, preset, read, units};
 use clap::{Args, ValueEnum};
@@ -97,14 +98,17 @@ fn check_specimen(muscle: &Muscle, name: &str) -> Result<(), Failure> {
     if names.contains(&name) {
         return Ok(());
     }
-    let stated = match (nearest(name, names.iter().copied()), names.join(", ")) {
+    let stated = match (nearest(name, names.iter().copied()), listed(20, "", &names)) {
         (Some(near), _) => format!("did you mean `{near}`?"),
         (None, all) if all.is_empty() => {
             format!("{} states none, such as `[specimens.short]` with `length = \"60 mm\"`", muscle.name())
         }
         (None, all) => format!("{} states {all}", muscle.name()),
     };
-    Err(Failure::Value { option: "--specimen", what: format!("there is no specimen `{name}`: {stated}") })
+    Err(Failure::Value {
+        option: "--specimen",
+        what: format!("there is no specimen `{}`: {stated}", shortened(name)),
+    })
 }
 
 /// The failure of an option whose quantities can't be read.

@@ -16,6 +16,7 @@ use crate::data::{DataArguments, told};
 use crate::failure::Failure;
 use crate::files::{self, Named};
 use crate::restricted::{LossArgument, RestrictedArguments};
+use crate::said;
 use crate::text::{table, with_interval};
 
 /// Potential scale reduction from which draws are said to be too few.
@@ -86,9 +87,9 @@ impl FitCommand {
         if self.out.is_none() {
             // Standard output holds only the file, so that it can be redirected; the numbers are in its
             // comments.
-            eprint!("{}", told(data.reading()));
-            eprint!("{}", drawn.map_or_else(String::new, |(_, says)| says));
-            eprint!("{}", posterior.map_or_else(String::new, |(_, says)| says));
+            said::message(&told(data.reading()));
+            said::message(&drawn.map_or_else(String::new, |(_, says)| says));
+            said::message(&posterior.map_or_else(String::new, |(_, says)| says));
             return Ok(learnt.model);
         }
         let mut text = format!("{} fitted to {}\n\n", muscle.name(), learnt.fitting.data.files.join(", "));

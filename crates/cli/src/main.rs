@@ -23,6 +23,7 @@ mod open;
 mod plan;
 mod predict;
 mod restricted;
+mod said;
 #[cfg(test)]
 #[path = "../tests/program/schema.rs"]
 mod schema;
@@ -38,9 +39,9 @@ mod text;
 mod validate;
 
 use clap::{Parser, Subcommand};
-use std::io::Write;
 use std::process::ExitCode;
 
+use bulge_muscles::shown::shortened;
 use failure::Failure;
 
 /// Shape, force and volume of pneumatic artificial muscles.
@@ -131,35 +132,50 @@ commands! {
 const USAGE: u8 = 2;
 
 fn main() -> ExitCode {
+    if let Some(argument) = said::unprintable(std::env::args_os().skip(1)) {
+        return refuse(&format!(
+            "error: the argument `{}` has control characters: rename the file, or write it without",
+            shortened(&argument)
+        ));
+    }
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
         Err(error) => {
-            // Help and version arrive here too; they go to standard output with status 0.
-            let status = if error.use_stderr() { USAGE } else { 0 };
-            let _ = error.print();
-            if error.use_stderr() && failure::wants_json() {
-                let _ = print(&failure::document(error.to_string().trim_end(), status));
+            // Help and version arrive here too; they go to standard output with status 0, and in colour to a
+            // terminal.
+            if !error.use_stderr() {
+                let _ = error.print();
+                return ExitCode::SUCCESS;
             }
-            return ExitCode::from(status);
+            return refuse(error.to_string().trim_end());
         }
     };
     let command = arguments.command.unwrap_or(Command::Demo(demo::Demo::default()));
     // The command runs on a thread of the pool, as the computations do: input and results then share its
     // heap.
     let outcome = rayon::scope(|_| command.run());
-    let said = |text: &str| if files::stdout_is_taken() { Ok(()) } else { print(text) };
+    let said =
+        |text: &str| if files::stdout_is_taken() { Ok(()) } else { said::answer(text).map_err(unwritten) };
     match outcome.and_then(|text| said(&text)) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
             // If this can't be written either, nothing more can be done.
             let _ = said(&failure.answer());
-            let _ = writeln!(std::io::stderr(), "error: {failure}");
+            said::message(&format!("error: {failure}\n"));
             ExitCode::from(failure.status())
         }
     }
 }
 
-/// Writes the output of a command to standard output.
-fn print(text: &str) -> Result<(), Failure> {
-    files::print(text.as_bytes()).map_err(|source| Failure::Output { path: "standard output".into(), source })
+/// Rejects the command line.
+fn refuse(message: &str) -> ExitCode {
+    said::message(&format!("{message}\n"));
+    if failure::wants_json() {
+        let _ = said::answer(&failure::document(message, USAGE));
+    }
+    ExitCode::from(USAGE)
+}
+
+fn unwritten(source: std::io::Error) -> Failure {
+    Failure::Output { path: "standard output".into(), source }
 }

@@ -13,6 +13,7 @@ use crate::arguments;
 use crate::demo;
 use crate::failure::Failure;
 use crate::files;
+use crate::said::{answer, message};
 
 /// Folder of the tour's files in a session.
 const TOUR: &str = "tour";
@@ -81,10 +82,10 @@ impl OpenCommand {
             } else {
                 address.to_owned()
             };
-            let _ = files::print((said + "\n").as_bytes());
-            eprintln!("Ctrl-C ends it.");
+            let _ = answer(&(said + "\n"));
+            message("Ctrl-C ends it.\n");
             if !self.no_browser && !browser(address) {
-                eprintln!("Open the address in a browser.");
+                message("Open the address in a browser.\n");
             }
         })?;
         Ok(String::new())

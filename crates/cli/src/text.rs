@@ -1,5 +1,6 @@
 //! Numbers in text: four to six significant digits, and a unit that suits the size.
 
+use bulge_muscles::shown::shortened_to;
 pub(crate) use bulge_muscles::units::significant;
 
 /// Three significant digits.
@@ -18,15 +19,24 @@ pub(crate) fn with_interval(value: f64, low: f64, high: f64) -> [String; 3] {
         .unwrap_or_else(|| [value, low, high].map(|x| significant(x, 3)))
 }
 
+/// Most characters of a cell of a table.
+const WIDEST: usize = 300;
+
 /// A table; the first row is the heading. Columns of numbers are aligned to the right, others to the left.
 pub(crate) fn table(rows: &[Vec<String>]) -> String {
+    // One long name would make every row as long.
+    let shown = |cell: &String| match cell.chars().nth(WIDEST) {
+        Some(_) => shortened_to(WIDEST, cell),
+        None => cell.clone(),
+    };
+    let rows: Vec<Vec<String>> = rows.iter().map(|row| row.iter().map(shown).collect()).collect();
     let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
     let width = |c: usize| rows.iter().filter_map(|row| row.get(c)).map(|cell| cell.chars().count()).max();
     let widths: Vec<usize> = (0..columns).map(|c| width(c).unwrap_or(0)).collect();
     let is_number =
         |c: usize| rows.last().and_then(|row| row.get(c)).is_none_or(|cell| cell.parse::<f64>().is_ok());
     let mut text = String::new();
-    for row in rows {
+    for row in &rows {
         let cells: Vec<String> = (row.iter().zip(&widths).enumerate())
             .map(|(c, (cell, w))| if is_number(c) { format!("{cell:>w$}") } else { format!("{cell:<w$}") })
             .collect();

@@ -1,5 +1,6 @@
 //! The list of all effects, built in or added by the user. Fits, rankings, help and reports use it.
 
+use bulge_muscles::shown::shortened;
 use std::sync::Arc;
 
 use crate::effect::Effect;
@@ -10,7 +11,7 @@ use crate::{geometry, load, material, rig, specimen};
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum CatalogueError {
     /// An unknown name.
-    #[error("there is no effect `{name}`; {instead}")]
+    #[error("there is no effect `{}`; {instead}", shortened(name))]
     Unknown {
         /// The name asked for.
         name: String,

@@ -9,6 +9,7 @@ use crate::names::{Guess, Strength, assumed, guesses};
 use crate::quote::quoted;
 use crate::reading::{ColumnUse, ReadOptions};
 use crate::unit::{problem, unit};
+use bulge_muscles::shown::listed;
 use bulge_muscles::units::UnitError;
 
 /// Columns beyond this number are only read if the user names them.
@@ -202,7 +203,7 @@ fn find(header: &Header, column: &str) -> Result<usize, MeasurementError> {
             "{}:{}: there is no column {what}: the file has {count} ({})",
             header.file,
             header.line,
-            listed(header)
+            listed(15, "`", header.names)
         );
         return Err(MeasurementError::ColumnMap(what));
     }
@@ -217,7 +218,7 @@ fn find(header: &Header, column: &str) -> Result<usize, MeasurementError> {
         header.line,
         quoted(column),
         near.map_or_else(String::new, |name| format!("did you mean `{}`? ", quoted(name))),
-        listed(header)
+        listed(15, "`", header.names)
     );
     Err(MeasurementError::ColumnMap(what))
 }
@@ -230,17 +231,6 @@ pub(crate) fn has_named(header: &Header, column: &str) -> bool {
             let bare = column.split('[').next().unwrap_or_default().trim();
             bare.parse::<usize>().is_err() || header.names[place].trim() == bare
         })
-}
-
-/// The headings of a file, as many as fit in a message.
-fn listed(header: &Header) -> String {
-    const MOST: usize = 15;
-    let mut shown: Vec<String> =
-        header.names.iter().take(MOST).map(|name| format!("`{}`", quoted(name))).collect();
-    if header.names.len() > MOST {
-        shown.push(format!("{} more", header.names.len() - MOST));
-    }
-    shown.join(", ")
 }
 
 /// The column that probably holds a quantity.
@@ -345,7 +335,7 @@ fn missing(header: &Header, name: &'static str) -> MeasurementError {
         "there is no column `{name}`: add one, such as `{}`, or say which it is, such as `--columns \"{}=NAME [UNIT]\"` (found: {})",
         field.example(),
         field.name(),
-        listed(header)
+        listed(15, "`", header.names)
     );
     MeasurementError::at(header.file, header.line, what)
 }

@@ -2,6 +2,7 @@
 
 use crate::data::Data;
 use crate::error::MeasurementError;
+use bulge_muscles::shown::listed;
 
 /// Separator between a file and its line.
 const FILE: char = ':';
@@ -45,8 +46,8 @@ impl Data {
                 None => Some(None),
             };
             let file = file.ok_or_else(|| {
-                let names: Vec<&str> = self.files().iter().map(|file| file.name.as_str()).collect();
-                refuse(&format!("it must begin with the name of a file, of {}", names.join(", ")))
+                let names = listed(20, "", self.files().iter().map(|file| &file.name));
+                refuse(&format!("it must begin with the name of a file, of {names}"))
             })?;
             let (first, last) = lines.split_once('-').unwrap_or((lines, lines));
             let (Ok(first), Ok(last)) = (first.trim().parse::<usize>(), last.trim().parse::<usize>()) else {

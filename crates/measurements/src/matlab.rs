@@ -11,6 +11,7 @@ use crate::reading::ReadOptions;
 use crate::slot::Slot;
 use crate::source::has_room;
 use crate::table::{Draft, Table, bytes_per_row};
+use bulge_muscles::shown::listed;
 use flate2::read::ZlibDecoder;
 use std::io::Read;
 
@@ -82,8 +83,8 @@ pub(crate) fn read(file: &str, bytes: &[u8], options: &ReadOptions) -> Result<Ta
     let slots = headings.into_iter().map(|heading| Slot::new(heading, rows)).collect();
     let mut draft = Draft::new(slots, assignment.uses, "row");
     if !others.is_empty() {
-        let names: Vec<&str> = others.iter().take(10).map(|variable| variable.name.as_str()).collect();
-        draft.notes.push(format!("{file}: of another length than {rows}, and ignored: {}", names.join(", ")));
+        let names = listed(10, "", others.iter().map(|variable| &variable.name));
+        draft.notes.push(format!("{file}: of another length than {rows}, and ignored: {names}"));
     }
     // Each variable is dropped when its values are taken.
     for (slot, column) in columns.into_iter().enumerate() {

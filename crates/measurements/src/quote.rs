@@ -1,13 +1,13 @@
 //! Quotes user text in messages: short, on one line, printable.
 
-use bulge_muscles::units::shortened_to;
+use bulge_muscles::shown::shortened_to;
 
 /// Longest quotation in characters.
 const LONGEST: usize = 60;
 
-/// At most [`LONGEST`] characters of a text, without control characters.
+/// At most [`LONGEST`] characters of a text, on one line, all of them shown.
 pub(crate) fn quoted(text: &str) -> String {
-    shortened_to(LONGEST, text).replace('\u{feff}', "\u{fffd}")
+    shortened_to(LONGEST, text)
 }
 
 #[cfg(test)]
@@ -16,7 +16,7 @@ mod tests {
 
     #[test]
     fn short_and_printable() {
-        assert_eq!(quoted(" a\tb\u{0}\n"), "a\u{fffd}b\u{fffd}");
+        assert_eq!(quoted(" a\tb\u{0}\n"), "a b\u{fffd}");
         assert_eq!(quoted(&"x".repeat(500)).chars().count(), LONGEST + 1);
     }
 }

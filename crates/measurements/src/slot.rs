@@ -7,6 +7,7 @@ use crate::clock::{Clock, instant};
 use crate::columns::{Columns, Labels, Trace};
 use crate::heading::{Field, Heading};
 use crate::quote::quoted;
+use bulge_muscles::shown::{LONGEST_NAME, one_line};
 
 /// Values of a column.
 #[derive(Debug)]
@@ -51,8 +52,8 @@ impl Slot {
                     return Ok(());
                 }
             }
-            Values::Labels(labels) if !text.is_empty() => {
-                labels.push(text);
+            Values::Labels(labels) if (1..=LONGEST_NAME).contains(&text.len()) => {
+                labels.push(&one_line(text));
                 return Ok(());
             }
             _ => {}
@@ -85,7 +86,8 @@ impl Slot {
             }
             Values::Counts(values) => values.push(cell::whole(text, decimal)?),
             Values::Directions(values) => values.push(cell::direction(text)?),
-            Values::Labels(_) => return Err(CellError::empty()),
+            Values::Labels(_) if text.is_empty() => return Err(CellError::empty()),
+            Values::Labels(_) => return Err(CellError::new("too long for a label", quoted(text))),
         }
         Ok(())
     }

@@ -7,6 +7,7 @@ use crate::quote::quoted;
 use crate::reading::ReadOptions;
 use crate::source::has_room;
 use crate::table::Table;
+use bulge_muscles::shown::listed;
 use calamine::{DataRef, ExcelDateTime, Reader, Xlsx, XlsxError};
 use std::fmt::Write;
 use std::io::Cursor;
@@ -40,8 +41,7 @@ pub(crate) fn read(
             return one(&mut book, file, sheet, options)
                 .unwrap_or_else(|| Err(MeasurementError::empty(file)));
         }
-        let sheets = names.iter().map(|name| format!("`{}`", quoted(name))).collect::<Vec<_>>().join(", ");
-        let what = format!("there is no sheet `{}`: there are {sheets}", quoted(sheet));
+        let what = format!("there is no sheet `{}`: there are {}", quoted(sheet), listed(20, "`", &names));
         return Err(MeasurementError::of_file(file, what));
     }
     let mut complaint = None;
@@ -70,17 +70,16 @@ fn other_sheets(
     read: usize,
     options: &ReadOptions,
 ) -> Option<String> {
-    let others: Vec<String> = names[read + 1..]
+    let others: Vec<&String> = names[read + 1..]
         .iter()
         .filter(|name| matches!(one(book, file, name, options), Some(Ok(_))))
-        .map(|name| format!("`{}`", quoted(name)))
         .collect();
     let what = format!("{file}: read from the sheet `{}`", quoted(&names[read]));
     match others.first() {
         None => (names.len() > 1).then_some(what),
         Some(_) => Some(format!(
             "{what}, not from {}: name each that is to be read, such as `{file}#{}`",
-            others.join(", "),
+            listed(20, "`", others),
             quoted(&names[read])
         )),
     }

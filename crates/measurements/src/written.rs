@@ -123,9 +123,9 @@ pub fn to_csv(columns: &[WrittenColumn<'_>]) -> String {
 
 /// A field, quoted if necessary. A line break in a name would end the row for other readers.
 fn field(text: &str) -> String {
-    let text = text.replace(|c: char| c.is_control(), " ");
+    let text = bulge_muscles::shown::one_line(text);
     let needs = text.contains([',', '"', ';', '#']) || text.trim().len() != text.len();
-    if needs { format!("\"{}\"", text.replace('"', "\"\"")) } else { text }
+    if needs { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.into_owned() }
 }
 
 /// A Parquet file: numbers as optional doubles, whole ones as 64-bit integers, names as optional text.

@@ -1,6 +1,8 @@
 //! Errors of membrane problems: invalid input, and failed solutions.
 
 use crate::mesh::Mesh;
+use bulge_muscles::shown::listed;
+use std::collections::BTreeSet;
 use thiserror::Error;
 
 /// Why there is no equilibrium.
@@ -72,10 +74,8 @@ pub enum MembraneError {
 impl MembraneError {
     /// A group that doesn't exist in the mesh.
     pub(crate) fn unknown_group(group: &str, mesh: &Mesh) -> Self {
-        let mut known: Vec<String> = mesh.blocks.iter().map(|block| format!("`{}`", block.group)).collect();
-        known.sort();
-        known.dedup();
-        let known = if known.is_empty() { "no groups".to_owned() } else { known.join(", ") };
+        let known: BTreeSet<&str> = mesh.blocks.iter().map(|block| block.group.as_str()).collect();
+        let known = if known.is_empty() { "no groups".to_owned() } else { listed(20, "`", known) };
         Self::Structure(format!("the mesh has no group `{group}`; it has {known}"))
     }
 

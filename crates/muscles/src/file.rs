@@ -11,8 +11,9 @@ use crate::muscle::Muscle;
 use crate::parameter::Parameter;
 use crate::quantity::{Angle, Area, Force, Length, Pressure, Ratio};
 use crate::settings::{Document, FileKind, Settings, nearest};
+use crate::shown::shortened;
 use crate::specimen::specimens_in;
-use crate::units::{self, Quantity, shortened};
+use crate::units::{self, Quantity};
 use std::path::Path;
 
 const KIND: FileKind = FileKind { name: "muscle", file: "muscle.toml", line: "length = \"110 mm\"" };

@@ -1,6 +1,7 @@
 //! What is wrong with a muscle file: one complete message, with the line, a caret under the place, and what
 //! to write.
 
+use crate::shown::is_shown;
 use std::fmt;
 use std::ops::Range;
 use thiserror::Error;
@@ -97,8 +98,8 @@ impl Place {
         let before = text[line_start..start].chars().count();
         let end = boundary(span.end).clamp(start, (line_start + line_text.len()).max(start));
         let skipped = before.saturating_sub(BEFORE);
-        // Tabs and control characters take one column, so that the caret stands under its place.
-        let printable = |c: char| if c.is_control() || c == '\u{feff}' { ' ' } else { c };
+        // What isn't shown takes one column, so that the caret stands under its place.
+        let printable = |c: char| if is_shown(c) { c } else { ' ' };
         let shown: String = line_text.chars().skip(skipped).take(SHOWN).map(printable).collect();
         let caret_at = before - skipped;
         Self {

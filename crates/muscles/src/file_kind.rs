@@ -1,12 +1,14 @@
 //! The names of settings files, and their text, which must be small and UTF-8.
 
 use crate::file_error::FileError;
-use crate::settings::{nearest, shortened};
+use crate::settings::nearest;
+use crate::shown::{LONGEST_NAME, shortened};
 use std::fs::File;
 use std::io::{ErrorKind, Read};
+use std::ops::Range;
 use std::path::Path;
 use toml::Spanned;
-use toml::de::DeTable;
+use toml::de::{DeTable, DeValue};
 
 /// Most bytes of a settings file.
 pub(crate) const MOST_BYTES: usize = 1 << 20;
@@ -66,7 +68,7 @@ impl FileKind {
         if text.len() > MOST_BYTES {
             return Err(self.too_large(origin));
         }
-        DeTable::parse(text).map_err(|error| {
+        let table = DeTable::parse(text).map_err(|error| {
             let message = error.message().lines().collect::<Vec<_>>().join(", ");
             let span = error.span().unwrap_or(0..0);
             let instead = if message.contains("duplicate key") {
@@ -80,7 +82,14 @@ impl FileKind {
                 })
             };
             FileError::at(origin, text, span, format!("this is not TOML: {message}"), instead)
-        })
+        })?;
+        match unprintable(table.get_ref()) {
+            None => Ok(table),
+            Some((span, what)) => {
+                let instead = "delete it: names and texts are what can be printed";
+                Err(FileError::at(origin, text, span, what, instead))
+            }
+        }
     }
 
     /// The kind with its article: "a muscle file".
@@ -103,11 +112,38 @@ fn similar_file(path: &Path) -> String {
     let listed = std::fs::read_dir(directory).into_iter().flatten().flatten();
     let mut names: Vec<String> = listed.filter_map(|entry| entry.file_name().into_string().ok()).collect();
     names.retain(|name| Path::new(name).extension().is_some_and(|extension| extension == "toml"));
+    names.retain(|name| !name.contains(char::is_control));
     names.sort();
     let wanted = path.file_name().unwrap_or_default().to_string_lossy();
     match nearest(&wanted, names.iter().map(String::as_str)) {
         Some(name) => format!("did you mean `{}`?", directory.join(name).display()),
         None => "check the path and the working directory".to_owned(),
+    }
+}
+
+/// The first key that is no name, or text with a control character, which an escape such as `\u001b` can write.
+/// A text of several lines has line breaks.
+fn unprintable(table: &DeTable<'_>) -> Option<(Range<usize>, String)> {
+    table.iter().find_map(|(key, value)| {
+        let name = key.get_ref();
+        if name.contains(char::is_control) || name.len() > LONGEST_NAME {
+            let what =
+                format!("the key `{}` has control characters, or is too long for a name", shortened(name));
+            return Some((key.span(), what));
+        }
+        unprintable_in(value)
+    })
+}
+
+fn unprintable_in(value: &Spanned<DeValue<'_>>) -> Option<(Range<usize>, String)> {
+    match value.get_ref() {
+        DeValue::String(text) => {
+            let control = text.chars().find(|c| c.is_control() && !matches!(c, '\n' | '\r' | '\t'))?;
+            Some((value.span(), format!("a text has the control character U+{:04X}", u32::from(control))))
+        }
+        DeValue::Array(items) => items.iter().find_map(unprintable_in),
+        DeValue::Table(table) => unprintable(table),
+        _ => None,
     }
 }
 

@@ -4,7 +4,8 @@ use crate::file_error::FileError;
 use crate::learnt::{Learnt, LearntValue, Place, SourceFile, is_plain};
 use crate::parameter::Parameter;
 use crate::settings::{Setting, Settings};
-use crate::units::{any_with_width, shortened};
+use crate::shown::shortened;
+use crate::units::any_with_width;
 use std::ops::Range;
 use std::sync::Arc;
 

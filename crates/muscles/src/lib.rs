@@ -57,6 +57,7 @@ mod parameter;
 mod presets;
 mod quantity;
 pub mod settings;
+pub mod shown;
 mod specimen;
 mod unit_error;
 mod unit_expression;

@@ -4,7 +4,7 @@ use crate::file::from_toml;
 use crate::file_error::FileError;
 use crate::muscle::Muscle;
 use crate::settings::nearest;
-use crate::units::shortened;
+use crate::shown::shortened;
 use thiserror::Error;
 
 /// A shipped muscle file.

@@ -7,7 +7,7 @@ use crate::file_error::FileError;
 pub use crate::file_kind::FileKind;
 use crate::muscle::Muscle;
 use crate::presets::{PRESETS, PresetError, preset};
-pub use crate::units::shortened;
+use crate::shown::{LONGEST_NAME, shortened};
 use crate::units::{self, Quantity, UnitError};
 use std::borrow::Cow;
 use std::fmt::Display;
@@ -215,11 +215,28 @@ impl<'a> Settings<'a> {
         }
     }
 
-    /// Text in quotes.
+    /// Text in quotes, on one line.
+    ///
+    /// # Errors
+    /// If the value is something else, or longer than a name can be.
+    pub fn text(&self, name: &str) -> Result<Option<&'a str>, FileError> {
+        let (Some(value), Some(text)) = (self.get(name), self.lines(name)?) else { return Ok(None) };
+        if text.contains(char::is_control) {
+            let what = format!("`{name}` has a line break or a tab");
+            return Err(self.error(value.span(), what, "write it on one line, with blanks"));
+        }
+        if text.len() > LONGEST_NAME {
+            let what = format!("`{name}` is longer than {LONGEST_NAME} bytes");
+            return Err(self.error(value.span(), what, "shorten it, or write the rest behind a `#`"));
+        }
+        Ok(Some(text))
+    }
+
+    /// Text in quotes, of any length and number of lines.
     ///
     /// # Errors
     /// If the value is something else.
-    pub fn text(&self, name: &str) -> Result<Option<&'a str>, FileError> {
+    pub fn lines(&self, name: &str) -> Result<Option<&'a str>, FileError> {
         let Some(value) = self.get(name) else { return Ok(None) };
         value.text().map(Some).ok_or_else(|| self.wrong_type(name, value, "text in quotes"))
     }

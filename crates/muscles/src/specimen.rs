@@ -6,7 +6,8 @@ use crate::keys;
 use crate::learnt::{Place, SourceFile};
 use crate::muscle::Muscle;
 use crate::parameter::Parameter;
-use crate::settings::{Settings, nearest, shortened};
+use crate::settings::{Settings, nearest};
+use crate::shown::{listed, shortened};
 use serde::Serialize;
 use std::sync::Arc;
 
@@ -119,11 +120,7 @@ impl Muscle {
                 Some(near) => format!("write `[specimens.{near}]`, or `{name}` in the column `specimen`"),
                 None => format!(
                     "delete the table, or name the rows in the column `specimen`: the data have {}",
-                    measured
-                        .iter()
-                        .map(|name| format!("`{}`", shortened(name)))
-                        .collect::<Vec<_>>()
-                        .join(", ")
+                    listed(20, "`", measured)
                 ),
             };
             return Err(self.specimen_error(specimen, what, instead));

@@ -2,9 +2,9 @@
 
 use crate::dimension::Dimension;
 use crate::quantity::in_unit;
+use crate::shown::shortened;
 use crate::unit_error::{UnitError, Wanted};
 use crate::unit_table::{nearest, normalised, symbols};
-use crate::units::shortened;
 
 /// The longest unit that is read, in bytes.
 pub(crate) const MAX_UNIT: usize = 64;

@@ -6,6 +6,7 @@ use crate::dimension::Dimension;
 use crate::quantity::Ratio;
 use crate::quantity::in_unit;
 pub use crate::quantity::to_si;
+use crate::shown::shortened;
 pub use crate::unit_error::{UnitError, Wanted};
 pub use crate::unit_expression::unit;
 use crate::unit_table::{Units, measured, nearest, normalised};
@@ -352,24 +353,6 @@ fn factor_in(wanted: &'static Wanted, text: &str, unit: &str) -> Result<f64, Uni
         Some(found) => UnitError::OtherDimension { text, found, wanted },
         None => UnitError::UnknownUnit { text, unit: shortened(unit), suggestion, wanted },
     })
-}
-
-/// A quotation for a message: at most 40 characters, on one line, without control characters.
-#[must_use]
-pub fn shortened(text: &str) -> String {
-    shortened_to(40, text)
-}
-
-/// As [`shortened`], of at most so many characters.
-#[must_use]
-pub fn shortened_to(most: usize, text: &str) -> String {
-    let printable = |c: char| if c.is_control() { '\u{fffd}' } else { c };
-    let trimmed = text.trim();
-    let mut out: String = trimmed.chars().take(most).map(printable).collect();
-    if trimmed.chars().nth(most).is_some() {
-        out.push('\u{2026}');
-    }
-    out
 }
 
 #[cfg(test)]

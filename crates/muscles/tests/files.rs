@@ -131,6 +131,24 @@ fn pleated_effects_are_read() {
     assert_eq!(from_toml(&windows, "m"), from_toml(PLEATED, "m"));
 }
 
+/// Escapes could write into a name what no editor shows, and a terminal obeys.
+#[test]
+fn names_are_what_can_be_printed() {
+    let named = |name: &str| with_line(PLEATED, 1, &format!("name = {name}"));
+    refused(&named("\"a\\u001b[31m\""), (1, 8), &["control character U+001B", "delete it"]);
+    refused(&named("\"a\\u009b\""), (1, 8), &["U+009B"]);
+    refused(&named("\"a\\nb\""), (1, 8), &["`name` has a line break", "on one line"]);
+    assert_eq!(complaint(&named("\"\"\"a\nb\"\"\"")).line(), Some(1));
+    let long = complaint(&named(&format!("\"{}\"", "x".repeat(1001))));
+    assert_eq!((long.column(), long.what()), (Some(8), "`name` is longer than 1000 bytes"));
+    let key = |key: &str| format!("{PLEATED}\n[effects]\n{key} = 1\n");
+    assert!(complaint(&key("\"a\\nb\"")).what().starts_with("the key `a b` has control characters"));
+    assert!(complaint(&key(&"x".repeat(1001))).what().contains("too long for a name"));
+    // Others write from right to left, and may.
+    let other = from_toml(&named("\"\u{5e9}\u{5e8}\u{5d9}\u{5e8}\u{200f}\""), "m").unwrap();
+    assert!(other.name().ends_with('\u{200f}'));
+}
+
 #[test]
 fn the_inner_wall_is_read() {
     let text = format!("{BRAIDED}wall = \"2 mm\"\n[effects.wall-thickness]\n");

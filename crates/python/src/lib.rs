@@ -6,6 +6,11 @@
 //!
 //! Deliberately absent: units of arguments, pandas, plots, distribution. They are Python, in the part that is.
 
+#![allow(
+    clippy::needless_pass_by_value,
+    reason = "arguments of a Python function are values; `&self` and `Py<..>` are how PyO3 hands them over"
+)]
+
 mod data;
 mod design;
 mod error;

@@ -155,8 +155,7 @@ fn provenance(fitting: &Fitting) -> String {
     let mut text = String::new();
     let data = &fitting.data;
     // File names come from the user: a line break in one would end the comment.
-    let names: Vec<String> =
-        data.files.iter().map(|name| name.replace(|c: char| c.is_control(), " ")).collect();
+    let names: Vec<_> = data.files.iter().map(|name| bulge_muscles::shown::one_line(name)).collect();
     let _ = writeln!(text, "# Fitted to {} ({} rows, sha256 {}).", names.join(", "), data.used, data.sha256);
     for line in errors(fitting) {
         let _ = writeln!(text, "# {line}");

@@ -1,4 +1,4 @@
-//! Files of membranes: written, read back by vtkio and as a mesh, and measured against the state they show.
+//! Files of membranes: written, read back and as a mesh, and measured against the state they show.
 
 #![expect(
     clippy::unwrap_used,
@@ -7,6 +7,8 @@
     reason = "a test that cannot be set up fails; numbers are read back as they were written"
 )]
 
+#[path = "membrane/read.rs"]
+mod read;
 #[path = "membrane/support.rs"]
 mod support;
 
@@ -19,8 +21,7 @@ use bulge_vtk::{MembranePicture, MembraneSeries, Whole, write_vtu};
 use std::f64::consts::{PI, TAU};
 use std::fs;
 use std::path::Path;
-use support::{AIRBAG, PLEATED, Point, Read, SPHERE, TUBE, solved};
-use vtkio::model::CellType;
+use support::{AIRBAG, CellType, PLEATED, Point, Read, SPHERE, TUBE, solved};
 
 fn drawn(dir: &Path, state: &State, fields: &Fields, whole: Whole) -> Read {
     let path = dir.join("state.vtu");

@@ -1,10 +1,11 @@
 //! Compiles the parts of a formula to a tape. Every part gets its dimension, constants are computed once, and
 //! inconsistent units are refused.
 
-use super::error::{ExpressionError, quoted};
+use super::error::ExpressionError;
 use super::function;
 use super::node::{Node, Part};
 use bulge_muscles::Dimension;
+use bulge_muscles::shown::shortened;
 use bulge_numerics::tape::{Builder, Function, Operator, Place};
 use std::ops::Range;
 
@@ -71,7 +72,11 @@ impl Compiler<'_> {
 
     /// `text` (unit), for messages.
     fn named(&self, operand: &Operand) -> String {
-        format!("`{}` ({})", quoted(&self.text[operand.span.clone()]), operand.dimension.unwrap_or_default())
+        format!(
+            "`{}` ({})",
+            shortened(&self.text[operand.span.clone()]),
+            operand.dimension.unwrap_or_default()
+        )
     }
 
     fn input(
@@ -110,7 +115,7 @@ impl Compiler<'_> {
         let dimension = self.dimension(node, part, &operands)?;
         let place = self.place(node, part, &operands)?;
         if self.tape.constant_at(place).is_some_and(|value| !value.is_finite()) {
-            let what = format!("`{}` is not a finite number", quoted(&self.text[node.span.clone()]));
+            let what = format!("`{}` is not a finite number", shortened(&self.text[node.span.clone()]));
             return Err(self.error(&node.span, what, "write a number, or a formula with a value"));
         }
         self.operands.push(Operand { span: node.span.clone(), dimension, place });
@@ -154,7 +159,7 @@ impl Compiler<'_> {
     ) -> Result<Option<Dimension>, ExpressionError> {
         let too_large = || {
             let what =
-                format!("the unit of `{}` has a power beyond 64", quoted(&self.text[node.span.clone()]));
+                format!("the unit of `{}` has a power beyond 64", shortened(&self.text[node.span.clone()]));
             self.error(&node.span, what, "write smaller powers of quantities with a unit")
         };
         match (part, operands) {
@@ -277,7 +282,7 @@ impl Compiler<'_> {
             (_, true) => number(b, left),
             _ => match left.over(right) {
                 Some(factor) => {
-                    let b = quoted(&self.text[b.span.clone()]);
+                    let b = shortened(&self.text[b.span.clone()]);
                     format!(
                         "multiply `{b}` by a quantity in {factor}: a parameter, or a number such as `1 [{factor}]`"
                     )

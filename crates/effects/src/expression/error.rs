@@ -61,17 +61,6 @@ impl ExpressionError {
     }
 }
 
-/// A quotation for a message: at most 40 characters on one line, without control characters.
-pub(crate) fn quoted(text: &str) -> String {
-    let text = text.trim();
-    let blank = |c: char| if c.is_whitespace() || c.is_control() { ' ' } else { c };
-    let mut out: String = text.chars().take(40).map(blank).collect();
-    if text.chars().nth(40).is_some() {
-        out.push('\u{2026}');
-    }
-    out
-}
-
 /// The name that was probably meant. It differs only in case and hyphens, or by one or two slips.
 pub(crate) fn nearest<'n>(word: &str, names: impl IntoIterator<Item = &'n str>) -> Option<&'n str> {
     let plain = |text: &str| text.to_lowercase().replace(['-', ' '], "_");

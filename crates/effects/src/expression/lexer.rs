@@ -1,6 +1,7 @@
 //! The lexer: it splits a formula into numbers, units in brackets, names and signs.
 
-use super::error::{ExpressionError, quoted};
+use super::error::ExpressionError;
+use bulge_muscles::shown::shortened;
 use bulge_numerics::tape::Comparison;
 use std::ops::Range;
 
@@ -95,7 +96,7 @@ impl<'t> Lexer<'t> {
         match number.parse::<f64>() {
             Ok(value) if value.is_finite() => Ok(end),
             _ => {
-                let what = format!("the number `{}` is not finite", quoted(number));
+                let what = format!("the number `{}` is not finite", shortened(number));
                 Err(self.error(end, what, "write a number below 1.8e308"))
             }
         }
@@ -125,7 +126,7 @@ impl<'t> Lexer<'t> {
             ('\u{3c3}', "sigma"),
             ('\u{3c4}', "tau"),
         ];
-        let shown = quoted(&first.to_string());
+        let shown = shortened(&first.to_string());
         let (what, instead) = match first {
             '=' | '&' | '|' | '!' => (
                 format!("`{shown}` is no sign of a formula"),

@@ -23,7 +23,6 @@ mod parser;
 mod variable;
 
 pub use error::ExpressionError;
-pub(crate) use error::quoted;
 pub use variable::{SHAPE_VARIABLES, VARIABLES, Variable, variable_index};
 
 use bulge_muscles::Dimension;
@@ -190,7 +189,7 @@ impl Expression {
 /// # Errors
 /// A sentence with the reason.
 pub fn check_name(name: &str, variables: &[Variable]) -> Result<(), String> {
-    let shown = quoted(name);
+    let shown = bulge_muscles::shown::shortened(name);
     let is_word = name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
     if name.is_empty() || name.len() > 64 || !is_word || name.starts_with(|c: char| c.is_ascii_digit()) {
         return Err(format!(

@@ -10,12 +10,13 @@
 //!
 //! The first argument of `if` is `sum comparison sum`.
 
-use super::error::{ExpressionError, nearest, quoted};
+use super::error::{ExpressionError, nearest};
 use super::function;
 use super::lexer::{Lexer, Token};
 use super::node::{Node, Part};
 use super::variable::{Variable, place};
 use super::{MAX_DEPTH, MAX_NODES};
+use bulge_muscles::shown::shortened;
 use bulge_muscles::units;
 use bulge_numerics::tape::{Function, Operator};
 use std::ops::Range;
@@ -256,7 +257,7 @@ impl Parser<'_> {
     }
 
     fn unknown_name(&self, name: &str, span: Range<usize>) -> ExpressionError {
-        let what = format!("unknown name `{}`", quoted(name));
+        let what = format!("unknown name `{}`", shortened(name));
         let variables = self.variables.iter().map(|variable| variable.name);
         let aliases = self.variables.iter().filter_map(|variable| variable.alias);
         let known = self.parameters.iter().copied().chain(variables.clone()).chain(aliases);
@@ -274,12 +275,16 @@ impl Parser<'_> {
         let guess = meant.or_else(|| nearest(name, names.iter().copied()));
         let guess = guess.map_or_else(String::new, |near| format!("did you mean `{near}`?\n"));
         let list = names.join(", ");
-        self.error(span, format!("unknown function `{}`", quoted(name)), format!("{guess}functions: {list}"))
+        self.error(
+            span,
+            format!("unknown function `{}`", shortened(name)),
+            format!("{guess}functions: {list}"),
+        )
     }
 
     /// The error for a word that can't stand here.
     fn unexpected(&self, wanted: &str) -> ExpressionError {
-        let word = quoted(&self.text[self.span.clone()]);
+        let word = shortened(&self.text[self.span.clone()]);
         let is_operand = matches!(self.token, Token::Number | Token::Name | Token::Open);
         let before = &self.text[..self.end];
         let (what, instead) = match self.token {

@@ -3,11 +3,10 @@
 use super::quantity::Quantity;
 use super::{EXAMPLE, MAX_PARAMETERS, ShapeFormula, ShapeQuantity, UserEffect, UserFormula, UserParameter};
 use crate::catalogue::Catalogue;
-use crate::expression::{
-    Expression, ExpressionError, SHAPE_VARIABLES, VARIABLES, Variable, check_name, quoted,
-};
+use crate::expression::{Expression, ExpressionError, SHAPE_VARIABLES, VARIABLES, Variable, check_name};
 use crate::mechanism::{Form, Mechanism};
 use bulge_muscles::settings::{Document, Keys, Setting, Settings};
+use bulge_muscles::shown::{one_line, shortened};
 use bulge_muscles::{Dimension, FileError, units};
 use std::ops::Range;
 
@@ -57,7 +56,7 @@ pub(crate) fn effects(document: &Document<'_>) -> Result<Vec<UserEffect>, FileEr
 
 fn effect(all: &Settings<'_>, name: &str, place: Range<usize>) -> Result<UserEffect, FileError> {
     if !is_effect_name(name) {
-        let what = format!("`{}` is no name of an effect", quoted(name));
+        let what = format!("`{}` is no name of an effect", shortened(name));
         let instead =
             "write lower-case words with hyphens, such as `[effects.hose-stiffness]`, at most 64 characters";
         return Err(all.error(place, what, instead));
@@ -132,9 +131,9 @@ fn is_effect_name(name: &str) -> bool {
     name.len() <= 64 && name.starts_with(|c: char| c.is_ascii_lowercase()) && name.split('-').all(is_word)
 }
 
-/// A text that isn't empty, as it is written.
+/// A text that isn't empty, as it is written: of one line or of several.
 fn filled<'a>(table: &Settings<'a>, name: &str) -> Result<Option<(Setting<'a>, &'a str)>, FileError> {
-    let (Some(value), Some(text)) = (table.get(name), table.text(name)?) else { return Ok(None) };
+    let (Some(value), Some(text)) = (table.get(name), table.lines(name)?) else { return Ok(None) };
     if text.trim().is_empty() {
         return Err(table.unreadable(name, value, format!("`{name}` is empty")));
     }
@@ -148,7 +147,7 @@ fn words(table: &Settings<'_>, name: &str, limit: usize) -> Result<Option<String
         let what = format!("`{name}` has {length} characters, but at most {limit} are read");
         return Err(table.error(value.span(), what, "shorten it, or write the rest behind a `#`"));
     }
-    Ok(Some(text.trim().to_owned()))
+    Ok(Some(one_line(text.trim()).into_owned()))
 }
 
 /// The mechanism: the stated one, or that of the family, or the user's own.
@@ -186,7 +185,7 @@ fn twins(table: &Settings<'_>, own: &str) -> Result<Vec<String>, FileError> {
     for item in list {
         let name = item.text().ok_or_else(|| no_list(item))?;
         let what = if !is_effect_name(name) {
-            format!("`{}` is no name of an effect", quoted(name))
+            format!("`{}` is no name of an effect", shortened(name))
         } else if name == own {
             format!("`{own}` cannot be its own twin")
         } else if twins.iter().any(|other| other == name) {

@@ -1,6 +1,7 @@
 //! Specimens that differ: the data with the lengths of the specimens that the muscle file states.
 
 use bulge_measurements::Data;
+use bulge_muscles::shown::{listed, shortened};
 use bulge_muscles::{Muscle, Quantity};
 use std::borrow::Cow;
 
@@ -22,11 +23,10 @@ pub(crate) fn of_specimens<'d>(data: &'d Data, muscle: &Muscle) -> Result<Cow<'d
 /// The warning about specimens of which the muscle file states nothing.
 pub(crate) fn note(data: &Data, muscle: &Muscle) -> Option<String> {
     let others = muscle.check_specimens(data.specimens()).ok().filter(|others| !others.is_empty())?;
-    let names: Vec<String> = others.iter().map(|name| format!("`{name}`")).collect();
-    let (is, its) = if names.len() == 1 { ("specimen", "a table") } else { ("specimens", "tables") };
+    let (is, its) = if others.len() == 1 { ("specimen", "a table") } else { ("specimens", "tables") };
     Some(format!(
         "the muscle as stated stands for the {is} {}, of which nothing else is stated: add {its} such as `[specimens.{}]` if they differ",
-        names.join(", "),
-        others[0]
+        listed(20, "`", &others),
+        shortened(others[0])
     ))
 }

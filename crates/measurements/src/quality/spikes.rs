@@ -3,6 +3,7 @@
 use super::{Finding, FindingKind, Gate, Severity, rows_in_words};
 use crate::data::Data;
 use crate::resolution::Resolution;
+use bulge_muscles::shown::listed;
 use std::ops::Range;
 
 /// Longest spike in rows.
@@ -19,6 +20,8 @@ const BENDS: f64 = 2.0;
 const RANGE: f64 = 5e-3;
 /// Rows further apart than this many usual time steps have a pause between them.
 const PAUSE: f64 = 3.0;
+/// Readings that a message quotes.
+const MOST_SHOWN: usize = 3;
 /// Number of passes: neighbouring spikes hide each other, so found ones are bridged and the search is
 /// repeated.
 const PASSES: usize = 3;
@@ -56,10 +59,13 @@ pub(super) fn find(gate: &Gate) -> Vec<Finding> {
             Severity::Warning,
             &rows,
             |count| {
-                let first = rows.first().map_or_else(String::new, |row| gate.reading(name, *row));
+                let read = |row: &usize| {
+                    format!("row {}: {name} {}", gate.data.line(*row).1, gate.reading(name, *row))
+                };
                 format!(
-                    "the {name} of {} lies far from the rows around, the first at {first}",
-                    rows_in_words(count)
+                    "the {name} of {} lies far from the rows around ({})",
+                    rows_in_words(count),
+                    listed(MOST_SHOWN, "", rows.iter().map(read))
                 )
             },
             "nothing: these rows don't count; remove them if the reading was disturbed",

@@ -1,6 +1,7 @@
 //! Materials of the groups of a case's mesh.
 
 use bulge_muscles::settings::{Keys, Setting, Settings};
+use bulge_muscles::shown::listed;
 use bulge_muscles::{Dimension, FileError, Muscle, Parameter};
 use std::collections::BTreeSet;
 
@@ -88,9 +89,9 @@ pub(super) fn group<'a>(table: &Settings<'a>, key: &str, source: &Source) -> Res
     let list: Vec<&str> = known.iter().copied().filter(|name| !name.is_empty()).collect();
     let what = format!("the mesh has no group `{group}`");
     let instead = match bulge_muscles::settings::nearest(group, list.iter().copied()) {
-        Some(near) => format!("did you mean `{near}`? It has {}", list.join(", ")),
+        Some(near) => format!("did you mean `{near}`? It has {}", listed(20, "", list)),
         None if list.is_empty() => "the mesh has no named groups: give it physical groups".to_owned(),
-        None => format!("it has {}", list.join(", ")),
+        None => format!("it has {}", listed(20, "", list)),
     };
     Err(table.error(table.value_span(key), what, instead))
 }
@@ -211,7 +212,7 @@ fn material(table: &Settings<'_>, materials: &[(String, Sheet)]) -> Result<Sheet
     let instead = if known.is_empty() {
         "add a `[[material]]`".to_owned()
     } else {
-        format!("there is {}", known.join(", "))
+        format!("there is {}", listed(20, "", known))
     };
     Err(table.error(table.value_span("material"), format!("there is no material `{wanted}`"), instead))
 }

@@ -1,6 +1,7 @@
 //! The loads of a case.
 
 use bulge_muscles::settings::{Keys, Settings};
+use bulge_muscles::shown::listed;
 use bulge_muscles::{Dimension, FileError};
 
 use super::read::{in_range, positive};
@@ -171,7 +172,7 @@ fn held(table: &Settings<'_>, fittings: &[(String, Fitting)]) -> Result<Vec<Opti
                 let instead = if known.is_empty() {
                     "add a support of the kind `fitting`".to_owned()
                 } else {
-                    format!("there is {}", known.join(", "))
+                    format!("there is {}", listed(20, "", known))
                 };
                 return Err(table.error(value.span(), format!("there is no fitting `{name}`"), instead));
             };

@@ -27,6 +27,7 @@ impl Mesh {
     /// If the file can't be read or isn't such a grid. The error has the line of the XML element.
     pub fn from_vtu(bytes: &[u8], origin: &str) -> Result<Self, MeshError> {
         let parts = document::parts(bytes, origin)?;
+        document::check(&parts.xml, origin)?;
         let document = Document::parse(&parts.xml).map_err(|error| MeshError {
             file: format!("{origin}:{}", error.pos().row),
             what: format!("the XML can't be read: {}", brief(&error.to_string())),

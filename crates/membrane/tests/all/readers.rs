@@ -707,6 +707,26 @@ fn every_defect_of_a_grid_has_its_message() {
     // Deeper than the stack.
     refuses("<a>".repeat(100_000), "m:1", &["XML"]);
     refuses("<a>".repeat(100_000) + &"</a>".repeat(100_000), "m:1", &["XML"]);
+    // What the parser would compare each with each other, in whatever disguise.
+    let many = |one: &str| (0..200).map(|n| one.replace('N', &n.to_string())).collect::<String>();
+    for quiet in ["", "<!-- '= -->", "<?x \" ?>", "<![CDATA[<a b='>]]>", "<b c='>' d=\"'\"/>"] {
+        let element = format!("<VTKFile>{quiet}\n<a{}/></VTKFile>", many(" bN='>'"));
+        refuses(element, "m:2", &["too many attributes", "at most 100"]);
+    }
+    refuses(format!("<a{}/>", many(" xmlns:bN=''")), "m:1", &["too many namespaces", "at most 100"]);
+    let nested = many("<a xmlns:bN='c'>") + &"</a>".repeat(200);
+    refuses(nested, "m:1", &["too many namespaces"]);
+    // No entity is expanded, be it ten times ten times ten.
+    let laughs = "<!DOCTYPE a [<!ENTITY b 'ha'><!ENTITY c '&b;&b;&b;'>]><VTKFile>&c;</VTKFile>";
+    refuses(laughs, "m:1", &["XML can't be read"]);
+    // A hundred attributes, and signs that are none, are read.
+    let few = format!(
+        "<html{}>{}<!-- {} --></html>",
+        many(" bN=''").split_inclusive("''").take(100).collect::<String>(),
+        "= ".repeat(999),
+        "=".repeat(999)
+    );
+    refuses(few, "m:1", &["XML of <html>"]);
 }
 
 #[test]

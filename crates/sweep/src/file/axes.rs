@@ -1,6 +1,7 @@
 //! The axes of a sweep file: the quantity that each varies, and its values.
 
-use bulge_muscles::settings::{Keys, Setting, Settings, nearest, shortened};
+use bulge_muscles::settings::{Keys, Setting, Settings, nearest};
+use bulge_muscles::shown::shortened;
 use bulge_muscles::{FileError, Muscle, Parameter};
 use std::ops;
 

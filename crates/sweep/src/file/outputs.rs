@@ -1,6 +1,7 @@
 //! The outputs of a sweep file.
 
-use bulge_muscles::settings::{Setting, Settings, nearest, shortened};
+use bulge_muscles::settings::{Setting, Settings, nearest};
+use bulge_muscles::shown::shortened;
 use bulge_muscles::{FileError, Parameter};
 
 use crate::output::{Output, Variable};

@@ -1,6 +1,6 @@
 //! Values of an axis as text: numbers, lists and ranges, with units of the axis's dimension.
 
-use bulge_muscles::settings::shortened;
+use bulge_muscles::shown::shortened;
 use bulge_muscles::{Angle, Dimension, LearntValue, Parameter, Quantity as _, units};
 
 /// The keyword for the contraction at which the force vanishes.

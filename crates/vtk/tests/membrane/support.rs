@@ -1,11 +1,12 @@
-//! Small cases, solved, and files read back by vtkio and measured.
+//! Small cases, solved, and files read back and measured.
 
 use bulge_membrane::case::Case;
 use bulge_membrane::{Fields, State};
 use std::collections::HashMap;
 use std::fs;
 use std::path::Path;
-use vtkio::model::{Attribute, CellType, DataSet, Vtk};
+
+use crate::read;
 
 pub(crate) type Point = [f64; 3];
 
@@ -133,41 +134,62 @@ pub(crate) struct Read {
     pub(crate) cell_data: HashMap<String, Vec<f64>>,
 }
 
-fn arrays(attributes: &[Attribute]) -> HashMap<String, Vec<f64>> {
-    let array = |attribute: &Attribute| match attribute {
-        Attribute::DataArray(array) => (array.name.clone(), array.data.clone().cast_into().unwrap()),
-        Attribute::Field { .. } => panic!("a field"),
-    };
-    attributes.iter().map(array).collect()
+/// VTK's types of cells.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum CellType {
+    Vertex = 1,
+    Line = 3,
+    Triangle = 5,
+    Quad = 9,
+    QuadraticEdge = 21,
+    QuadraticTriangle = 22,
+}
+
+impl CellType {
+    fn of(code: f64) -> Self {
+        let all = [
+            Self::Vertex,
+            Self::Line,
+            Self::Triangle,
+            Self::Quad,
+            Self::QuadraticEdge,
+            Self::QuadraticTriangle,
+        ];
+        all.into_iter()
+            .find(|own| f64::from(*own as u8) == code)
+            .unwrap_or_else(|| panic!("a cell of {code}"))
+    }
 }
 
 impl Read {
     pub(crate) fn of(path: &Path) -> Self {
         let xml = fs::read_to_string(path).unwrap();
-        // vtkio can't read field data.
-        let (head, rest) = xml.split_once("<FieldData>").unwrap();
-        let (_, tail) = rest.split_once("</FieldData>").unwrap();
-        let vtk = Vtk::parse_xml(format!("{head}{tail}").as_bytes()).unwrap();
-        let DataSet::UnstructuredGrid { pieces, .. } = vtk.data else { panic!("no grid") };
-        let piece = pieces[0].load_piece_data(None).unwrap();
-        let points: Vec<f64> = piece.points.cast_into().unwrap();
-        let (connectivity, offsets) = piece.cells.cell_verts.into_xml();
+        let mut arrays = read::arrays(&xml);
+        let mut take =
+            |element: &str, name: &str| arrays.remove(&(element.to_owned(), name.to_owned())).unwrap();
+        let points = take("Points", "Points");
+        let whole = |numbers: Vec<f64>| numbers.into_iter().map(|number| number as usize).collect::<Vec<_>>();
+        let (connectivity, offsets) = (whole(take("Cells", "connectivity")), whole(take("Cells", "offsets")));
+        let types = take("Cells", "types").into_iter().map(CellType::of).collect();
+        let data = |element: &str| {
+            let own = arrays.iter().filter(|((of, _), _)| of == element);
+            own.map(|((_, name), values)| (name.clone(), values.clone())).collect()
+        };
         let mut start = 0;
         let cells = offsets
             .iter()
             .map(|end| {
-                let end = usize::try_from(*end).unwrap();
-                let nodes = &connectivity[start..end];
-                start = end;
-                nodes.iter().map(|node| usize::try_from(*node).unwrap()).collect()
+                let nodes = connectivity[start..*end].to_vec();
+                start = *end;
+                nodes
             })
             .collect();
         let read = Self {
             points: points.as_chunks::<3>().0.to_vec(),
             cells,
-            types: piece.cells.types,
-            point_data: arrays(&piece.data.point),
-            cell_data: arrays(&piece.data.cell),
+            types,
+            point_data: data("PointData"),
+            cell_data: data("CellData"),
             xml,
         };
         for (name, values) in read.cell_data.iter().chain(&read.point_data) {

@@ -168,6 +168,17 @@ fn spikes_in_each_column() {
     plants(FindingKind::Spike, &[350], |columns| motion(columns)[350] += 0.02);
 }
 
+#[test]
+fn spikes_are_quoted_with_row_and_unit() {
+    let mut columns = clean_loops(2, 1);
+    for row in [150, 300, 450, 600] {
+        columns.force_n[row] = 512.0;
+    }
+    let says = has(&quality(columns), FindingKind::Spike, Severity::Warning);
+    let expected = "the force of 4 rows lies far from the rows around (row 151: force 512 N, row 301: force 512 N, row 451: force 512 N and 1 more)";
+    assert_eq!(says, expected);
+}
+
 /// Triangles with Coulomb friction of this size, `rows` rows at each of three pressures.
 fn friction_loops(rows: usize, friction: f64, noise_n: f64, seed: u64) -> Columns {
     let mut noise = Noise::new(seed);

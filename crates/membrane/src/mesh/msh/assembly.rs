@@ -2,6 +2,7 @@
 
 use super::super::{Block, CellKind, Mesh, MeshError};
 use super::cursor::{Cursor, DAMAGED};
+use bulge_muscles::shown::one_line;
 use std::collections::{HashMap, HashSet};
 
 /// The data read so far.
@@ -49,7 +50,7 @@ impl Assembly {
 
     /// Names a physical group; returns false if it has a name already.
     pub(super) fn name(&mut self, dimension: u8, group: u32, name: &str) -> bool {
-        self.names.insert((dimension, group), name.to_owned()).is_none()
+        self.names.insert((dimension, group), one_line(name).into_owned()).is_none()
     }
 
     pub(super) fn add_node(

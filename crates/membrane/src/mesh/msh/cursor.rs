@@ -6,7 +6,7 @@
 //! shifting everything after it.
 
 use super::super::MeshError;
-use bulge_muscles::units::shortened_to;
+use bulge_muscles::shown::shortened_to;
 use std::fmt::Display;
 use std::str::FromStr;
 

@@ -2,6 +2,7 @@
 
 use super::super::{Block, CellKind, Mesh};
 use super::assembly::dimension;
+use bulge_muscles::shown::one_line;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 use std::fmt::Write as _;
@@ -27,7 +28,7 @@ impl Mesh {
             writeln!(out, "$PhysicalNames\n{}", groups.names.len())?;
             for (dimension, tag, name) in &groups.names {
                 // A line break would end the name.
-                let name = name.replace(char::is_control, " ");
+                let name = one_line(name);
                 writeln!(out, "{dimension} {tag} \"{name}\"")?;
             }
             writeln!(out, "$EndPhysicalNames")?;

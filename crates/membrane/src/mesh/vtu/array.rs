@@ -8,6 +8,7 @@ use super::super::msh::quoted;
 use super::document::CUT;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
+use bulge_muscles::shown::one_line;
 use flate2::read::ZlibDecoder;
 use roxmltree::{Document, Node};
 use std::borrow::Cow;
@@ -169,7 +170,11 @@ impl<'a, 'xml> Arrays<'a, 'xml> {
             return Err(self.error(array, format!("{} is no text of UTF-8", name(array)), DAMAGED));
         };
         let ended = text.strip_suffix('\0').unwrap_or(&text);
-        Ok(if text.is_empty() { Vec::new() } else { ended.split('\0').map(str::to_owned).collect() })
+        Ok(if text.is_empty() {
+            Vec::new()
+        } else {
+            ended.split('\0').map(|name| one_line(name).into_owned()).collect()
+        })
     }
 
     fn read<T>(

@@ -11,6 +11,10 @@ const END: &[u8] = b"</AppendedData>";
 pub(super) const CUT: &str =
     "the file is cut or damaged: copy it again, or save it again with the program that wrote it";
 
+/// Most attributes of an element, and most declarations of namespaces in a file. The parser compares each with
+/// all before it; elements of VTK have about ten attributes, and its files no namespaces.
+const MOST_ATTRIBUTES: usize = 100;
+
 /// The two parts of a file.
 pub(super) struct Parts<'a> {
     /// Everything except the appended data.
@@ -60,4 +64,49 @@ pub(super) fn parts<'a>(bytes: &'a [u8], origin: &str) -> Result<Parts<'a>, Mesh
         return Err(error("the appended data don't begin with an underscore".to_owned(), CUT));
     };
     Ok(Parts { xml: Cow::Owned(text(head)?.to_owned() + text(tail)?), appended })
+}
+
+/// Rejects what the parser would take a time for that grows with the square of the file.
+pub(super) fn check(xml: &str, origin: &str) -> Result<(), MeshError> {
+    let refused = |at: usize, what: &str| {
+        let line = xml.bytes().take(at).filter(|byte| *byte == b'\n').count() + 1;
+        Err(MeshError {
+            file: format!("{origin}:{line}"),
+            what: format!("{what}: at most {MOST_ATTRIBUTES} are read"),
+            instead: "give an unstructured grid of VTK (.vtu), as ParaView and meshio write it".to_owned(),
+        })
+    };
+    if let Some((at, _)) = xml.match_indices("xmlns").nth(MOST_ATTRIBUTES) {
+        return refused(at, "the file declares too many namespaces");
+    }
+    match crowded(xml) {
+        Some(at) => refused(at, "an element has too many attributes"),
+        None => Ok(()),
+    }
+}
+
+/// The first element with too many attributes. Its begin is sure, because no attribute may have a `<` in it: what
+/// a comment holds may be taken for an element, but no element for a comment.
+fn crowded(xml: &str) -> Option<usize> {
+    let bytes = xml.as_bytes();
+    let (mut element, mut quote, mut attributes) = (None, None, 0);
+    for (at, byte) in bytes.iter().enumerate() {
+        match (byte, quote) {
+            (b'<', _) => {
+                let is_element = !matches!(bytes.get(at + 1), Some(b'!' | b'?'));
+                (element, quote, attributes) = (is_element.then_some(at), None, 0);
+            }
+            (byte, Some(open)) => quote = Some(open).filter(|open| open != byte),
+            (b'>', None) => element = None,
+            (b'"' | b'\'', None) if element.is_some() => quote = Some(*byte),
+            (b'=', None) if element.is_some() => {
+                attributes += 1;
+                if attributes > MOST_ATTRIBUTES {
+                    return element;
+                }
+            }
+            _ => {}
+        }
+    }
+    None
 }

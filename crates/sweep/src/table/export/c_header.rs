@@ -59,8 +59,7 @@ pub fn c_header(table: &Table<'_>, name: &str) -> Result<String, ExportError> {
 
 /// Makes text safe in a comment: it can't end the comment, open another, or start a trigraph.
 fn plain(text: &str) -> String {
-    let plain: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
-    plain.replace("*/", "* /").replace("/*", "/ *").replace("??", "? ?")
+    bulge_muscles::shown::one_line(text).replace("*/", "* /").replace("/*", "/ *").replace("??", "? ?")
 }
 
 fn array(text: &mut String, kind: &str, name: &str, numbers: impl ExactSizeIterator<Item = String>) {
