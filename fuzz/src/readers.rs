@@ -153,9 +153,9 @@ pub(crate) fn formulas(bytes: &[u8]) {
     }
 }
 
-fn muscle() -> &'static Option<Muscle> {
+fn muscle() -> Option<&'static Muscle> {
     static MUSCLE: OnceLock<Option<Muscle>> = OnceLock::new();
-    MUSCLE.get_or_init(|| preset(PRESETS[0].name).ok())
+    MUSCLE.get_or_init(|| preset(PRESETS[0].name).ok()).as_ref()
 }
 
 /// Where muscles and meshes that a file names are looked up: nowhere.

@@ -68,6 +68,7 @@ impl Sampler {
     }
 
     /// An index below `count`, which is above 0.
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 0 and the count")]
     pub fn below(&mut self, count: usize) -> usize {
         (self.between(0.0, count as f64) as usize).min(count - 1)
     }

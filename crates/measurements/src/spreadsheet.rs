@@ -124,10 +124,10 @@ fn text(book: &mut Xlsx<Cursor<&[u8]>>, file: &str, name: &str) -> Result<String
         let (row, column) = cell.get_position();
         // A damaged workbook may put a cell anywhere below 2^32, and every line up to there would be written.
         if row >= MAX_ROWS {
-            return Err(XlsxError::RowNumberOverflow);
+            return Err(refused(XlsxError::RowNumberOverflow));
         }
         if column >= MAX_COLUMNS {
-            return Err(XlsxError::ColumnNumberOverflow);
+            return Err(refused(XlsxError::ColumnNumberOverflow));
         }
         // A cell out of order would belong to a line that is complete already.
         if row < line || (row == line && column < field) || text.len() > MOST_BYTES {

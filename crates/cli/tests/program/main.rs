@@ -6,11 +6,8 @@ mod commands;
 mod compare;
 mod design;
 mod diagnose;
-<<<<<<< HEAD
 mod faults;
-=======
 mod hostile;
->>>>>>> h3
 mod joint;
 mod membrane;
 mod next;

@@ -168,6 +168,11 @@ impl Read {
         let mut take =
             |element: &str, name: &str| arrays.remove(&(element.to_owned(), name.to_owned())).unwrap();
         let points = take("Points", "Points");
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "numbers of points, written as whole numbers"
+        )]
         let whole = |numbers: Vec<f64>| numbers.into_iter().map(|number| number as usize).collect::<Vec<_>>();
         let (connectivity, offsets) = (whole(take("Cells", "connectivity")), whole(take("Cells", "offsets")));
         let types = take("Cells", "types").into_iter().map(CellType::of).collect();
