@@ -132,13 +132,16 @@ commands! {
 const USAGE: u8 = 2;
 
 fn main() -> ExitCode {
-    if let Some(argument) = said::unprintable(std::env::args_os().skip(1)) {
-        return refuse(&format!(
-            "error: the argument `{}` has control characters: rename the file, or write it without",
-            shortened(&argument)
-        ));
-    }
-    let arguments = match Arguments::try_parse() {
+    let given = match said::arguments(std::env::args_os()) {
+        Ok(given) => given,
+        Err(argument) => {
+            return refuse(&format!(
+                "error: the argument `{}` has control characters: rename the file, or write it without",
+                shortened(&argument)
+            ));
+        }
+    };
+    let arguments = match Arguments::try_parse_from(given) {
         Ok(arguments) => arguments,
         Err(error) => {
             // Help and version arrive here too; they go to standard output with status 0, and in colour to a

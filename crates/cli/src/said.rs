@@ -3,9 +3,9 @@
 //! Files that a user gives, and their names, may have been written by anyone. What a terminal would obey instead of
 //! showing it doesn't get there. Files that are written to standard output are not text of ours, and go as they are.
 
-use bulge_muscles::shown::{is_shown, plain};
+use bulge_muscles::shown::{is_shown, one_line, plain};
 use std::borrow::Cow;
-use std::ffi::OsStr;
+use std::ffi::OsString;
 use std::fmt::Write as _;
 use std::io::{self, Write};
 use std::path::Path;
@@ -29,16 +29,25 @@ pub(crate) fn message(text: &str) {
     let _ = io::stderr().lock().write_all(bounded(&plain(text)).as_bytes());
 }
 
-/// What must not stand in the name of a file, because messages quote it: the argument that has it.
-pub(crate) fn unprintable(arguments: impl Iterator<Item = impl AsRef<OsStr>>) -> Option<String> {
-    arguments.map(|argument| argument.as_ref().to_string_lossy().into_owned()).find(|argument| {
-        // Other text may be of several lines.
-        let blank = |c: char| matches!(c, '\n' | '\r' | '\t');
-        let value = argument.split_once('=').map_or("", |(_, value)| value);
-        argument.contains(|c: char| c.is_control() && !blank(c))
-            || argument.contains(blank)
-                && [argument, value].iter().any(|name| !name.is_empty() && Path::new(name).exists())
-    })
+/// The arguments of the command, none of which has a control character, because messages quote them: line breaks and
+/// tabs between the parts of a text are blanks. Names of files can't be changed so.
+///
+/// # Errors
+/// The argument with another control character, or with any in the name of a file.
+pub(crate) fn arguments(given: impl Iterator<Item = OsString>) -> Result<Vec<OsString>, String> {
+    let one = |argument: OsString| {
+        let text = argument.to_string_lossy().into_owned();
+        if !text.contains(char::is_control) {
+            return Ok(argument);
+        }
+        let value = text.split_once('=').map_or("", |(_, value)| value);
+        let is_file = [&*text, value].iter().any(|name| !name.is_empty() && Path::new(name).exists());
+        if is_file || text.contains(|c: char| c.is_control() && !matches!(c, '\n' | '\r' | '\t')) {
+            return Err(text);
+        }
+        Ok(one_line(&text).into_owned().into())
+    };
+    given.map(one).collect()
 }
 
 /// A message with an end: long lines are cut, and so are many.
@@ -111,10 +120,19 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let two_lines = folder.path().join("a\nb");
         std::fs::write(&two_lines, "").unwrap();
-        let found = |argument: &str| unprintable([argument].iter()).is_some();
-        assert!(found("a\u{1b}[31m") && found("a\u{9b}"));
-        assert!(found(two_lines.to_str().unwrap()));
-        assert!(found(&format!("--muscle={}", two_lines.display())));
-        assert!(!found("1 bar,\n\t2 bar") && !found("force=F\u{fc}hler") && !found(""));
+        let taken = |argument: &str| arguments(std::iter::once(argument.into())).ok();
+        for refused in [
+            "a\u{1b}[31m",
+            "a\u{9b}",
+            two_lines.to_str().unwrap(),
+            &format!("--muscle={}", two_lines.display()),
+        ] {
+            assert_eq!(taken(refused), None, "{refused}");
+        }
+        for (given, found) in
+            [("1 bar,\n\t2 bar", "1 bar,  2 bar"), ("force=F\u{fc}hler", "force=F\u{fc}hler"), ("", "")]
+        {
+            assert_eq!(taken(given), Some(vec![found.into()]));
+        }
     }
 }

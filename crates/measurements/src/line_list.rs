@@ -2,6 +2,7 @@
 
 use crate::data::Data;
 use crate::error::MeasurementError;
+use crate::quote::quoted;
 use bulge_muscles::shown::listed;
 
 /// Separator between a file and its line.
@@ -36,6 +37,7 @@ impl Data {
         let mut rows = Vec::new();
         for range in list.split(',').map(str::trim).filter(|range| !range.is_empty()) {
             let refuse = |why: &str| {
+                let range = quoted(range);
                 MeasurementError::Request(format!("lines `{range}`: {why}; write such as `12, 33-40`"))
             };
             let (name, lines) =

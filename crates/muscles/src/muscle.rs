@@ -9,6 +9,7 @@ use crate::learnt::Learnt;
 use crate::material::Fibre;
 use crate::parameter::Parameter;
 use crate::quantity::{Angle, Area, Force, Length};
+use crate::shown::{LONGEST_NAME, one_line};
 use crate::specimen::Specimen;
 use crate::units::Quantity;
 
@@ -98,12 +99,13 @@ impl Muscle {
         muscle.checked()?.with_name(name)
     }
 
-    /// The same muscle under another name.
+    /// The same muscle under another name, which is kept as a file can state it: on one line, of at most 1000 bytes.
     ///
     /// # Errors
     /// If the name is blank.
     pub fn with_name(mut self, name: impl Into<String>) -> Result<Self, MuscleError> {
-        self.name = name.into();
+        self.name = one_line(&name.into()).into_owned();
+        self.name.truncate(self.name.floor_char_boundary(LONGEST_NAME));
         if self.name.trim().is_empty() { Err(MuscleError::NoName) } else { Ok(self) }
     }
 

@@ -7,7 +7,7 @@ use crate::learnt::{Place, SourceFile};
 use crate::muscle::Muscle;
 use crate::parameter::Parameter;
 use crate::settings::{Settings, nearest};
-use crate::shown::{listed, shortened};
+use crate::shown::{LONGEST_NAME, listed, shortened};
 use serde::Serialize;
 use std::sync::Arc;
 
@@ -58,7 +58,11 @@ impl Muscle {
         mut numbers: Vec<(Parameter, f64)>,
     ) -> Result<Self, MuscleError> {
         let name = name.into();
-        if name.trim().is_empty() || name.contains(|c: char| c.is_control() || matches!(c, '"' | '\\')) {
+        let is_long = name.len() > LONGEST_NAME;
+        if is_long
+            || name.trim().is_empty()
+            || name.contains(|c: char| c.is_control() || matches!(c, '"' | '\\'))
+        {
             return Err(MuscleError::SpecimenName { name: shortened(&name) });
         }
         // The wall comes first, because a bladder or its gas needs it.

@@ -144,6 +144,9 @@ fn names_are_what_can_be_printed() {
     let key = |key: &str| format!("{PLEATED}\n[effects]\n{key} = 1\n");
     assert!(complaint(&key("\"a\\nb\"")).what().starts_with("the key `a b` has control characters"));
     assert!(complaint(&key(&"x".repeat(1001))).what().contains("too long for a name"));
+    // What isn't from a file is kept as a file can state it.
+    let own = |name: &str| from_toml(PLEATED, "m").unwrap().with_name(name).unwrap().name().to_owned();
+    assert_eq!((own("a\nb\u{1b}"), own(&"x".repeat(2000))), ("a b ".to_owned(), "x".repeat(1000)));
     // Others write from right to left, and may.
     let other = from_toml(&named("\"\u{5e9}\u{5e8}\u{5d9}\u{5e8}\u{200f}\""), "m").unwrap();
     assert!(other.name().ends_with('\u{200f}'));
