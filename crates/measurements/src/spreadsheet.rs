@@ -11,6 +11,7 @@ use bulge_muscles::shown::listed;
 use calamine::{DataRef, ExcelDateTime, Reader, Xlsx, XlsxError};
 use std::fmt::Write;
 use std::io::Cursor;
+use std::panic::catch_unwind;
 
 /// The first bytes of a ZIP archive; such a workbook is one.
 const ZIP_MAGIC: &[u8] = b"PK\x03\x04";
@@ -29,6 +30,17 @@ pub(crate) fn is_one(bytes: &[u8]) -> bool {
 
 /// Reads the named sheet of a workbook, otherwise the first one with a table. `file` is its name in messages.
 pub(crate) fn read(
+    file: &str,
+    bytes: &[u8],
+    sheet: Option<&str>,
+    options: &ReadOptions,
+) -> Result<Table, MeasurementError> {
+    // The library counts cells without a check for overflow, and a damaged workbook must not end the program.
+    catch_unwind(|| read_sheet(file, bytes, sheet, options))
+        .unwrap_or_else(|_| Err(refused(file, &XlsxError::Unexpected("it is damaged"))))
+}
+
+fn read_sheet(
     file: &str,
     bytes: &[u8],
     sheet: Option<&str>,
