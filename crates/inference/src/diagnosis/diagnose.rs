@@ -20,7 +20,7 @@ use crate::diagnosis::classes::Class;
 use crate::diagnosis::confidence::{Confidence, confidence};
 use crate::diagnosis::document::Diagnosis;
 use crate::diagnosis::either::quieter;
-use crate::diagnosis::event::Sides;
+use crate::diagnosis::event::{Without, event};
 use crate::diagnosis::fits::Fits;
 use crate::diagnosis::geometry::{Doubt, geometry};
 use crate::diagnosis::linearised_model::Context;
@@ -121,9 +121,9 @@ fn answered(
 /// What an answer may stretch across.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Across {
-    /// No jump, unless both sides of it say the same.
+    /// Nothing that happened during the test.
     NoEvent,
-    /// Anything: the answer for one side of a jump.
+    /// Anything: the answer for a part of the rows.
     Anything,
 }
 
@@ -142,12 +142,15 @@ fn diagnosed(
     }
     let first = analysis.begin()?;
     let mut base = analysis.climb(options.base.effects.len(), Some(&first.climbed))?;
-    let sides = |row| {
-        let ask = |options: &DiagnoseOptions| diagnosed(data, [stated, muscle], options, Across::Anything);
-        (across == Across::NoEvent).then(|| Sides::of(&analysis.data, options, row, ask))
+    let without = |rows: &[usize]| {
+        let mut base = options.base.clone();
+        base.excluded.extend_from_slice(rows);
+        let options = DiagnoseOptions { base, progress: Progress::default(), ..options.clone() };
+        diagnosed(data, [stated, muscle], &options, Across::Anything).ok()
     };
+    let without: Option<Without<'_>> = (across == Across::NoEvent).then_some(&without);
     let (diagnosis, used) = where_it_has_a_state(&analysis, &mut base, |base, used| {
-        on_rows(&analysis, &first, base, used, (options, &sides))
+        on_rows(&analysis, &first, base, used, (options, without))
     })?;
     Ok(diagnosis.without(&analysis, &used))
 }
@@ -195,16 +198,13 @@ impl Diagnosis {
     }
 }
 
-/// The diagnoses of both sides of an event at a row of the files; none where an answer may stretch across it.
-type OfSides<'a> = &'a dyn Fn(usize) -> Option<Sides>;
-
 /// The diagnosis on some of the rows.
 fn on_rows(
     analysis: &Analysis<'_>,
     first: &First,
     base: &mut Climbed,
     used: &[bool],
-    (options, sides): (&DiagnoseOptions, OfSides<'_>),
+    (options, without): (&DiagnoseOptions, Option<Without<'_>>),
 ) -> Result<Diagnosis, Stop> {
     let progress = &options.progress;
     progress.at(0.1, "the noise");
@@ -241,10 +241,10 @@ fn on_rows(
     let quieter = quieter.map_err(|error| Stop::at_means(error, &averaged_data.averaged, analysis))?;
     if let Some((law, whitening)) = &quieter {
         let quiet = Context { whitening, law, fits: None, ..context };
-        return concluded((analysis, first), (&quiet, averaged_data), &model, search, (options, sides));
+        return concluded((analysis, first), (&quiet, averaged_data), &model, search, (options, without));
     }
     context.exchange(&model, &mut search);
-    concluded((analysis, first), (&context, averaged_data), &model, search, (options, sides))
+    concluded((analysis, first), (&context, averaged_data), &model, search, (options, without))
 }
 
 /// Classes, confidence and the ladder for the result of a search.
@@ -253,7 +253,7 @@ fn concluded(
     (context, averaged_data): (&Context<'_>, &AveragedData),
     model: &Model,
     mut search: Search,
-    (options, sides): (&DiagnoseOptions, OfSides<'_>),
+    (options, without): (&DiagnoseOptions, Option<Without<'_>>),
 ) -> Result<Diagnosis, Stop> {
     let progress = &options.progress;
     progress.at(0.6, "rivals");
@@ -286,13 +286,8 @@ fn concluded(
         next,
         event: None,
     };
-    if let Some(row) =
-        found.event_row().and_then(|row| averaged_data.averaged.groups.get(row)?.first().copied())
-        && let Some(sides) = sides(row)
-        && !sides.name_each(&found.families())
-    {
-        found.event = found.jump_left().map(|jump| sides.says(&jump));
-    }
+    found.event =
+        without.and_then(|without| event(&found, &analysis.data, &averaged_data.averaged.groups, without));
     let effects: Vec<Arc<dyn Effect>> = options.base.effects.iter().chain(found.shown()).cloned().collect();
     let answer = compare_after(first, analysis, &effects, found.last().confirmed.numbers())?;
     progress.at(1.0, "done");

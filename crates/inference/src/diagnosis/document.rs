@@ -394,6 +394,9 @@ pub struct Remaining {
     /// A jump within a sweep, with its size and place in words: something happened there.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub jump: Option<String>,
+    /// What happened during the test, in words: no effect is named across it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub event: Option<String>,
     /// The systematic misfit over pressure, contraction and direction, if there is structure.
     pub surface: Vec<SurfaceCurve>,
 }

@@ -1,79 +1,149 @@
-//! Something happened during the test: the rows before a jump and those after it are diagnosed each on their
-//! own. An effect that acts on the muscle acts on both sides of the jump; what only one of them names, or only
-//! both together, stands in for the event (a fitting that slipped, a sensor that was knocked).
+//! Something happened during the test. What acts on the muscle acts on all of its rows, so nothing is named
+//! that some rows ask for and others deny:
+//!
+//! - *a jump* within a sweep (a fitting that slipped, a sensor that was knocked): the rows before it and those
+//!   after it are diagnosed each on their own, and what is named on one side must be named on the other,
+//! - *odd rows*, as files, sweeps or stretches of a record (a sensor zeroed anew, another unit, a reversed column,
+//!   a reading that is held): those few whose misfit stands far out are left out. If nothing is then missing,
+//!   although what was named would have shown in the others, they deny it.
 
 use bulge_measurements::Data;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::comparison::rows::lines;
-use crate::diagnosis::diagnose::DiagnoseOptions;
 use crate::diagnosis::document::{Diagnosis, Verdict};
-use crate::error::InferenceError;
-use crate::progress::Progress;
+use crate::diagnosis::write::Findings;
+use crate::median::median;
 
-/// The diagnoses of the rows before an event and of those after it.
-pub(crate) struct Sides {
-    /// Line numbers in the files: up to the event, and from it on.
-    lines: [String; 2],
-    /// None where there is no answer.
-    found: [Option<Diagnosis>; 2],
+/// Fewest parts among which one can be odd, and how many of them may be.
+const FEWEST: usize = 3;
+const ONE_IN: usize = 4;
+/// Stretches into which a record is cut: short ones hide no event, and each needs some rows.
+const STRETCHES: usize = 24;
+/// Mean square of its misfit over the median of all from which a part is odd. An effect of the muscle
+/// grows with pressure or length, which makes a factor of 2 or 3 between sweeps.
+const ODD: f64 = 4.0;
+/// Sum of squares, in variances of the noise, that what was named would explain in the others: 8 sigma, which
+/// no diagnosis overlooks.
+const EXPECTED: f64 = 64.0;
+
+/// The diagnosis without some rows of the files; none if there is no answer.
+pub(crate) type Without<'a> = &'a dyn Fn(&[usize]) -> Option<Diagnosis>;
+
+/// What is said of an event across which no effect may be named, if there is one.
+pub(crate) fn event(
+    found: &Findings<'_>,
+    data: &Data,
+    groups: &[Vec<usize>],
+    without: Without<'_>,
+) -> Option<String> {
+    if !found.verdict().0.shows_effects() {
+        return None;
+    }
+    jump(found, data, groups, without).or_else(|| odd(found, data, groups, without))
 }
 
-impl Sides {
-    /// Diagnoses the rows of the event's specimen before `row` and those from it on, each beside the rows of
-    /// all other specimens.
-    pub(crate) fn of(
-        data: &Data,
-        options: &DiagnoseOptions,
-        row: usize,
-        ask: impl Fn(&DiagnoseOptions) -> Result<Diagnosis, InferenceError>,
-    ) -> Self {
-        let own = |other: &usize| data.specimen_of(*other) == data.specimen_of(row);
-        let [before, after]: [Vec<usize>; 2] =
-            [(0..row).filter(own).collect(), (row..data.len()).filter(own).collect()];
-        let without = |rows: &[usize]| {
-            let mut base = options.base.clone();
-            base.excluded.extend_from_slice(rows);
-            ask(&DiagnoseOptions { base, progress: Progress::default(), ..options.clone() }).ok()
-        };
-        Self {
-            lines: [lines(data, &before), lines(data, &after)],
-            found: [without(&after), without(&before)],
+fn jump(found: &Findings<'_>, data: &Data, groups: &[Vec<usize>], without: Without<'_>) -> Option<String> {
+    let (row, what) = found.jump_left()?;
+    let row = *groups.get(row)?.first()?;
+    let own = |other: &usize| data.specimen_of(*other) == data.specimen_of(row);
+    let sides: [Vec<usize>; 2] = [(0..row).filter(own).collect(), (row..data.len()).filter(own).collect()];
+    let [before, after] = [without(&sides[1]), without(&sides[0])];
+    let claimed = found.families();
+    if !claimed.is_empty() && claimed.iter().all(|family| is_on_both([&before, &after], family)) {
+        return None;
+    }
+    Some(format!(
+        "{what}, as if a fitting had slipped or a sensor was knocked. Before it (line {}) {}; after it (line {}) {}. See what happened there, and diagnose the \
+         rows of one state of the rig",
+        lines(data, &sides[0]),
+        said(before.as_ref()),
+        lines(data, &sides[1]),
+        said(after.as_ref()),
+    ))
+}
+
+/// Whether a family is named on both sides of a jump, or on one of them if the other can't tell.
+fn is_on_both(sides: [&Option<Diagnosis>; 2], family: &str) -> bool {
+    let on = |side: &Option<Diagnosis>| side.as_ref().is_some_and(|found| names(found).contains(family));
+    let silent =
+        |side: &Option<Diagnosis>| side.as_ref().is_none_or(|found| found.verdict == Verdict::CannotTell);
+    sides.iter().any(|side| on(side)) && sides.iter().all(|side| on(side) || silent(side))
+}
+
+fn odd(found: &Findings<'_>, data: &Data, groups: &[Vec<usize>], without: Without<'_>) -> Option<String> {
+    let sweep = |row: usize| data.sweeps().partition_point(|sweep| sweep.rows.end <= row);
+    let file = |row: usize| data.line(row).0;
+    let stretch = |row: usize| row * STRETCHES / data.len();
+    let of: [&dyn Fn(usize) -> usize; 3] = [&file, &sweep, &stretch];
+    let mut tried = BTreeSet::new();
+    of.into_iter().find_map(|part| {
+        let places = stand_out(found, groups, part)?;
+        let (odd, others): (Vec<usize>, Vec<usize>) =
+            (0..data.len()).partition(|row| places.contains(&part(*row)));
+        if !tried.insert(odd.clone()) {
+            return None;
         }
-    }
-
-    /// Whether there are families, and each of them is named on both sides, or on one of them if the other
-    /// can't tell.
-    pub(crate) fn name_each(&self, families: &[&str]) -> bool {
-        let is_named = |family: &&str| {
-            let side = |place: usize| self.found[place].as_ref();
-            let on = |place| {
-                side(place).is_some_and(|found| found.missing.iter().any(|one| one.family == *family))
-            };
-            let silent = |place| side(place).is_none_or(|found| found.verdict == Verdict::CannotTell);
-            on(0) && (on(1) || silent(1)) || on(1) && silent(0)
+        let rest = without(&odd)?;
+        let claimed = found.families();
+        let denied = match rest.verdict {
+            Verdict::Adequate => true,
+            Verdict::Missing => !claimed.iter().any(|family| names(&rest).contains(family)),
+            Verdict::Unknown | Verdict::CannotTell => false,
         };
-        !families.is_empty() && families.iter().all(is_named)
-    }
+        denied.then(|| {
+            format!(
+                "some rows ask for something that the others deny: without line {} {} (line {}). See what happened there: a sensor zeroed anew, reversed or held, \
+                 another unit, another specimen",
+                lines(data, &odd),
+                said(Some(&rest)),
+                lines(data, &others),
+            )
+        })
+    })
+}
 
-    /// What each side says, in a sentence.
-    pub(crate) fn says(&self, jump: &str) -> String {
-        let [before, after] = [0, 1].map(|place| said(self.found[place].as_ref()));
-        format!(
-            "{jump}, as if a fitting had slipped or a sensor was knocked. Before it (line {}) {before}; after it (line {}) {after}. See what happened there, \
-             and diagnose the rows of one state of the rig",
-            self.lines[0], self.lines[1],
-        )
+/// The parts of the data whose misfit of the base stands far out, if what is named would have shown in the
+/// others as well.
+fn stand_out(
+    found: &Findings<'_>,
+    groups: &[Vec<usize>],
+    part: &dyn Fn(usize) -> usize,
+) -> Option<BTreeSet<usize>> {
+    let (base, last) = (&found.search.stages.first()?.linear.white, &found.last().linear.white);
+    // Squares of the misfit, of what is explained of it, and rows, part by part.
+    let mut sums: BTreeMap<usize, [f64; 3]> = BTreeMap::new();
+    for ((group, base), last) in groups.iter().zip(base).zip(last) {
+        let sum = sums.entry(part(*group.first()?)).or_default();
+        let more = [base * base, (base - last).powi(2), 1.0];
+        sum.iter_mut().zip(more).for_each(|(sum, more)| *sum += more);
     }
+    if sums.len() < FEWEST {
+        return None;
+    }
+    let mean = |sum: &[f64; 3]| sum[0] / sum[2];
+    let usual = median(&mut sums.values().map(mean).collect::<Vec<_>>()).max(1.0);
+    let odd: BTreeSet<usize> =
+        sums.iter().filter(|(_, sum)| mean(sum) > ODD * usual).map(|(place, _)| *place).collect();
+    let expected: f64 = sums.iter().filter(|(place, _)| !odd.contains(place)).map(|(_, sum)| sum[1]).sum();
+    let few = !odd.is_empty() && odd.len() <= (sums.len() / ONE_IN).max(1);
+    (few && (expected > EXPECTED || found.families().is_empty())).then_some(odd)
+}
+
+/// Families that are named.
+fn names(found: &Diagnosis) -> BTreeSet<&str> {
+    found.missing.iter().map(|missing| missing.family.as_str()).collect()
 }
 
 /// A verdict in a few words.
 fn said(found: Option<&Diagnosis>) -> String {
     let Some(found) = found else { return "the rows don't tell".to_owned() };
-    let names: BTreeSet<&str> = found.missing.iter().map(|missing| missing.effect.as_str()).collect();
     match found.verdict {
         Verdict::Adequate => "nothing is missing".to_owned(),
-        Verdict::Missing => names.into_iter().collect::<Vec<_>>().join(" and ") + " would be missing",
+        Verdict::Missing => {
+            let names: Vec<&str> = found.missing.iter().map(|missing| missing.effect.as_str()).collect();
+            format!("{} would be missing", names.join(" and "))
+        }
         Verdict::Unknown => "no effect of the catalogue explains the rows".to_owned(),
         Verdict::CannotTell => "the rows don't tell".to_owned(),
     }

@@ -92,7 +92,7 @@ pub(crate) struct LinearisedModel {
     /// The misfit in coordinates.
     pub(crate) z: Vec<f64>,
     /// The whitened misfit row by row, followed by that of the priors.
-    white: Vec<f64>,
+    pub(crate) white: Vec<f64>,
     /// Force of the model at the means \[N\].
     pub(crate) force: Vec<f64>,
 }

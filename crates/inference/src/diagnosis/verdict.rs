@@ -247,19 +247,10 @@ impl Findings<'_> {
         })
     }
 
-    /// A jump that the last model leaves, in words.
-    pub(crate) fn jump_left(&self) -> Option<String> {
+    /// A jump that the last model leaves: the first row of the record behind it, and in words.
+    pub(crate) fn jump_left(&self) -> Option<(usize, String)> {
         match self.last().adequacy.unsmooth? {
-            Unsmooth::Jump(jump) => Some(self.jump(jump)),
-            Unsmooth::Oscillation(_) | Unsmooth::Recurs => None,
-        }
-    }
-
-    /// The row of the record from which on a jump is left, if effects would be named across it, or nothing
-    /// explains it.
-    pub(crate) fn event_row(&self) -> Option<usize> {
-        match self.last().adequacy.unsmooth? {
-            Unsmooth::Jump(jump) => self.verdict().0.shows_effects().then_some(jump.row),
+            Unsmooth::Jump(jump) => Some((jump.row, self.jump(jump))),
             Unsmooth::Oscillation(_) | Unsmooth::Recurs => None,
         }
     }

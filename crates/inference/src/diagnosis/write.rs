@@ -67,7 +67,7 @@ pub(crate) fn document(
     let Findings { context, search, classes, sd_n, .. } = *found;
     join_useless(&mut comparison.ladder, found.known);
     let (verdict, mut says, claimed) = found.verdict();
-    if verdict == Verdict::CannotTell && found.is_large() {
+    if verdict == Verdict::CannotTell && found.event.is_none() && found.is_large() {
         says += &furthest(&comparison);
     }
     // If no effect is named, none is shown, and the remaining misfit is that of the base.
@@ -105,7 +105,8 @@ pub(crate) fn document(
             by_formulas: (named && !last.added.is_empty()).then(|| last.by_formulas(&search.stages[0])),
             unseen_below_n: if named { found.unseen_below_n() } else { None },
             hints: if adequate { Vec::new() } else { found.hints(&left) },
-            jump: found.jump_left().filter(|_| !adequate),
+            jump: found.jump_left().filter(|_| !adequate).map(|(_, jump)| jump),
+            event: found.event.clone(),
             surface: surface(context.record, &last.linear),
         },
         geometry: Geometry::default(),

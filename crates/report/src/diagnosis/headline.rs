@@ -96,7 +96,7 @@ fn verdict(diagnosis: &Diagnosis) -> Vec<String> {
         Verdict::Adequate => ("adequate", ADEQUATE, nearest("not needed")),
         Verdict::Unknown => ("unknown", UNKNOWN, nearest("it lowers the error and leaves the structure")),
         Verdict::CannotTell => {
-            let why = if diagnosis.remaining.jump.is_some() { EVENT } else { TOO_FEW };
+            let why = if diagnosis.remaining.event.is_some() { EVENT } else { TOO_FEW };
             ("cannot tell", why, nearest("a ranking, not a claim"))
         }
     };

@@ -112,7 +112,7 @@ fn a_jump_stands_in_the_head_in_the_place_of_advice_to_go_on() {
 #[test]
 fn verdicts_stand_in_the_first_lines() {
     let mut knocked = cannot_tell(comparison());
-    knocked.remaining.jump = Some("a jump of 9.9 N within a sweep".to_owned());
+    knocked.remaining.event = Some("a jump of 9.9 N within a sweep".to_owned());
     for (diagnosis, begins) in [
         (
             missing(comparison()),
