@@ -76,7 +76,7 @@ class _Test:
     """One muscle on its rig: what was recorded, and which rows were leaking while the supply stood still."""
 
     def __init__(self, rng, order, hose, motion, amplitude=None):
-        self.hose, self.motion = hose, motion
+        self.hose, self.files = hose, 5 if order.kind == "unit" else 1
         world = World(hose, nature(rng, hose, motion))
         if amplitude:
             world = sized(world, motion, {amplitude: rng.uniform(*SWING)})
@@ -109,7 +109,7 @@ def _tests(rng, order, seed):
     """The test, or those of three specimens."""
     if order.kind == "mislabelled":
         trio = specimens(seed)[int(rng.integers(3))]
-        return [_Test(rng, order, hose, _motion(rng, order, hose, max(order.rows, 360) // 3)) for hose in trio]
+        return [_Test(rng, order, hose, _motion(rng, order, hose, max(order.rows, 300) // 3)) for hose in trio]
     pool = hoses(seed + 1000 * int(rng.integers(2)))
     if order.hidden in ("rubber", "strand-friction"):
         hose = pool[int(rng.integers(4 if order.hidden == "rubber" else 8))]
@@ -185,20 +185,16 @@ def _table(rng, rig, tests, motion):
         time, sweep = part["time"][-1] + 60.0, np.max(part["sweep"])
         parts.append(part)
     table = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+    if tests[0].files > 1:
+        # A file for each of five sweeps, else for each fifth of the record.
+        levels, count = np.unique(table["sweep"]), len(table["force"])
+        table["file"] = 1.0 + (np.searchsorted(levels, table["sweep"]) if len(levels) == 5 else np.arange(count) * 5 // count)
     return table
 
 
 def _harmed(order, harm, table):
     """The damaged table, and its damaged rows."""
-    rng = np.random.default_rng(harm)
-    table = {name: values.copy() for name, values in table.items()}
-    count = len(table["force"])
-    if order.kind == "unit":
-        levels = np.unique(table["sweep"])
-        whole = len(levels) == 5
-        table["file"] = 1.0 + (np.searchsorted(levels, table["sweep"]) if whole else np.arange(count) * 5 // count)
-    function = next(f for name, column, f in habits.HABITS[order.kind] if (name, column) == (order.habit, order.column))
-    return function(rng, table, order.column, order.strength)
+    return habits.harmed(np.random.default_rng(harm), table, order.kind, order.habit, order.column, order.strength)
 
 
 def _missing(table, stated, motion):

@@ -1,36 +1,18 @@
-"""What goes wrong with a table: every habit changes columns (SI) and says which rows it touched.
+"""What goes wrong with a table: each habit picks rows and spoils them in a column (SI).
 
-A habit takes a generator of random numbers, the table, the column, and a strength from 0 (mild) to 1 (severe). It returns the table and its damaged
-rows, counted from 0. It draws the same random numbers whatever the readings are, so that a table without noise is damaged alike.
+A pick and a deed take a generator of random numbers, the table, the column, and a strength from 0 (mild) to 1 (severe); a pick returns rows, counted
+from 0, a deed changes them in place. A habit that adds, removes or finds its own rows returns the table and the rows. All draw the same random numbers
+whatever the readings are, so that a table without noise is damaged alike.
 """
 
 import numpy as np
 
-HABITS = {}
-"""Kind of damage -> its habits, each (name, column, function)."""
 COLUMNS = ("force", "pressure", "length")
-
-
-def habit(kind, *columns):
-    """Enters a function as a habit of that kind, once for each column."""
-
-    def entered(function):
-        name = function.__name__.strip("_").replace("_", "-")
-        HABITS.setdefault(kind, []).extend((name, column, function) for column in columns)
-        return function
-
-    return entered
 
 
 def between(low, high, strength):
     """From low to high on a logarithmic scale."""
     return float(low * (high / low) ** strength)
-
-
-def span(values):
-    """Range of a column, without the extremes."""
-    low, high = np.nanquantile(values, (0.01, 0.99))
-    return float(high - low)
 
 
 def stretch(rng, table, share):
@@ -39,16 +21,6 @@ def stretch(rng, table, share):
     width = min(max(4, round(share * count)), count - 8)
     start = int(rng.integers(4, count - width - 3))
     return np.arange(start, start + width)
-
-
-def sweep(rng, table):
-    """Rows of one sweep; of a test in one piece, a quarter of it."""
-    names = np.unique(table["sweep"])
-    pick = rng.random()
-    if len(names) > 1:
-        return np.flatnonzero(table["sweep"] == names[int(pick * len(names))])
-    quarter = len(table["force"]) // 4
-    return np.arange(quarter) + int(pick * 3.99) * quarter
 
 
 def some(rng, table, share):
@@ -62,197 +34,256 @@ def taken(table, order):
     return {name: values[order] for name, values in table.items()}
 
 
-def _hit(rng, table, column, strength, rows):
-    """Spikes of 1 to 60 % of the range; in half of all tests to one side."""
-    height = span(table[column]) * between(0.01, 0.6, strength) * rng.uniform(0.6, 1.4, len(rows))
-    sides = rng.choice([-1.0, 1.0], len(rows)) if rng.random() < 0.5 else rng.choice([-1.0, 1.0])
-    table[column][rows] += sides * height
-    return table, rows
+def runs(rows):
+    """Rows as pieces without a gap."""
+    return np.split(rows, np.flatnonzero(np.diff(rows) > 1) + 1)
 
 
-@habit("spikes", *COLUMNS)
-def _isolated(rng, table, column, strength):
-    """Single rows."""
-    return _hit(rng, table, column, strength, some(rng, table, rng.uniform(0.003, 0.02)))
+def channels(column):
+    """The columns that are meant."""
+    return COLUMNS if column == "all" else (column,)
 
 
-@habit("spikes", *COLUMNS)
-def _pairs(rng, table, column, strength):
+# Picks of rows.
+
+
+def everywhere(rng, table, column, strength):
+    """All rows."""
+    return np.arange(len(table["force"]))
+
+
+def single(rng, table, column, strength):
+    """Isolated rows, 0.3 to 2 %."""
+    return some(rng, table, rng.uniform(0.003, 0.02))
+
+
+def paired(rng, table, column, strength):
     """Two rows each."""
     rows = some(rng, table, rng.uniform(0.003, 0.015))
-    return _hit(rng, table, column, strength, np.unique(np.r_[rows, rows + 1]))
+    return np.unique(np.r_[rows, rows + 1])
 
 
-@habit("spikes", *COLUMNS)
-def _bursts(rng, table, column, strength):
-    """Four to nine rows each, of either sign: a relay, a motor."""
+def bursts(rng, table, column, strength):
+    """Four to nine rows each: a relay, a motor."""
     starts = some(rng, table, rng.uniform(0.002, 0.006))
     rows = np.unique(np.concatenate([start + np.arange(int(rng.integers(4, 10))) for start in starts]))
-    return _hit(rng, table, column, strength, rows[rows < len(table["force"]) - 1])
+    return rows[rows < len(table["force"]) - 1]
 
+
+def one_sweep(rng, table, column, strength):
+    """All of one sweep; of a test in one piece, a quarter of it."""
+    names, pick = np.unique(table["sweep"]), rng.random()
+    if len(names) > 1:
+        return np.flatnonzero(table["sweep"] == names[int(pick * len(names))])
+    quarter = len(table["force"]) // 4
+    return np.arange(quarter) + int(pick * 3.99) * quarter
+
+
+def of_one_sweep(rng, table, column, strength):
+    """A part of a sweep, or, if severe, all of it."""
+    rows = one_sweep(rng, table, column, strength)
+    return rows[: max(round(between(0.05, 1.0, min(2.0 * strength, 1.0)) * len(rows)), 3)]
+
+
+def to_the_end(rng, table, column, strength):
+    """From some row on, to the end of the record."""
+    return np.arange(int(rng.uniform(0.15, 0.85) * len(table["force"])), len(table["force"]))
+
+
+def to_the_end_of_the_sweep(rng, table, column, strength):
+    """The same, put right before the next sweep."""
+    rows = one_sweep(rng, table, column, strength)
+    return rows[int(rng.uniform(0.2, 0.8) * len(rows)) :]
+
+
+def a_while(low, high):
+    """A pick of neighbouring rows, this share of all, mild and severe."""
+    return lambda rng, table, column, strength: stretch(rng, table, between(low, high, strength))
+
+
+def pieces(number, low, high):
+    """A pick of several such pieces."""
+    return lambda rng, table, column, strength: np.unique(
+        np.concatenate([stretch(rng, table, between(low, high, strength)) for _ in range(number)])
+    )
+
+
+def lines(low, high):
+    """A pick of single rows, this share of all, mild and severe."""
+    return lambda rng, table, column, strength: some(rng, table, between(low, high, strength))
+
+
+def loose(rng, table, column, strength):
+    """Row by row, or for a while: a loose plug."""
+    rows = lines(0.003, 0.08)(rng, table, column, strength)
+    return pieces(3, 0.004, 0.05)(rng, table, column, strength) if rng.random() < 0.5 else rows
+
+
+def one_file(rng, table, column, strength):
+    """One file of five."""
+    return np.flatnonzero(table["file"] == float(rng.integers(1, 6)))
+
+
+def leaking(rng, table, column, strength):
+    """While the pressure sags."""
+    return np.flatnonzero(table["leaking"])
+
+
+def of_a_specimen(rng, table, column, strength):
+    """A whole sweep of one specimen; half of it if there is no other."""
+    rows = np.flatnonzero(table["specimen"] == float(rng.integers(1, 4)))
+    chosen = rows[table["sweep"][rows] == rng.choice(np.unique(table["sweep"][rows]))]
+    return chosen if len(chosen) < len(rows) else chosen[: len(rows) // 2]
+
+
+# Deeds.
 
 ZERO = {"force": (0.5, 40.0), "pressure": (4e2, 2e4), "length": (5e-5, 2e-3)}
 """A zero that moved: mild and severe."""
+UNITS = {
+    "pressure": {"psi": 14.503773773, "kPa": 100.0},
+    "length": {"cm": 0.1, "inch": 1.0 / 25.4},
+    "force": {"kgf": 1.0 / 9.80665, "lbf": 1.0 / 4.4482216},
+}
+"""Numbers in these units under the heading of the others: bar, mm, N."""
 
 
-@habit("shifted", *COLUMNS)
-def _zero_of_a_sweep(rng, table, column, strength):
-    """The amplifier was balanced anew before one sweep."""
-    rows = sweep(rng, table)
+def hit(rng, table, column, strength, rows):
+    """Spikes of 1 to 60 % of the range; in half of all tests to one side."""
+    low, high = np.quantile(table[column], (0.01, 0.99))
+    height = (high - low) * between(0.01, 0.6, strength) * rng.uniform(0.6, 1.4, len(rows))
+    sides = rng.choice([-1.0, 1.0], len(rows)) if rng.random() < 0.5 else rng.choice([-1.0, 1.0])
+    table[column][rows] += sides * height
+
+
+def offset(rng, table, column, strength, rows):
+    """The amplifier was balanced anew, a clamp slipped, a cell was knocked."""
     table[column][rows] += between(*ZERO[column], strength) * rng.choice([-1.0, 1.0])
-    return table, rows
 
 
-@habit("slip", *COLUMNS)
-def _to_the_end(rng, table, column, strength):
-    """A clamp slips, a cell is knocked, a plug is moved: what comes after is off, to the end of the record."""
-    start = int(rng.uniform(0.15, 0.85) * len(table["force"]))
-    rows = np.arange(start, len(table["force"]))
-    table[column][rows] += between(*ZERO[column], strength) * rng.choice([-1.0, 1.0])
-    return table, rows
+def freeze(rng, table, column, strength, rows):
+    """The last reading again: a bus that hangs."""
+    for piece in runs(rows):
+        for name in channels(column):
+            table[name][piece] = table[name][max(piece[0] - 1, 0)]
 
 
-@habit("slip", *COLUMNS)
-def _to_the_end_of_the_sweep(rng, table, column, strength):
-    """The same, put right before the next sweep."""
-    rows = sweep(rng, table)
-    rows = rows[int(rng.uniform(0.2, 0.8) * len(rows)) :]
-    table[column][rows] += between(*ZERO[column], strength) * rng.choice([-1.0, 1.0])
-    return table, rows
+def bridge(rng, table, column, strength, rows):
+    """A straight line across each gap, written by the evaluation."""
+    for piece in runs(rows):
+        ends = [piece[0] - 1, piece[-1] + 1]
+        table[column][piece] = np.interp(piece, ends, table[column][ends])
 
 
-@habit("frozen", *COLUMNS, "all")
-def _held(rng, table, column, strength):
-    """A channel repeats its last reading: a bus that hangs."""
-    rows = stretch(rng, table, between(0.01, 0.2, strength))
-    for name in COLUMNS if column == "all" else (column,):
-        table[name][rows] = table[name][rows[0] - 1]
-    return table, rows
+def zero(rng, table, column, strength, rows):
+    """Nothing is read."""
+    for name in channels(column):
+        table[name][rows] = 0.0
 
 
-@habit("frozen", *COLUMNS)
-def _stutters(rng, table, column, strength):
-    """Several short pieces."""
-    pieces = [stretch(rng, table, between(0.01, 0.06, strength)) for _ in range(4)]
-    for rows in pieces:
-        table[column][rows] = table[column][rows[0] - 1]
-    return table, np.unique(np.concatenate(pieces))
+def negate(rng, table, column, strength, rows):
+    """The sign is turned."""
+    table[column][rows] *= -1.0
 
 
-def _beyond(table, column, share, top):
-    """The level beyond which that share of readings lies, and these rows."""
-    level = float(np.quantile(table[column], 1.0 - share if top else share))
-    return level, np.flatnonzero(table[column] > level if top else table[column] < level)
+def reverse(rng, table, column, strength, rows):
+    """From the last to the first."""
+    for name in channels(column):
+        table[name][rows] = table[name][rows[::-1]]
 
 
-@habit("clipped", "force", "pressure")
-def _top(rng, table, column, strength):
-    """The amplifier ends below the largest readings."""
-    level, rows = _beyond(table, column, between(0.01, 0.2, strength), True)
-    table[column][rows] = level
-    return table, rows
+def roll(rng, table, column, strength, rows):
+    """The second half before the first."""
+    for name in channels(column):
+        table[name][rows] = np.roll(table[name][rows], len(rows) // 2)
 
 
-@habit("clipped", "force", "pressure")
-def _bottom(rng, table, column, strength):
-    """It ends above the smallest ones."""
-    level, rows = _beyond(table, column, between(0.01, 0.2, strength), False)
-    table[column][rows] = level
-    return table, rows
+def sort(rng, table, column, strength, rows):
+    """Only this column was marked when the rows were sorted."""
+    table[column][rows] = np.sort(table[column][rows])
 
 
-@habit("clipped", "force", "pressure")
-def _softly(rng, table, column, strength):
-    """It bends before it ends: beyond a knee readings approach a ceiling."""
-    level, rows = _beyond(table, column, between(0.05, 0.3, strength), True)
-    room = max(float(np.max(table[column])) - level, 1e-9) * between(2.0, 0.4, strength)
-    table[column][rows] = level + room * np.tanh((table[column][rows] - level) / room)
-    return table, rows
+def overwrite(rng, table, column, strength, rows):
+    """Other rows were copied over these."""
+    source = (rows + int(rng.uniform(0.25, 0.75) * len(table["force"]))) % len(table["force"])
+    for name in channels(column):
+        table[name][rows] = table[name][source]
 
 
-@habit("duplicated", "all")
-def _rows_twice(rng, table, column, strength):
+def rename(rng, table, column, strength, rows):
+    """The name of the next specimen."""
+    table["specimen"][rows] = table["specimen"][rows] % 3 + 1.0
+
+
+def lose_comma(rng, table, column, strength, rows):
+    """12,34 became 1234."""
+    table[column][rows] *= 10.0 ** rng.integers(1, 4)
+
+
+def move_comma(rng, table, column, strength, rows):
+    """The same in what was typed in, either way."""
+    table[column][rows] *= 10.0 ** rng.choice([-1, 1, 2])
+
+
+def other_unit(rng, table, column, strength, rows):
+    """psi for bar, centimetres for millimetres, kilograms for newtons."""
+    table[column][rows] *= UNITS[column][str(rng.choice(sorted(UNITS[column])))]
+
+
+def absolute(rng, table, column, strength, rows):
+    """Absolute pressures."""
+    table[column][rows] += 101325.0
+
+
+def supply(rng, table, column, strength, rows):
+    """The sensor sits at the supply, before the leak."""
+    table[column][rows] = table["supply"][rows]
+
+
+def nothing(rng, table, column, strength, rows):
+    """The readings are right."""
+
+
+# Habits that add, remove or find their own rows.
+
+
+def clipped(top, soft):
+    """The amplifier ends below the largest or above the smallest readings; or bends before, and they approach a ceiling."""
+
+    def habit(rng, table, column, strength):
+        values, share = table[column], between(*((0.05, 0.3) if soft else (0.01, 0.2)), strength)
+        level = float(np.quantile(values, 1.0 - share if top else share))
+        rows = np.flatnonzero(values > level if top else values < level)
+        room = max(float(np.max(values)) - level, 1e-9) * between(2.0, 0.4, strength)
+        values[rows] = level + room * np.tanh((values[rows] - level) / room) if soft else level
+        return table, rows
+
+    return habit
+
+
+def rows_twice(rng, table, column, strength):
     """The logger writes a row again."""
-    rows = some(rng, table, between(0.005, 0.15, strength))
-    order = np.sort(np.r_[np.arange(len(table["force"])), rows])
+    order = np.sort(np.r_[np.arange(len(table["force"])), some(rng, table, between(0.005, 0.15, strength))])
     return taken(table, order), np.flatnonzero(np.diff(order, prepend=-1) == 0)
 
 
-@habit("duplicated", "all")
-def _sweep_twice(rng, table, column, strength):
+def sweep_twice(rng, table, column, strength):
     """A sweep is written again at the end, with times that go on."""
-    rows = sweep(rng, table)
-    count = len(table["force"])
+    rows, count = one_sweep(rng, table, column, strength), len(table["force"])
     table = taken(table, np.r_[np.arange(count), rows])
     table["time"][count:] += table["time"][count - 1] - table["time"][count] + np.median(np.diff(table["time"]))
     table["sweep"][count:] = np.max(table["sweep"]) + 1.0
     return table, np.arange(count, count + len(rows))
 
 
-@habit("duplicated", "all", "force")
-def _block_over_another(rng, table, column, strength):
-    """A block was copied over other rows, whose times and labels stay."""
-    rows = stretch(rng, table, between(0.02, 0.15, strength))
-    source = (rows + int(rng.uniform(0.25, 0.75) * len(table["force"]))) % len(table["force"])
-    for name in COLUMNS if column == "all" else (column,):
-        table[name][rows] = table[name][source].copy()
-    return table, rows
-
-
-@habit("swapped", "direction")
-def _labels(rng, table, column, strength):
+def exchange_words(rng, table, column, strength):
     """The words for loading and unloading are exchanged, in one sweep or in all."""
-    rows = sweep(rng, table) if strength < 0.5 else np.arange(len(table["force"]))
-    table["direction"][rows] *= -1.0
+    rows = one_sweep(rng, table, column, strength) if strength < 0.5 else np.arange(len(table["force"]))
+    negate(rng, table, column, strength, rows)
     return table, rows
 
 
-@habit("swapped", "all")
-def _backwards(rng, table, column, strength):
-    """A sweep is stored from its end, its times not."""
-    rows = sweep(rng, table)
-    for name in COLUMNS:
-        table[name][rows] = table[name][rows[::-1]]
-    return table, rows
-
-
-@habit("swapped", *COLUMNS)
-def _one_channel_backwards(rng, table, column, strength):
-    """Only one channel of a sweep was turned round: loading beside unloading."""
-    rows = sweep(rng, table)
-    if strength < 0.5:
-        rows = rows[: max(len(rows) // 3, 6)]
-    table[column][rows] = table[column][rows[::-1]]
-    return table, rows
-
-
-@habit("swapped", "all")
-def _branches(rng, table, column, strength):
-    """The second half of a sweep was pasted before the first."""
-    rows = sweep(rng, table)
-    for name in COLUMNS:
-        table[name][rows] = np.roll(table[name][rows], len(rows) // 2)
-    return table, rows
-
-
-@habit("mislabelled", "specimen")
-def _block(rng, table, column, strength):
-    """Rows of one specimen bear the name of another."""
-    return _renamed(rng, table, stretch(rng, table, between(0.02, 0.2, strength)))
-
-
-@habit("mislabelled", "specimen")
-def _whole_sweep(rng, table, column, strength):
-    """A whole sweep does."""
-    rows = np.flatnonzero(table["specimen"] == float(rng.integers(1, 4)))
-    label = rng.choice(np.unique(table["sweep"][rows]))
-    chosen = rows[table["sweep"][rows] == label]
-    # A specimen with a single sweep keeps half of it.
-    return _renamed(rng, table, chosen if len(chosen) < len(rows) else chosen[: len(rows) // 2])
-
-
-@habit("mislabelled", "specimen")
-def _exchanged(rng, table, column, strength):
+def exchange_specimens(rng, table, column, strength):
     """Two specimens have changed their names."""
     one, other = (float(k) for k in rng.choice([1, 2, 3], 2, replace=False))
     old = table["specimen"].copy()
@@ -260,14 +291,15 @@ def _exchanged(rng, table, column, strength):
     return table, np.flatnonzero(table["specimen"] != old)
 
 
-def _renamed(rng, table, rows):
-    new = table["specimen"][rows] % 3 + 1.0
-    table["specimen"][rows] = new
+def turn_one_channel(rng, table, column, strength):
+    """Loading beside unloading: one channel of a sweep, or of a third of it, runs backwards."""
+    rows = one_sweep(rng, table, column, strength)
+    rows = rows[: max(len(rows) // 3, 6)] if strength < 0.5 else rows
+    reverse(rng, table, column, strength, rows)
     return table, rows
 
 
-@habit("late", *COLUMNS)
-def _by_samples(rng, table, column, strength):
+def by_samples(rng, table, column, strength):
     """One channel is late by one to thirty samples, everywhere."""
     late = round(between(1, 30, strength))
     for label in np.unique(table["sweep"]):
@@ -276,115 +308,44 @@ def _by_samples(rng, table, column, strength):
     return table, np.arange(len(table["force"]))
 
 
-@habit("late", "force", "pressure")
-def _resampled(rng, table, column, strength):
+def resampled(rng, table, column, strength):
     """One channel comes every few rows only: held in between, or joined by lines."""
-    every = round(between(3, 40, strength))
-    rows = np.arange(len(table["force"]))
+    every, rows = round(between(3, 40, strength)), np.arange(len(table["force"]))
     known = rows[::every]
     drawn = rng.random() < 0.5
     table[column] = np.interp(rows, known, table[column][known]) if drawn else table[column][rows // every * every]
     return table, rows
 
 
-@habit("gaps", "all")
-def _lost(rng, table, column, strength):
-    """Packets are missing; the clock goes on."""
+def lost(rng, table, column, strength):
+    """Packets are missing; the clock goes on, or its times are counted from the rows that are left."""
+    step, start = float(np.median(np.diff(table["time"]))), table["time"][0]
     gone = np.concatenate([stretch(rng, table, between(0.02, 0.1, strength)) for _ in range(3)])
     left = np.setdiff1d(np.arange(len(table["force"])), gone)
-    return taken(table, left), np.flatnonzero(np.diff(left, prepend=-1) > 1)
+    table = taken(table, left)
+    if column == "time":
+        table["time"] = start + step * np.arange(len(left))
+    return table, np.flatnonzero(np.diff(left, prepend=-1) > 1)
 
 
-@habit("gaps", "time")
-def _lost_without_a_trace(rng, table, column, strength):
-    """The times are counted from the rows that are left."""
-    step, start = float(np.median(np.diff(table["time"]))), table["time"][0]
-    table, rows = _lost(rng, table, column, strength)
-    table["time"] = start + step * np.arange(len(table["force"]))
-    return table, rows
-
-
-@habit("gaps", *COLUMNS)
-def _bridged(rng, table, column, strength):
-    """A straight line across each gap of one channel, written by the evaluation."""
-    pieces = [stretch(rng, table, between(0.01, 0.06, strength)) for _ in range(3)]
-    for rows in pieces:
-        ends = [rows[0] - 1, rows[-1] + 1]
-        table[column][rows] = np.interp(rows, ends, table[column][ends])
-    return table, np.unique(np.concatenate(pieces))
-
-
-@habit("sorted", "all")
-def _with_times(rng, table, column, strength):
-    """A spreadsheet sorted the rows by one column; the times went along."""
+def sorted_rows(rng, table, column, strength):
+    """A spreadsheet sorted the rows by one column; the times went along, or were written anew."""
     order = np.argsort(table[str(rng.choice(COLUMNS))], kind="stable")
-    return taken(table, order), np.arange(len(order))
-
-
-@habit("sorted", "time")
-def _without_times(rng, table, column, strength):
-    """The rows are sorted, and numbered anew: the clock says nothing."""
     times = table["time"].copy()
-    table, rows = _with_times(rng, table, column, strength)
-    table["time"] = times
-    return table, rows
+    table = taken(table, order)
+    if column == "time":
+        table["time"] = times
+    return table, np.arange(len(order))
 
 
-@habit("sorted", *COLUMNS)
-def _one_column(rng, table, column, strength):
-    """Only one column was marked when a block was sorted."""
-    rows = stretch(rng, table, between(0.03, 0.5, strength))
-    table[column][rows] = np.sort(table[column][rows])
-    return table, rows
-
-
-@habit("flipped", *COLUMNS)
-def _sign(rng, table, column, strength):
-    """The sign is turned in one sweep, or in a part of it."""
-    rows = sweep(rng, table)
-    if strength < 0.5:
-        rows = rows[: max(round(between(0.05, 1.0, 2.0 * strength) * len(rows)), 3)]
-    table[column][rows] *= -1.0
-    return table, rows
-
-
-@habit("decimals", *COLUMNS)
-def _comma_lost(rng, table, column, strength):
-    """12,34 became 1234 in some rows."""
-    rows = some(rng, table, between(0.003, 0.1, strength))
-    table[column][rows] *= 10.0 ** rng.integers(1, 4)
-    return table, rows
-
-
-@habit("decimals", *COLUMNS)
-def _comma_of_a_sweep(rng, table, column, strength):
-    """The same in a whole sweep, which was typed in."""
-    rows = sweep(rng, table)
-    table[column][rows] *= 10.0 ** rng.choice([-1, 1, 2])
-    return table, rows
-
-
-@habit("decimals", "force")
-def _thousands(rng, table, column, strength):
+def thousands(rng, table, column, strength):
     """1,234.5 became 1.2345 wherever there was a thousand."""
     rows = np.flatnonzero(table[column] >= np.quantile(table[column], between(0.98, 0.8, strength)))
     table[column][rows] *= 1e-3
     return table, rows
 
 
-@habit("dropout", *COLUMNS, "all")
-def _zeros(rng, table, column, strength):
-    """A loose plug: zeros, row by row or for a while."""
-    rows = some(rng, table, between(0.003, 0.08, strength))
-    if rng.random() < 0.5:
-        rows = np.unique(np.concatenate([stretch(rng, table, between(0.004, 0.05, strength)) for _ in range(3)]))
-    for name in COLUMNS if column == "all" else (column,):
-        table[name][rows] = 0.0
-    return table, rows
-
-
-@habit("stuck-bit", *COLUMNS)
-def _bit(rng, table, column, strength):
+def stuck_bit(rng, table, column, strength):
     """One bit of a 14-bit converter is always set or never, from some row on."""
     low, step = float(np.min(table[column])), 1.3 * float(np.ptp(table[column])) / 2**14
     bit = 2 ** round(3 + 8 * strength)
@@ -396,43 +357,57 @@ def _bit(rng, table, column, strength):
     return table, rows
 
 
-@habit("leak", "pressure")
-def _seen(rng, table, column, strength):
-    """The supply sags, and the sensor shows it: nothing is wrong with the readings."""
-    return table, np.flatnonzero(table["leaking"])
+BOTH = ("force", "pressure")
+HABITS = {
+    "spikes": [("isolated", COLUMNS, single, hit), ("pairs", COLUMNS, paired, hit), ("bursts", COLUMNS, bursts, hit)],
+    "shifted": [("zero-of-a-sweep", COLUMNS, one_sweep, offset)],
+    "slip": [("to-the-end", COLUMNS, to_the_end, offset), ("to-the-end-of-the-sweep", COLUMNS, to_the_end_of_the_sweep, offset)],
+    "frozen": [("held", (*COLUMNS, "all"), a_while(0.01, 0.2), freeze), ("stutters", COLUMNS, pieces(4, 0.01, 0.06), freeze)],
+    "clipped": [("top", BOTH, clipped(True, False)), ("bottom", BOTH, clipped(False, False)), ("softly", BOTH, clipped(True, True))],
+    "duplicated": [
+        ("rows-twice", ("all",), rows_twice),
+        ("sweep-twice", ("all",), sweep_twice),
+        ("block-over-another", ("all", "force"), a_while(0.02, 0.15), overwrite),
+    ],
+    "swapped": [
+        ("labels", ("direction",), exchange_words),
+        ("backwards", ("all",), one_sweep, reverse),
+        ("one-channel-backwards", COLUMNS, turn_one_channel),
+        ("branches", ("all",), one_sweep, roll),
+    ],
+    "mislabelled": [
+        ("block", ("specimen",), a_while(0.02, 0.2), rename),
+        ("whole-sweep", ("specimen",), of_a_specimen, rename),
+        ("exchanged", ("specimen",), exchange_specimens),
+    ],
+    "late": [("by-samples", COLUMNS, by_samples), ("resampled", BOTH, resampled)],
+    "gaps": [("lost", ("all",), lost), ("lost-without-a-trace", ("time",), lost), ("bridged", COLUMNS, pieces(3, 0.01, 0.06), bridge)],
+    "leak": [(name, ("pressure",), leaking, deed) for name, deed in (("seen", nothing), ("unseen", supply), ("unread", freeze))],
+    "unit": [("unit", COLUMNS, one_file, other_unit), ("absolute", ("pressure",), one_file, absolute)],
+    "sorted": [("with-times", ("all",), sorted_rows), ("without-times", ("time",), sorted_rows), ("one-column", COLUMNS, a_while(0.03, 0.5), sort)],
+    "flipped": [("sign", COLUMNS, of_one_sweep, negate)],
+    "decimals": [
+        ("comma-lost", COLUMNS, lines(0.003, 0.1), lose_comma),
+        ("comma-of-a-sweep", COLUMNS, one_sweep, move_comma),
+        ("thousands", ("force",), thousands),
+    ],
+    "dropout": [("zeros", (*COLUMNS, "all"), loose, zero)],
+    "stuck-bit": [("bit", COLUMNS, stuck_bit)],
+}
+"""Kind of damage -> habits: name, columns, and a pick with a deed, or a habit that does both."""
 
 
-@habit("leak", "pressure")
-def _unseen(rng, table, column, strength):
-    """The sensor sits at the supply, before the leak."""
-    rows = np.flatnonzero(table["leaking"])
-    table[column][rows] = table["supply"][rows]
-    return table, rows
+def listed(kind):
+    """(habit, column) of a kind, one after the other."""
+    return [(name, column) for name, columns, *_ in HABITS[kind] for column in columns]
 
 
-@habit("leak", "pressure")
-def _unread(rng, table, column, strength):
-    """The reading is held while the pressure falls."""
-    rows = np.flatnonzero(table["leaking"])
-    table[column][rows] = table[column][max(rows[0] - 1, 0)]
-    return table, rows
-
-
-UNITS = {"pressure": {"psi": 14.503773773, "kPa": 100.0}, "length": {"cm": 0.1, "inch": 1.0 / 25.4}, "force": {"kgf": 1.0 / 9.80665, "lbf": 1.0 / 4.4482216}}
-"""Numbers in these units under the heading of the others: bar, mm, N."""
-
-
-@habit("unit", *COLUMNS)
-def _unit(rng, table, column, strength):
-    """One file of five holds another unit."""
-    rows = np.flatnonzero(table["file"] == float(rng.integers(1, 6)))
-    table[column][rows] *= UNITS[column][str(rng.choice(sorted(UNITS[column])))]
-    return table, rows
-
-
-@habit("unit", "pressure")
-def _absolute(rng, table, column, strength):
-    """One file of five holds absolute pressures."""
-    rows = np.flatnonzero(table["file"] == float(rng.integers(1, 6)))
-    table[column][rows] += 101325.0
+def harmed(rng, table, kind, habit, column, strength):
+    """A damaged copy of the table, and the damaged rows."""
+    table = {name: values.copy() for name, values in table.items()}
+    first, *deed = next(ways for name, columns, *ways in HABITS[kind] if name == habit and column in columns)
+    if not deed:
+        return first(rng, table, column, strength)
+    rows = first(rng, table, column, strength)
+    deed[0](rng, table, column, strength, rows)
     return table, rows

@@ -5,11 +5,11 @@ from dataclasses import dataclass
 import numpy as np
 from bench.rigs import RIGS
 
-from .habits import HABITS
+from .habits import HABITS, listed
 
 EACH = 16
 """Least sets of a kind; a kind has each of its habits equally often."""
-ROWS = (240, 400, 600, 320, 900, 500, 1500, 300)
+ROWS = (240, 300, 200, 360, 240, 450, 300, 900)
 HIDDEN = ("rig-friction", "rubber", "pressure-zero", "strand-friction")
 BESIDE = ("spikes", "shifted", "slip", "frozen", "clipped", "duplicated", "late", "gaps", "dropout", "stuck-bit")
 """Damage beside a hidden effect: that which leaves most of the data whole."""
@@ -44,20 +44,21 @@ def orders():
 
 
 def _damaged():
-    for number, (kind, habits) in enumerate(sorted(HABITS.items())):
+    for number, kind in enumerate(sorted(HABITS)):
+        habits = listed(kind)
         count = -(-EACH // len(habits)) * len(habits)
         rng = np.random.default_rng([7, number])
         strengths = (rng.permutation(count) + 0.5) / count
         rigs = rng.permutation(np.resize(RIGS, count))
         for i, (strength, rig) in enumerate(zip(strengths, rigs)):
-            name, column, _ = habits[i % len(habits)]
+            name, column = habits[i % len(habits)]
             yield Order(f"{kind}-{name}-{column}-{rig}-{i:02d}", kind, name, column, str(rig), ROWS[(i * 3 + number) % len(ROWS)], float(strength))
 
 
 def _hidden():
     for i in range(WITH_HIDDEN):
         family, kind = HIDDEN[i % len(HIDDEN)], BESIDE[i % len(BESIDE)]
-        name, column, _ = HABITS[kind][(i // len(BESIDE) * 2 + i) % len(HABITS[kind])]
+        name, column = listed(kind)[(i // len(BESIDE) * 2 + i) % len(listed(kind))]
         rigs = [rig for rig in RIGS if rig not in UNFIT[family]]
         rig = rigs[i // len(HIDDEN) % len(rigs)]
         strength = ((i * 7) % WITH_HIDDEN + 0.5) / WITH_HIDDEN
