@@ -122,7 +122,8 @@ def _tests(rng, order, seed):
 
 
 def _motion(rng, order, hose, rows):
-    most = 6.2e5 if hose.muscle.kind == "braided" else 3.2e5
+    # The regulator overshoots: three specimens have three chances to leave what the equilibria are known for.
+    most = 6.2e5 if hose.muscle.kind == "braided" else 2.9e5 if order.kind == "mislabelled" else 3.2e5
     return rigs.isometric(rng, hose, rows, most, False) if order.rig == "isometric" else getattr(rigs, order.rig)(rng, hose, rows, most)
 
 

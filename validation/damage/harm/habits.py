@@ -52,22 +52,15 @@ def everywhere(rng, table, column, strength):
     return np.arange(len(table["force"]))
 
 
-def single(rng, table, column, strength):
-    """Isolated rows, 0.3 to 2 %."""
-    return some(rng, table, rng.uniform(0.003, 0.02))
+def groups(least, most, shortest, longest):
+    """A pick of single rows, pairs or bursts: so many rows each, beginning at this share of all rows."""
 
+    def pick(rng, table, column, strength):
+        starts = some(rng, table, rng.uniform(least, most))
+        rows = np.unique(np.concatenate([start + np.arange(int(rng.integers(shortest, longest + 1))) for start in starts]))
+        return rows[rows < len(table["force"]) - 1]
 
-def paired(rng, table, column, strength):
-    """Two rows each."""
-    rows = some(rng, table, rng.uniform(0.003, 0.015))
-    return np.unique(np.r_[rows, rows + 1])
-
-
-def bursts(rng, table, column, strength):
-    """Four to nine rows each: a relay, a motor."""
-    starts = some(rng, table, rng.uniform(0.002, 0.006))
-    rows = np.unique(np.concatenate([start + np.arange(int(rng.integers(4, 10))) for start in starts]))
-    return rows[rows < len(table["force"]) - 1]
+    return pick
 
 
 def one_sweep(rng, table, column, strength):
@@ -85,24 +78,18 @@ def of_one_sweep(rng, table, column, strength):
     return rows[: max(round(between(0.05, 1.0, min(2.0 * strength, 1.0)) * len(rows)), 3)]
 
 
-def to_the_end(rng, table, column, strength):
-    """From some row on, to the end of the record."""
-    return np.arange(int(rng.uniform(0.15, 0.85) * len(table["force"])), len(table["force"]))
+def ending(pick, low, high):
+    """The last part of a pick, from some row between these shares of it on."""
 
+    def last(rng, table, column, strength):
+        rows = pick(rng, table, column, strength)
+        return rows[int(rng.uniform(low, high) * len(rows)) :]
 
-def to_the_end_of_the_sweep(rng, table, column, strength):
-    """The same, put right before the next sweep."""
-    rows = one_sweep(rng, table, column, strength)
-    return rows[int(rng.uniform(0.2, 0.8) * len(rows)) :]
-
-
-def a_while(low, high):
-    """A pick of neighbouring rows, this share of all, mild and severe."""
-    return lambda rng, table, column, strength: stretch(rng, table, between(low, high, strength))
+    return last
 
 
 def pieces(number, low, high):
-    """A pick of several such pieces."""
+    """A pick of pieces of neighbouring rows, each this share of all, mild and severe."""
     return lambda rng, table, column, strength: np.unique(
         np.concatenate([stretch(rng, table, between(low, high, strength)) for _ in range(number)])
     )
@@ -175,32 +162,14 @@ def bridge(rng, table, column, strength, rows):
         table[column][piece] = np.interp(piece, ends, table[column][ends])
 
 
-def zero(rng, table, column, strength, rows):
-    """Nothing is read."""
-    for name in channels(column):
-        table[name][rows] = 0.0
+def become(what):
+    """A deed that makes other readings of those of the rows."""
 
+    def deed(rng, table, column, strength, rows):
+        for name in channels(column):
+            table[name][rows] = what(rng, table[name][rows])
 
-def negate(rng, table, column, strength, rows):
-    """The sign is turned."""
-    table[column][rows] *= -1.0
-
-
-def reverse(rng, table, column, strength, rows):
-    """From the last to the first."""
-    for name in channels(column):
-        table[name][rows] = table[name][rows[::-1]]
-
-
-def roll(rng, table, column, strength, rows):
-    """The second half before the first."""
-    for name in channels(column):
-        table[name][rows] = np.roll(table[name][rows], len(rows) // 2)
-
-
-def sort(rng, table, column, strength, rows):
-    """Only this column was marked when the rows were sorted."""
-    table[column][rows] = np.sort(table[column][rows])
+    return deed
 
 
 def overwrite(rng, table, column, strength, rows):
@@ -215,33 +184,14 @@ def rename(rng, table, column, strength, rows):
     table["specimen"][rows] = table["specimen"][rows] % 3 + 1.0
 
 
-def lose_comma(rng, table, column, strength, rows):
-    """12,34 became 1234."""
-    table[column][rows] *= 10.0 ** rng.integers(1, 4)
-
-
-def move_comma(rng, table, column, strength, rows):
-    """The same in what was typed in, either way."""
-    table[column][rows] *= 10.0 ** rng.choice([-1, 1, 2])
-
-
 def other_unit(rng, table, column, strength, rows):
     """psi for bar, centimetres for millimetres, kilograms for newtons."""
     table[column][rows] *= UNITS[column][str(rng.choice(sorted(UNITS[column])))]
 
 
-def absolute(rng, table, column, strength, rows):
-    """Absolute pressures."""
-    table[column][rows] += 101325.0
-
-
 def supply(rng, table, column, strength, rows):
     """The sensor sits at the supply, before the leak."""
     table[column][rows] = table["supply"][rows]
-
-
-def nothing(rng, table, column, strength, rows):
-    """The readings are right."""
 
 
 # Habits that add, remove or find their own rows.
@@ -279,7 +229,7 @@ def sweep_twice(rng, table, column, strength):
 def exchange_words(rng, table, column, strength):
     """The words for loading and unloading are exchanged, in one sweep or in all."""
     rows = one_sweep(rng, table, column, strength) if strength < 0.5 else np.arange(len(table["force"]))
-    negate(rng, table, column, strength, rows)
+    table[column][rows] *= -1.0
     return table, rows
 
 
@@ -295,7 +245,7 @@ def turn_one_channel(rng, table, column, strength):
     """Loading beside unloading: one channel of a sweep, or of a third of it, runs backwards."""
     rows = one_sweep(rng, table, column, strength)
     rows = rows[: max(len(rows) // 3, 6)] if strength < 0.5 else rows
-    reverse(rng, table, column, strength, rows)
+    table[column][rows] = table[column][rows[::-1]]
     return table, rows
 
 
@@ -359,39 +309,56 @@ def stuck_bit(rng, table, column, strength):
 
 BOTH = ("force", "pressure")
 HABITS = {
-    "spikes": [("isolated", COLUMNS, single, hit), ("pairs", COLUMNS, paired, hit), ("bursts", COLUMNS, bursts, hit)],
+    "spikes": [
+        ("isolated", COLUMNS, groups(0.003, 0.02, 1, 1), hit),
+        ("pairs", COLUMNS, groups(0.003, 0.015, 2, 2), hit),
+        # A relay, a motor.
+        ("bursts", COLUMNS, groups(0.002, 0.006, 4, 9), hit),
+    ],
     "shifted": [("zero-of-a-sweep", COLUMNS, one_sweep, offset)],
-    "slip": [("to-the-end", COLUMNS, to_the_end, offset), ("to-the-end-of-the-sweep", COLUMNS, to_the_end_of_the_sweep, offset)],
-    "frozen": [("held", (*COLUMNS, "all"), a_while(0.01, 0.2), freeze), ("stutters", COLUMNS, pieces(4, 0.01, 0.06), freeze)],
+    "slip": [
+        ("to-the-end", COLUMNS, ending(everywhere, 0.15, 0.85), offset),
+        ("to-the-end-of-the-sweep", COLUMNS, ending(one_sweep, 0.2, 0.8), offset),
+    ],
+    "frozen": [("held", (*COLUMNS, "all"), pieces(1, 0.01, 0.2), freeze), ("stutters", COLUMNS, pieces(4, 0.01, 0.06), freeze)],
     "clipped": [("top", BOTH, clipped(True, False)), ("bottom", BOTH, clipped(False, False)), ("softly", BOTH, clipped(True, True))],
     "duplicated": [
         ("rows-twice", ("all",), rows_twice),
         ("sweep-twice", ("all",), sweep_twice),
-        ("block-over-another", ("all", "force"), a_while(0.02, 0.15), overwrite),
+        ("block-over-another", ("all", "force"), pieces(1, 0.02, 0.15), overwrite),
     ],
     "swapped": [
         ("labels", ("direction",), exchange_words),
-        ("backwards", ("all",), one_sweep, reverse),
+        ("backwards", ("all",), one_sweep, become(lambda rng, values: values[::-1])),
         ("one-channel-backwards", COLUMNS, turn_one_channel),
-        ("branches", ("all",), one_sweep, roll),
+        ("branches", ("all",), one_sweep, become(lambda rng, values: np.roll(values, len(values) // 2))),
     ],
     "mislabelled": [
-        ("block", ("specimen",), a_while(0.02, 0.2), rename),
+        ("block", ("specimen",), pieces(1, 0.02, 0.2), rename),
         ("whole-sweep", ("specimen",), of_a_specimen, rename),
         ("exchanged", ("specimen",), exchange_specimens),
     ],
     "late": [("by-samples", COLUMNS, by_samples), ("resampled", BOTH, resampled)],
     "gaps": [("lost", ("all",), lost), ("lost-without-a-trace", ("time",), lost), ("bridged", COLUMNS, pieces(3, 0.01, 0.06), bridge)],
-    "leak": [(name, ("pressure",), leaking, deed) for name, deed in (("seen", nothing), ("unseen", supply), ("unread", freeze))],
-    "unit": [("unit", COLUMNS, one_file, other_unit), ("absolute", ("pressure",), one_file, absolute)],
-    "sorted": [("with-times", ("all",), sorted_rows), ("without-times", ("time",), sorted_rows), ("one-column", COLUMNS, a_while(0.03, 0.5), sort)],
-    "flipped": [("sign", COLUMNS, of_one_sweep, negate)],
+    "leak": [
+        ("seen", ("pressure",), leaking, become(lambda rng, values: values)),
+        ("unseen", ("pressure",), leaking, supply),
+        ("unread", ("pressure",), leaking, freeze),
+    ],
+    "unit": [("unit", COLUMNS, one_file, other_unit), ("absolute", ("pressure",), one_file, become(lambda rng, values: values + 101325.0))],
+    "sorted": [
+        ("with-times", ("all",), sorted_rows),
+        ("without-times", ("time",), sorted_rows),
+        ("one-column", COLUMNS, pieces(1, 0.03, 0.5), become(lambda rng, values: np.sort(values))),
+    ],
+    "flipped": [("sign", COLUMNS, of_one_sweep, become(lambda rng, values: -values))],
     "decimals": [
-        ("comma-lost", COLUMNS, lines(0.003, 0.1), lose_comma),
-        ("comma-of-a-sweep", COLUMNS, one_sweep, move_comma),
+        # 12,34 became 1234: in some rows; in what was typed in, either way.
+        ("comma-lost", COLUMNS, lines(0.003, 0.1), become(lambda rng, values: values * 10.0 ** rng.integers(1, 4))),
+        ("comma-of-a-sweep", COLUMNS, one_sweep, become(lambda rng, values: values * 10.0 ** rng.choice([-1, 1, 2]))),
         ("thousands", ("force",), thousands),
     ],
-    "dropout": [("zeros", (*COLUMNS, "all"), loose, zero)],
+    "dropout": [("zeros", (*COLUMNS, "all"), loose, become(lambda rng, values: 0.0 * values))],
     "stuck-bit": [("bit", COLUMNS, stuck_bit)],
 }
 """Kind of damage -> habits: name, columns, and a pick with a deed, or a habit that does both."""
