@@ -154,6 +154,7 @@ def _named():
         ("another file", unit, {"refusal": "exit status 1: test-1.csv: the pressure has another unit"}, 0),
         ("a line of a file", unit, {"left_out": [{"why": "pressure: another unit?", "lines": "test-2.csv:2-60", "rows": 59}]}, 2),
         ("lines of another file", unit, {"left_out": [{"why": "pressure: another unit?", "lines": "test-1.csv:2-60", "rows": 59}]}, 0),
+        ("lines of a refusal", _truth(), {"refusal": "exit status 1: a spike of the force at line 40-41"}, 2),
         ("nothing", _truth(), {}, 0),
     ]
     for title, truth, answer, wanted in cases:

@@ -302,7 +302,8 @@ def stuck_bit(rng, table, column, strength):
     counts = np.floor((table[column] - low) / max(step, 1e-12)).astype(int)
     stuck = counts | bit if rng.random() < 0.5 else counts & ~bit
     rows = np.flatnonzero(stuck != counts)
-    rows = rows[rows >= rng.choice([0.0, 0.0, 0.4]) * len(counts)]
+    later = rows[rows >= rng.choice([0.0, 0.0, 0.4]) * len(counts)]
+    rows = later if len(later) else rows
     table[column][rows] += (stuck - counts)[rows] * step
     return table, rows
 

@@ -49,10 +49,14 @@ def complaints(answer):
         for run in entry["rows"]:
             lines.setdefault(run["file"], set()).update(range(run["first"], run["last"] + 1))
         found.append(Complaint(f"{entry['kind']}: {entry['says']}", lines))
-    found += [Complaint(f"{entry['kind']}: {entry['says']}") for entry in answer.get("findings", [])]
-    found += [Complaint(text) for text in [*answer.get("warnings", []), *answer.get("hints", [])]]
-    found += [Complaint(text) for text in (answer.get("jump"), answer.get("says"), answer.get("refusal")) if text]
-    return found
+    texts = [f"{entry['kind']}: {entry['says']}" for entry in answer.get("findings", [])]
+    texts += [*answer.get("warnings", []), *answer.get("hints", []), answer.get("jump"), answer.get("says"), answer.get("refusal")]
+    return found + [Complaint(text, _told(text)) for text in texts if text]
+
+
+def _told(text):
+    """Lines that stand in a sentence: "at line 162-201", "lines 3 and 4"."""
+    return _listed(" ".join(re.findall(r"\blines? ((?:\d+(?:-\d+)?(?:, | and )?)+)", text)))
 
 
 def _listed(text):
