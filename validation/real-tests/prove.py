@@ -13,11 +13,10 @@ import sys
 from pathlib import Path
 
 import bench  # noqa: F401
-from bench.scores import answers, tables
+from bench.scores import answers, into_page, tables
 
 HERE = Path(__file__).resolve().parent
 RUN = HERE.parent / "hidden-effects" / "run.py"
-MARKS = ("<!-- {} -->", "<!-- end of {} -->")
 
 
 def main():
@@ -46,7 +45,7 @@ def main():
     (out / "score.md").write_text(text + "\n", encoding="utf-8")
     print(text)
     if arguments.readme:
-        _into_readme("plain" if arguments.plain else "dialects", text)
+        into_page(HERE / "README.md", "plain" if arguments.plain else "dialects", text)
     return 1 if status or any(one.document is None for one in found) else 0
 
 
@@ -64,18 +63,6 @@ def _run(arguments, suite, out):
 
 def _call(words):
     return subprocess.call([sys.executable, *(str(word) for word in words)])
-
-
-def _into_readme(name, text):
-    """Replaces what stands between the markers of that name."""
-    file = HERE / "README.md"
-    content = file.read_text(encoding="utf-8")
-    first, last = (mark.format(name) for mark in MARKS)
-    before, _, rest = content.partition(first)
-    _, found, after = rest.partition(last)
-    if not found:
-        raise SystemExit(f"README.md has no markers {first} and {last}")
-    file.write_text(f"{before}{first}\n\n{text}\n\n{last}{after}", encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -44,7 +44,7 @@ def build(order, seed, out, plain=False):
     record = world.record(motion)
     missing = misfit(world, record)
     noise = _noise(rng, missing, record)
-    rig = instruments.draw(rng, noise, record.kept("force"), _slopes(hose, record))
+    rig = instruments.draw(rng, noise, record.kept("force"), slopes(hose, record))
     if order.noise:
         rig = replace(rig, law=order.noise[0], memory=order.noise[1])
     table = readings(rng, rig, hose, record)
@@ -164,7 +164,7 @@ def _noise(rng, missing, record):
     return float(np.clip(chosen, *NOISE))
 
 
-def _slopes(hose, record):
+def slopes(hose, record):
     """rms dF/dp [m^2] and dF/dl [N/m]."""
     pressure = np.maximum(record.kept("pressure"), hose.lowest)
     contraction = record.kept("contraction")

@@ -31,6 +31,7 @@ RIGHT = {
     "frame-compliance": {"frame"},
 }
 """The kinds that are right for what is hidden here."""
+MARKS = ("<!-- {} -->", "<!-- end of {} -->")
 STRENGTHS = ((0.0, 40.0, "12 to 40"), (40.0, 70.0, "40 to 70"), (70.0, math.inf, "above 70"))
 """Of what is hidden, in sigma."""
 
@@ -127,12 +128,24 @@ def rate(right, trials):
     return f"{right} of {trials}: {100.0 * right / trials:.0f} % [{100.0 * low:.0f}, {100.0 * high:.0f}]"
 
 
+def into_page(file, name, text):
+    """Replaces what stands in a page between the markers of that name."""
+    content = file.read_text(encoding="utf-8")
+    first, last = (mark.format(name) for mark in MARKS)
+    before, _, rest = content.partition(first)
+    _, found, after = rest.partition(last)
+    if not found:
+        raise SystemExit(f"{file.name} has no markers {first} and {last}")
+    file.write_text(f"{before}{first}\n\n{text}\n\n{last}{after}", encoding="utf-8")
+
+
 def tables(found, told):
     """The Markdown tables; `told` is the line that says what was run."""
     return "\n\n".join([told, _summary(found), _rates(found), _nulls(found), _times(found), _dialects(found), _refusals(found)])
 
 
-def _markdown(header, rows):
+def markdown(header, rows):
+    """A table."""
     lines = ["| " + " | ".join(header) + " |", "|" + "---|" * len(header)]
     return "\n".join(lines + ["| " + " | ".join(str(cell) for cell in row) + " |" for row in rows])
 
@@ -149,7 +162,7 @@ def _summary(found):
         ),
         ("of nulls, claimed", rate(sum(one.claimed for one in nulls), len(nulls))),
     ]
-    return _markdown(("measure", "value [Wilson's 95 % interval]"), rows)
+    return markdown(("measure", "value [Wilson's 95 % interval]"), rows)
 
 
 def _rates(found):
@@ -175,7 +188,7 @@ def _rates(found):
         "adequate or cannot tell",
         "no answer",
     )
-    return _markdown(header, rows)
+    return markdown(header, rows)
 
 
 def _nulls(found):
@@ -194,7 +207,7 @@ def _nulls(found):
                         sum(one.document is None for one in some),
                     )
                 )
-    return _markdown(("nothing hidden", "claimed", "a name", "unknown", "no answer"), rows)
+    return markdown(("nothing hidden", "claimed", "a name", "unknown", "no answer"), rows)
 
 
 def _times(found):
@@ -204,7 +217,7 @@ def _times(found):
         if some:
             span = f"{low} to {high}" if high < 10**9 else f"{low} and more"
             rows.append((span, len(some), f"{some[len(some) // 2]:.1f}", f"{some[-1]:.1f}"))
-    return _markdown(("rows", "answered", "median [s]", "longest [s]"), rows)
+    return markdown(("rows", "answered", "median [s]", "longest [s]"), rows)
 
 
 def _dialects(found):
@@ -213,7 +226,7 @@ def _dialects(found):
     for name in names:
         some = [one for one in found if one.truth["dialect"] == name]
         rows.append((f"`{name}`", len(some), sum(one.document is not None for one in some), sum(one.compared for one in some)))
-    return _markdown(("dialect", "tests", "`diagnose` answers", "`compare` answers"), rows)
+    return markdown(("dialect", "tests", "`diagnose` answers", "`compare` answers"), rows)
 
 
 def _refusals(found):
@@ -230,4 +243,4 @@ def _refusals(found):
     if not said:
         return "Every test has an answer."
     rows = sorted(((len(cases), f"{message}", f"`{cases[0]}`") for message, cases in said.items()), reverse=True)
-    return _markdown(("tests", "what was said where there is no answer", "first"), rows)
+    return markdown(("tests", "what was said where there is no answer", "first"), rows)
