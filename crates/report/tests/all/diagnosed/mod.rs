@@ -46,6 +46,7 @@ pub(crate) fn missing(mut comparison: Comparison) -> Diagnosis {
             unseen_below_n: Some(0.32),
             hints: vec!["grows with the pressure".to_owned()],
             jump: None,
+            event: None,
             surface: surface(),
         },
         geometry: Geometry::default(),
