@@ -16,15 +16,18 @@ use sample::Recipe;
 fn main() -> Result<(), Box<dyn Error>> {
     let into = PathBuf::from(std::env::args().nth(1).ok_or("name the folder to write to")?);
     let rich = sample::rich(&Recipe::usual());
-    for (name, mut diagnosis, recipe) in [
+    let usual = [
         ("missing", diagnosed::missing(rich.clone()), Some(Recipe::usual())),
         ("adequate", diagnosed::adequate(rich.clone()), Some(Recipe::usual())),
         ("unknown", diagnosed::unknown(rich), Some(Recipe::usual())),
+    ];
+    let odd = [
         ("cannot-tell", diagnosed::cannot_tell(sample::bare()), Some(Recipe::bare())),
         ("empty", diagnosed::cannot_tell(sample::empty()), None),
         ("crowded", diagnosed::missing(sample::crowded()), Some(Recipe::crowded())),
         ("hostile", diagnosed::missing(sample::hostile()), Some(Recipe::hostile())),
-    ] {
+    ];
+    for (name, mut diagnosis, recipe) in usual.into_iter().chain(odd) {
         diagnosis.rows = recipe.map(|recipe| sample::rows(&recipe, &diagnosis.comparison));
         let folder = into.join(name);
         std::fs::create_dir_all(&folder)?;
