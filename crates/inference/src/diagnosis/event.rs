@@ -49,8 +49,8 @@ fn jump(found: &Findings<'_>, data: &Data, groups: &[Vec<usize>], without: Witho
     let own = |other: &usize| data.specimen_of(*other) == data.specimen_of(row);
     let sides: [Vec<usize>; 2] = [(0..row).filter(own).collect(), (row..data.len()).filter(own).collect()];
     let [before, after] = [without(&sides[1]), without(&sides[0])];
-    let claimed = found.families();
-    if !claimed.is_empty() && claimed.iter().all(|family| is_on_both([&before, &after], family)) {
+    let claimed = found.claims();
+    if !claimed.is_empty() && claimed.iter().all(|claim| is_on_both([&before, &after], *claim)) {
         return None;
     }
     Some(format!(
@@ -63,9 +63,9 @@ fn jump(found: &Findings<'_>, data: &Data, groups: &[Vec<usize>], without: Witho
     ))
 }
 
-/// Whether a family is named on both sides of a jump, or on one of them if the other can't tell.
-fn is_on_both(sides: [&Option<Diagnosis>; 2], family: &str) -> bool {
-    let on = |side: &Option<Diagnosis>| side.as_ref().is_some_and(|found| names(found).contains(family));
+/// Whether an effect may be what is named on both sides of a jump, or on one of them if the other can't tell.
+fn is_on_both(sides: [&Option<Diagnosis>; 2], claim: Claim<'_>) -> bool {
+    let on = |side: &Option<Diagnosis>| side.as_ref().is_some_and(|found| names(found, claim));
     let silent =
         |side: &Option<Diagnosis>| side.as_ref().is_none_or(|found| found.verdict == Verdict::CannotTell);
     sides.iter().any(|side| on(side)) && sides.iter().all(|side| on(side) || silent(side))
@@ -77,24 +77,26 @@ fn odd(found: &Findings<'_>, data: &Data, groups: &[Vec<usize>], without: Withou
     let stretch = |row: usize| row * STRETCHES / data.len();
     let of: [&dyn Fn(usize) -> usize; 3] = [&file, &sweep, &stretch];
     let mut tried = BTreeSet::new();
-    of.into_iter().find_map(|part| {
+    let few = of.into_iter().filter_map(|part| {
         let places = stand_out(found, groups, part)?;
-        let (odd, others): (Vec<usize>, Vec<usize>) =
-            (0..data.len()).partition(|row| places.contains(&part(*row)));
-        if !tried.insert(odd.clone()) {
+        Some((0..data.len()).filter(|row| places.contains(&part(*row))).collect::<Vec<usize>>())
+    });
+    few.chain(sides(found, data, groups)).find_map(|odd| {
+        let is_odd: BTreeSet<usize> = odd.iter().copied().collect();
+        if !is_seen(found, groups, |row| !is_odd.contains(&row)) || !tried.insert(odd.clone()) {
             return None;
         }
         let rest = without(&odd)?;
-        let claimed = found.families();
         let denied = match rest.verdict {
             Verdict::Adequate => true,
-            Verdict::Missing => !claimed.iter().any(|family| names(&rest).contains(family)),
+            Verdict::Missing => !found.claims().iter().any(|claim| names(&rest, *claim)),
             Verdict::Unknown | Verdict::CannotTell => false,
         };
         denied.then(|| {
+            let others: Vec<usize> = (0..data.len()).filter(|row| !is_odd.contains(row)).collect();
             format!(
-                "some rows ask for something that the others deny: without line {} {} (line {}). See what happened there: a sensor zeroed anew, reversed or held, \
-                 another unit, another specimen",
+                "some rows ask for something that the others deny: without line {} {} (line {}). See what happened there: a fitting that slipped, a sensor zeroed \
+                 anew, reversed or held, another unit, another specimen",
                 lines(data, &odd),
                 said(Some(&rest)),
                 lines(data, &others),
@@ -103,36 +105,52 @@ fn odd(found: &Findings<'_>, data: &Data, groups: &[Vec<usize>], without: Withou
     })
 }
 
-/// The parts of the data whose misfit of the base stands far out, if what is named would have shown in the
-/// others as well.
+/// The rows behind the clearest jump in the misfit of the base, and those before it: what stays after an event
+/// may be most of a record.
+fn sides(found: &Findings<'_>, data: &Data, groups: &[Vec<usize>]) -> Vec<Vec<usize>> {
+    let jump = found.search.stages.first().and_then(|base| base.linear.jump(found.context));
+    let Some(row) = jump.and_then(|jump| groups.get(jump.row)?.first().copied()) else { return Vec::new() };
+    let own = |other: &usize| data.specimen_of(*other) == data.specimen_of(row);
+    vec![(row..data.len()).filter(own).collect(), (0..row).filter(own).collect()]
+}
+
+/// Whether what is named would show in these rows of the files, or nothing is named.
+fn is_seen(found: &Findings<'_>, groups: &[Vec<usize>], is_kept: impl Fn(usize) -> bool) -> bool {
+    let Some(base) = found.search.stages.first() else { return false };
+    let both = base.linear.white.iter().zip(&found.last().linear.white);
+    let kept = groups.iter().zip(both).filter(|(group, _)| group.first().is_some_and(|row| is_kept(*row)));
+    let expected: f64 = kept.map(|(_, (base, last))| (base - last).powi(2)).sum();
+    expected > EXPECTED || found.claims().is_empty()
+}
+
+/// The few parts of the data whose misfit of the base stands far out.
 fn stand_out(
     found: &Findings<'_>,
     groups: &[Vec<usize>],
     part: &dyn Fn(usize) -> usize,
 ) -> Option<BTreeSet<usize>> {
-    let (base, last) = (&found.search.stages.first()?.linear.white, &found.last().linear.white);
-    // Squares of the misfit, of what is explained of it, and rows, part by part.
-    let mut sums: BTreeMap<usize, [f64; 3]> = BTreeMap::new();
-    for ((group, base), last) in groups.iter().zip(base).zip(last) {
+    // Squares of the misfit, and rows, part by part.
+    let mut sums: BTreeMap<usize, [f64; 2]> = BTreeMap::new();
+    for (group, misfit) in groups.iter().zip(&found.search.stages.first()?.linear.white) {
         let sum = sums.entry(part(*group.first()?)).or_default();
-        let more = [base * base, (base - last).powi(2), 1.0];
-        sum.iter_mut().zip(more).for_each(|(sum, more)| *sum += more);
+        *sum = [sum[0] + misfit * misfit, sum[1] + 1.0];
     }
     if sums.len() < FEWEST {
         return None;
     }
-    let mean = |sum: &[f64; 3]| sum[0] / sum[2];
-    let usual = median(&mut sums.values().map(mean).collect::<Vec<_>>()).max(1.0);
+    let mean = |[square, rows]: [f64; 2]| square / rows;
+    let usual = median(&mut sums.values().copied().map(mean).collect::<Vec<_>>()).max(1.0);
     let odd: BTreeSet<usize> =
-        sums.iter().filter(|(_, sum)| mean(sum) > ODD * usual).map(|(place, _)| *place).collect();
-    let expected: f64 = sums.iter().filter(|(place, _)| !odd.contains(place)).map(|(_, sum)| sum[1]).sum();
-    let few = !odd.is_empty() && odd.len() <= (sums.len() / ONE_IN).max(1);
-    (few && (expected > EXPECTED || found.families().is_empty())).then_some(odd)
+        sums.iter().filter(|(_, sum)| mean(**sum) > ODD * usual).map(|(place, _)| *place).collect();
+    (!odd.is_empty() && odd.len() <= (sums.len() / ONE_IN).max(1)).then_some(odd)
 }
 
-/// Families that are named.
-fn names(found: &Diagnosis) -> BTreeSet<&str> {
-    found.missing.iter().map(|missing| missing.family.as_str()).collect()
+/// An effect that is claimed, and its family.
+pub(crate) type Claim<'a> = (&'a str, &'a str);
+
+/// Whether a diagnosis names the family of an effect, or has the effect in a class.
+fn names(found: &Diagnosis, (effect, family): Claim<'_>) -> bool {
+    found.missing.iter().any(|one| one.family == family || one.class.iter().any(|name| name == effect))
 }
 
 /// A verdict in a few words.

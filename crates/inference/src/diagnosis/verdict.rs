@@ -255,11 +255,12 @@ impl Findings<'_> {
         }
     }
 
-    /// Families of the effects that are claimed.
-    pub(crate) fn families(&self) -> Vec<&str> {
+    /// The effects that are claimed, with their families.
+    pub(crate) fn claims(&self) -> Vec<(&str, &str)> {
         let claimed = self.verdict().2;
         let is_claimed = |effect: &&Arc<dyn Effect>| claimed.iter().any(|name| name == effect.card().name);
-        self.last().added.iter().filter(is_claimed).map(|effect| effect.card().family).collect()
+        let effects = self.last().added.iter().filter(is_claimed);
+        effects.map(|effect| (effect.card().name, effect.card().family)).collect()
     }
 
     /// A jump and its location, in words.
