@@ -363,7 +363,7 @@ CONFIG = {
             {"Force laws": "laws.md"},
             {"JSON documents": "json.md"},
         ]},
-        {"How right, how fast": [{"Verification": "verification.md"}, {"Speed": "speed.md"}, {"Where each figure comes from": "figures.md"}]},
+        {"How right, how fast": [{"Verification": "verification.md"}, {"Hardening": "hardening.md"}, {"Speed": "speed.md"}, {"Where each figure comes from": "figures.md"}]},
         {"Contributing": [{"How to contribute": "repository/CONTRIBUTING.md"}, {"Recipes": "contributing-recipes.md"}, {"Architecture": "architecture.md"}]},
     ],
 }
