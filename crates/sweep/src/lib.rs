@@ -7,6 +7,7 @@ mod family;
 mod family_error;
 mod file;
 mod folder;
+mod holds;
 mod output;
 mod permutation;
 pub mod plan;
