@@ -5,22 +5,22 @@ from dataclasses import dataclass, field
 
 KINDS = {
     "clipped": r"clip|extreme|end of its range|satur|largest (value|reading)",
-    "decimals": r"decimal|comma|spike|far from|impossible|factor|unit|contradict|larger than",
-    "dropout": r"zero|drop|spike|far from|frozen|repeat|no pressure|slack",
+    "decimals": r"decimal|comma|spike|far from|impossible|one factor|unit|larger than",
+    "dropout": r"zeros|drop|spike|far from|frozen|repeats",
     "duplicated": r"duplicat|twice|equal|copied|same (as|values)",
-    "flipped": r"sign|negative|push|direction|spike|far from",
-    "frozen": r"frozen|froze|stuck|repeats?\b|stays",
+    "flipped": r"sign|negative|push|spike|far from",
+    "frozen": r"frozen|froze|stuck|repeats|stays",
     "gaps": r"gap|pause|missing|lost|straight|interpol",
-    "late": r"\blate\b|delay|lag|ahead|resampl|held|apart in time",
-    "leak": r"leak|sag|frozen|held|regulator|pressure (lies|is) off",
-    "mislabelled": r"specimen|label",
+    "late": r"\blate\b|delay|lag|ahead|resampl|apart in time",
+    "leak": r"leak|sag|frozen|supply|pressure (lies|is) off",
+    "mislabelled": r"specimen",
     "shifted": r"shifted|lies? [^.]*off|zeroed",
-    "slip": r"jump|slip|shifted|step",
-    "sorted": r"sort|order|shuffl|run backwards|times",
+    "slip": r"jump|slip|shifted|\ba step\b",
+    "sorted": r"\bsort|shuffl|goes back|backwards|out of order",
     "spikes": r"spike|far from|burst",
     "stuck-bit": r"\bbits?\b|coarse|steps of|quanti",
-    "swapped": r"direction|backward|revers|branch|contradict",
-    "unit": r"unit|psi|kPa|lbf|pounds|kilogram|kgf|inch|\bcm\b|absolute|factor|scale",
+    "swapped": r"direction|backward|revers|branch",
+    "unit": r"unit|psi|kPa|lbf|pounds|kilogram|kgf|inch|\bcm\b|absolute|one factor",
 }
 """Words that count as the kind of damage. A spike is a fair word for a lost comma, and frozen for a block of zeros."""
 COLUMNS = {"force": r"force|load cell", "pressure": r"pressure|absolute|psi", "length": r"length|motion|displacement|contraction|clamp|stroke"}
@@ -50,7 +50,10 @@ def complaints(answer):
             lines.setdefault(run["file"], set()).update(range(run["first"], run["last"] + 1))
         found.append(Complaint(f"{entry['kind']}: {entry['says']}", lines))
     texts = [f"{entry['kind']}: {entry['says']}" for entry in answer.get("findings", [])]
-    texts += [*answer.get("warnings", []), *answer.get("hints", []), answer.get("jump"), answer.get("says"), answer.get("refusal")]
+    texts += [*answer.get("warnings", []), *answer.get("hints", []), answer.get("jump"), answer.get("refusal")]
+    # What is said of effects is no complaint.
+    texts = [text for text in texts if not (text or "").startswith("the nearest of the effects")]
+    texts += [answer["says"]] if answer.get("verdict") in ("cannot-tell", "unknown") else []
     return found + [Complaint(text, _told(text)) for text in texts if text]
 
 
@@ -76,10 +79,9 @@ def named(truth, answer):
             continue
         column = COLUMNS.get(truth["column"])
         kind = bool(re.search(KINDS[truth["kind"]], one.text, re.IGNORECASE))
-        best = max(best, 1 + (kind and (column is None or bool(re.search(column, one.text, re.IGNORECASE)))))
-        # A word alone, of no row, is right where every row is damaged; another word is then no hint at all.
-        if best == 1 and not one.lines and not kind:
-            best = 0
+        # Where every row is damaged any complaint is of damaged rows: only the right word counts.
+        if kind or not _everywhere(truth):
+            best = max(best, 1 + (kind and (column is None or bool(re.search(column, one.text, re.IGNORECASE)))))
     return best
 
 
@@ -97,6 +99,10 @@ def _damaged(truth):
     return {file: {line for first, last in runs for line in range(first, last + 1)} for file, runs in truth["lines"].items()}
 
 
+def _everywhere(truth):
+    return sum(len(lines) for lines in _damaged(truth).values()) >= ALL * truth["rows"]
+
+
 def _by_name(truth, lines):
     files = list(truth["lines"])
     return {file if isinstance(file, str) and file in files else files[int(file) if str(file).isdigit() else 0]: rows for file, rows in lines.items()}
@@ -105,8 +111,7 @@ def _by_name(truth, lines):
 def _points(truth, one):
     """Whether at least half of what a complaint names is damaged: lines, a sweep, a file, or the second of a jump."""
     damaged = _damaged(truth)
-    count = sum(len(lines) for lines in damaged.values())
-    if count >= ALL * truth["rows"]:
+    if _everywhere(truth):
         return True
     if one.lines:
         near = {file: {line + k for line in lines for k in range(-NEAR, NEAR + 1)} for file, lines in damaged.items()}

@@ -123,11 +123,13 @@ def _verdicts(damaged, whole):
 
 
 def _naming(damaged):
+    """What there is to name: not a leak that the sensor shows."""
+    damaged = [one for one in damaged if one.truth["habit"] != "seen" and any(one.truth["lines"].values())]
     rows = []
     for title, group in _groups(damaged):
         large = [one for one in group if one.truth["sigmas"] >= 5.0]
-        shares = sorted(one.covers for one in group if one.truth["kind"] != "leak")
-        middle = f"{100.0 * shares[len(shares) // 2]:.0f} %" if shares else ""
+        shares = sorted(one.covers for one in group) or [0.0]
+        middle = f"{100.0 * shares[len(shares) // 2]:.0f} %"
         rows.append(
             (
                 title,
