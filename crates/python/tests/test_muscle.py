@@ -217,7 +217,9 @@ def test_effects_that_a_muscle_states():
 
 
 def test_a_name_states_no_effect():
-    muscle = bulge.Muscle(name="two\n[effects.hysteresis]\nlines", kind="pleated", length=0.11, radius=0.016, fibres=40)
+    with pytest.raises(bulge.InputError, match="name"):
+        bulge.Muscle(name="two\n[effects.hysteresis]\nlines", kind="pleated", length=0.11, radius=0.016, fibres=40)
+    muscle = bulge.Muscle(name='[effects.hysteresis] "one" line', kind="pleated", length=0.11, radius=0.016, fibres=40)
     assert muscle.effects == [] and bulge.Muscle.from_toml(muscle.to_toml()).name == muscle.name
 
 
