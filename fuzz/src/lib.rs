@@ -28,9 +28,11 @@ pub const TARGETS: &[Target] = &[
     Target { name: "muscles", run: readers::muscles },
     Target { name: "effects", run: readers::effects },
     Target { name: "formulas", run: readers::formulas },
+    #[cfg(feature = "sweeps")]
     Target { name: "sweeps", run: readers::sweeps },
     #[cfg(feature = "decisions")]
     Target { name: "protocols", run: readers::protocols },
+    #[cfg(feature = "sweeps")]
     Target { name: "joints", run: readers::joints },
     #[cfg(feature = "meshes")]
     Target { name: "cases", run: readers::cases },

@@ -1,5 +1,6 @@
 //! Every reader of files.
 
+#[cfg(feature = "sweeps")]
 use bulge_design::joint::{Checks, Joint};
 use bulge_effects::expression::{Expression, SHAPE_VARIABLES, VARIABLES};
 use bulge_effects::user;
@@ -8,15 +9,17 @@ use bulge_inference::{Block, Protocol};
 use bulge_measurements::{Data, MeasurementError, ReadOptions};
 #[cfg(feature = "meshes")]
 use bulge_membrane::{Mesh, case::Case};
-use bulge_muscles::{
-    Dimension, FileError, Force, Length, Muscle, PRESETS, Parameter, Pressure, from_toml, preset, to_toml,
-    units,
-};
+use bulge_muscles::{Dimension, FileError, Force, Length, Parameter, Pressure, from_toml, to_toml, units};
+#[cfg(any(feature = "sweeps", feature = "decisions"))]
+use bulge_muscles::{Muscle, PRESETS, preset};
 use bulge_numerics::{Dual, Real};
+#[cfg(feature = "sweeps")]
 use bulge_sweep::Plan;
 use bulge_table::{Table, TableError, crc64};
 use std::io::{Cursor, Write};
-use std::path::{Path, PathBuf};
+#[cfg(any(feature = "sweeps", feature = "meshes"))]
+use std::path::Path;
+use std::path::PathBuf;
 use std::sync::OnceLock;
 use zip::write::{SimpleFileOptions, ZipWriter};
 
@@ -153,16 +156,19 @@ pub(crate) fn formulas(bytes: &[u8]) {
     }
 }
 
+#[cfg(any(feature = "sweeps", feature = "decisions"))]
 fn muscle() -> Option<&'static Muscle> {
     static MUSCLE: OnceLock<Option<Muscle>> = OnceLock::new();
     MUSCLE.get_or_init(|| preset(PRESETS[0].name).ok()).as_ref()
 }
 
 /// Where muscles and meshes that a file names are looked up: nowhere.
+#[cfg(any(feature = "sweeps", feature = "meshes"))]
 fn nowhere() -> &'static Path {
     Path::new("/nonexistent/folder")
 }
 
+#[cfg(feature = "sweeps")]
 pub(crate) fn sweeps(bytes: &[u8]) {
     let Some(muscle) = muscle() else { return };
     text(bytes, |text| {
@@ -191,6 +197,7 @@ pub(crate) fn protocols(bytes: &[u8]) {
     });
 }
 
+#[cfg(feature = "sweeps")]
 pub(crate) fn joints(bytes: &[u8]) {
     text(bytes, |text| {
         Joint::from_toml(text, "any.toml", Some(nowhere()), Checks::Linkage, |_| Ok(())).map(|_| ())
