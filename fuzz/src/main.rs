@@ -1,5 +1,4 @@
-//! The fuzzer: `bulge-fuzz FOLDER ...` as libFuzzer takes it, with the target in `BULGE_FUZZ_TARGET`; `list` lists
-//! them.
+//! The fuzzer: `bulge-fuzz FOLDER ...` as libFuzzer takes it, with the target in `BULGE_FUZZ_TARGET`.
 
 #![no_main]
 
@@ -13,10 +12,6 @@ fn wanted() -> &'static Target {
         let name = std::env::var("BULGE_FUZZ_TARGET").unwrap_or_default();
         target(&name).unwrap_or_else(|| {
             let names: Vec<_> = TARGETS.iter().map(|target| target.name).collect();
-            if name == "list" {
-                println!("{}", names.join(" "));
-                std::process::exit(0);
-            }
             eprintln!("there is no target `{name}`: set BULGE_FUZZ_TARGET to one of {}", names.join(", "));
             std::process::exit(2);
         })
