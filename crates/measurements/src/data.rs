@@ -41,6 +41,8 @@ use std::sync::Arc;
 pub struct Data {
     columns: Arc<Columns>,
     files: Vec<SourceFile>,
+    /// Unpressurised length \[m\] from which the displacements of each file count, if it has displacements.
+    displaced_from_m: Vec<Option<f64>>,
     lines: Vec<u32>,
     specimens: Vec<String>,
     /// Unpressurised length of each specimen \[m\] if it differs from the muscle's; empty if none differs.
@@ -128,6 +130,7 @@ impl Data {
         Self {
             columns: Arc::new(source.table.columns),
             files: vec![source.file],
+            displaced_from_m: vec![source.table.displaced_from_m],
             lines: source.table.lines,
             reading: source.table.reading,
             specimens: Vec::new(),
@@ -150,6 +153,7 @@ impl Data {
         self.lines.extend(source.table.lines);
         self.reading.append(source.table.reading);
         self.files.push(source.file);
+        self.displaced_from_m.push(source.table.displaced_from_m);
         Ok(())
     }
 
@@ -233,7 +237,7 @@ impl Data {
     }
 
     /// The data with unpressurised lengths for some specimens \[m\]. A length `l0` in other methods is then
-    /// that of the remaining specimens.
+    /// that of the remaining specimens. Displacements count from the length of their own specimen.
     ///
     /// ```
     /// use bulge_measurements::Data;
@@ -244,7 +248,21 @@ impl Data {
     /// ```
     #[must_use]
     pub fn with_lengths(mut self, of: impl Fn(&str) -> Option<f64>) -> Self {
-        self.lengths = self.specimens.iter().map(|name| of(name)).collect();
+        let lengths: Vec<Option<f64>> = self.specimens.iter().map(|name| of(name)).collect();
+        let shift = |row: usize| {
+            let zero = (*self.displaced_from_m.get(self.line(row).0)?)?;
+            let own = lengths.get(self.specimen_of(row) as usize).copied().flatten().unwrap_or(zero);
+            Some(own - self.length_of(self.specimen_of(row), zero)).filter(|shift| *shift != 0.0)
+        };
+        let shifts: Vec<(usize, f64)> = (0..self.len()).filter_map(|row| Some((row, shift(row)?))).collect();
+        if !shifts.is_empty()
+            && let Trace::Length(values) = &mut Arc::make_mut(&mut self.columns).motion
+        {
+            for (row, shift) in shifts {
+                values[row] += shift;
+            }
+        }
+        self.lengths = lengths;
         self
     }
 

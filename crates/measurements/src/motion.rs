@@ -13,21 +13,22 @@ const LENGTHS: [f64; 2] = [0.4, 1.6];
 /// Largest difference between a contraction and the one that follows from the length.
 const SAME: f64 = 5e-3;
 
-/// Leaves one motion among the columns; `is_good` marks the rows that count.
+/// Leaves one motion among the columns; `is_good` marks the rows that count. Returns the length \[m\] from which
+/// displacements count, if there are any.
 pub(crate) fn settle(
     file: &str,
     slots: &mut Vec<Slot>,
     is_good: &[bool],
     options: &ReadOptions,
     reading: &mut Reading,
-) -> Result<(), MeasurementError> {
+) -> Result<Option<f64>, MeasurementError> {
     if let Some(place) = place_of(slots, Field::Displacement) {
         return displacement(file, slots, place, is_good, options, reading);
     }
     let (Some(length), Some(contraction)) =
         (place_of(slots, Field::Length), place_of(slots, Field::Contraction))
     else {
-        return Ok(());
+        return Ok(None);
     };
     let pairs: Vec<[f64; 2]> =
         rows(is_good).map(|row| [slots[length].numbers()[row], slots[contraction].numbers()[row]]).collect();
@@ -38,7 +39,7 @@ pub(crate) fn settle(
     let text = slots[contraction].heading.text.clone();
     note(reading, &text, None, "ignored: it follows from the length");
     slots.remove(contraction);
-    Ok(())
+    Ok(None)
 }
 
 fn rows(is_good: &[bool]) -> impl Iterator<Item = usize> + Clone + '_ {
@@ -64,7 +65,7 @@ fn displacement(
     is_good: &[bool],
     options: &ReadOptions,
     reading: &mut Reading,
-) -> Result<(), MeasurementError> {
+) -> Result<Option<f64>, MeasurementError> {
     let heading = slots[place].heading.clone();
     let Some(l0) = options.l0_m.filter(|l0| l0.is_finite() && *l0 > 0.0) else {
         let what = format!(
@@ -81,7 +82,7 @@ fn displacement(
         slots[place].become_column(Field::Length, |value| value);
         let says = "taken for the length itself: its readings are about as long as the muscle";
         note(reading, &heading.text, Some("length"), says);
-        return Ok(());
+        return Ok(None);
     }
     let sign = if heading.is_settled {
         Sign { shortens: true, why: "as stated" }
@@ -99,7 +100,7 @@ fn displacement(
         sign.why
     );
     note(reading, &heading.text, Some("displacement"), &says);
-    Ok(())
+    Ok(Some(l0))
 }
 
 /// The sign of a displacement, and the reason for it.

@@ -110,8 +110,11 @@ fn sort(
     }
     order.sort_by(|a, b| time[*a].total_cmp(&time[*b]));
     let shares = shares(columns, &as_read, order);
-    let mean = shares.iter().map(|(_, share)| share).sum::<f64>() / shares.len().max(1) as f64;
-    if mean <= SMOOTHER {
+    // A spreadsheet may have sorted the rows by one of the readings, which is smoothest then.
+    let others = shares.iter().filter(|(_, share)| share.is_finite());
+    let others: Vec<f64> = others.map(|(_, share)| *share).collect();
+    let mean = others.iter().sum::<f64>() / others.len().max(1) as f64;
+    if !others.is_empty() && mean <= SMOOTHER {
         return Ok(order.len());
     }
     order.copy_from_slice(&as_read);
@@ -119,8 +122,11 @@ fn sort(
         return Ok(0);
     }
     let backward: Vec<usize> = as_read.windows(2).filter(|p| time[p[1]] < time[p[0]]).map(|p| p[1]).collect();
-    let why: Vec<String> =
-        shares.iter().map(|(name, share)| format!("{name} {share:.1} times as far")).collect();
+    let why: Vec<String> = shares
+        .iter()
+        .filter(|(_, share)| share.is_finite())
+        .map(|(name, share)| format!("{name} {share:.1} times as far"))
+        .collect();
     let what = format!(
         "the time goes back at {} of {} rows, and sorted by time the readings jump ({}): sort the rows as they were measured, number the runs in a column `sweep`, or leave out the column `time` if the rows are a static map",
         backward.len(),
@@ -131,7 +137,7 @@ fn sort(
 }
 
 /// Change of the readings from row to row in one order relative to another. Rows that are neighbours in both
-/// orders don't count.
+/// orders don't count. Infinite for a reading by which the rows were sorted before.
 fn shares(columns: &Columns, before: &[usize], after: &[usize]) -> Vec<(&'static str, f64)> {
     let start = before[0];
     let mut place = vec![0; after.len()];
@@ -148,7 +154,11 @@ fn shares(columns: &Columns, before: &[usize], after: &[usize]) -> Vec<(&'static
     let share = |(name, values): &(&'static str, &[f64])| {
         let old = way(values, before, &|a, b| place[b - start] != place[a - start] + 1);
         let new = way(values, after, &|a, b| b != a + 1);
-        (old > 0.0 || new > 0.0).then(|| (*name, new / old.max(f64::MIN_POSITIVE)))
+        let is_sorted =
+            |up: f64| before.windows(2).all(|pair| up * (values[pair[1]] - values[pair[0]]) >= 0.0);
+        let share =
+            if is_sorted(1.0) || is_sorted(-1.0) { f64::INFINITY } else { new / old.max(f64::MIN_POSITIVE) };
+        (old > 0.0 || new > 0.0).then_some((*name, share))
     };
     readings.iter().filter_map(share).collect()
 }

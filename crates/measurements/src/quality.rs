@@ -2,6 +2,7 @@
 //! changed.
 
 mod clipping;
+mod copied;
 mod design;
 mod drift;
 mod frozen;
@@ -154,6 +155,7 @@ impl Data {
             quantisation::find,
             clipping::find,
             frozen::find,
+            copied::find,
             spikes::find,
             slack::find,
             drift::find,
@@ -174,33 +176,48 @@ pub struct Disturbance {
 }
 
 impl Data {
-    /// Rows with spikes, frozen or clipped readings, by column. In a static map they can't be detected.
+    /// Rows with impossible or frozen readings; and with spikes or clipped readings, by column, which can't be
+    /// detected in a static map.
     #[must_use]
     pub fn disturbed(&self) -> Vec<Disturbance> {
-        if self.is_empty() || !self.is_path() {
+        if self.is_empty() {
             return Vec::new();
         }
         let options = QualityOptions::default();
         let gate = Gate::new(self, &options);
+        let impossible = values::rows(&gate).map(|(rows, why)| Disturbance { rows, why });
         let named = |what: &'static str| {
             move |(name, rows): (&str, Vec<usize>)| Disturbance {
                 rows,
                 why: format!("{what}: the {name} {}", of(what)),
             }
         };
-        let found = spikes::in_columns(&gate).into_iter().map(named("spike"));
-        let clipped = clipping::in_columns(&gate).into_iter().map(named("clipped"));
         let frozen = frozen::rows(&gate);
         let all = Disturbance {
             rows: frozen.all,
             why: "frozen: pressure, motion and force repeat the row before to the last digit".to_owned(),
         };
-        let force = Disturbance {
-            rows: frozen.force,
-            why: "frozen: the force repeats the row before to the last digit while the muscle moved on"
-                .to_owned(),
-        };
-        found.chain(clipped).chain([all, force]).filter(|found| !found.rows.is_empty()).collect()
+        let alone = frozen
+            .alone
+            .into_iter()
+            .map(|(name, how, rows)| Disturbance { rows, why: format!("frozen: the {name} {}", how.says()) });
+        let mut found: Vec<Disturbance> = impossible.collect();
+        if self.is_path() {
+            found.extend(spikes::in_columns(&gate).into_iter().map(named("spike")));
+            found.extend(clipping::in_columns(&gate).into_iter().map(named("clipped")));
+        }
+        found.push(all);
+        found.extend(alone);
+        let copied = copied::rows(&gate);
+        found.push(Disturbance { rows: copied.all, why: format!("copied: {}", copied::ALL) });
+        found.extend(
+            copied.alone.into_iter().map(|(name, rows)| Disturbance {
+                rows,
+                why: format!("copied: the {name} {}", copied::ALONE),
+            }),
+        );
+        found.retain(|found| !found.rows.is_empty());
+        found
     }
 }
 

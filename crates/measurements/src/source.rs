@@ -143,7 +143,12 @@ impl Source {
         columns.cycle.iter().flatten().for_each(|cycle| hash.update(cycle.to_le_bytes()));
         columns.direction.iter().flatten().for_each(|direction| hash.update(direction.to_le_bytes()));
         let last = u32::try_from(columns.len()).unwrap_or(u32::MAX);
-        let table = Table { columns, lines: (1..=last).collect(), reading: Reading::default() };
+        let table = Table {
+            columns,
+            lines: (1..=last).collect(),
+            reading: Reading::default(),
+            displaced_from_m: None,
+        };
         Ok(Self::new(name, hexadecimal(&hash.finalize()), table))
     }
 

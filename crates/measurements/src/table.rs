@@ -19,6 +19,8 @@ pub(crate) struct Table {
     pub(crate) columns: Columns,
     pub(crate) lines: Vec<u32>,
     pub(crate) reading: Reading,
+    /// Unpressurised length \[m\] from which its displacements count; none if it has lengths or contractions.
+    pub(crate) displaced_from_m: Option<f64>,
 }
 
 /// The file is refused if more than one row in this many is unusable.
@@ -125,14 +127,14 @@ impl Draft {
         let mut lines = self.lines;
         let is_good = good(rows, &bad);
         magnitude::settle(file, &mut self.slots, &is_good, options, &mut reading)?;
-        motion::settle(file, &mut self.slots, &is_good, options, &mut reading)?;
+        let displaced_from_m = motion::settle(file, &mut self.slots, &is_good, options, &mut reading)?;
         let mut columns = columns(self.slots);
         if !bad.is_empty() {
             let keep: Vec<usize> = (0..rows).filter(|row| is_good[*row]).collect();
             keep_rows(&mut columns, &mut lines, &keep);
         }
         order::put_in_order(file, &mut columns, &mut lines, &mut reading)?;
-        Ok(Table { columns, lines, reading })
+        Ok(Table { columns, lines, reading, displaced_from_m })
     }
 
     /// Drops optional columns that contain most of the unusable fields, so that their rows are kept.

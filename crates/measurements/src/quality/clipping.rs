@@ -1,5 +1,6 @@
 //! Clipped readings: a sensor at the end of its range repeats its extreme value while the others move on.
 
+use super::frozen::is_noisy;
 use super::{Finding, FindingKind, Gate, Severity, rows_in_words};
 use crate::resolution::{Resolution, bounds};
 use std::ops::Range;
@@ -9,7 +10,8 @@ use std::ops::Range;
 const RUN: usize = 5;
 const SHORT: usize = 2;
 /// Number of readings of exactly the largest force that isn't chance, wherever they are; the next constant is
-/// the ratio to the number at any other force, which a noisy load cell repeats rarely. (At the top of a sine,
+/// the ratio to the number at any other force, which a noisy load cell repeats rarely. The same holds for either end
+/// of a noisy pressure. (At the top of a sine,
 /// the largest of coarse readings is 2.4 times as frequent as the next; at rest all readings are equal.)
 const AGAIN: usize = 8;
 const TIMES: usize = 3;
@@ -67,15 +69,20 @@ pub(super) fn in_columns(gate: &Gate) -> Vec<(&'static str, Vec<usize>)> {
             && range_in(motion, run)
                 <= (STILL * gate.motion_resolution().range).max(gate.data.structure.band.width)
     };
-    let mut clipped = in_column(gate, force, &stuck_force);
-    clipped.extend(repeated_top(gate));
-    clipped.sort_unstable();
-    clipped.dedup();
-    vec![
-        ("force", clipped),
+    let mut found = vec![
+        ("force", in_column(gate, force, &stuck_force)),
         (gate.motion_name(), in_column(gate, motion, &stuck_motion)),
         ("pressure", in_column(gate, pressure, &stuck_pressure)),
-    ]
+    ];
+    found[0].1.extend(repeated_end(gate, force, 1.0));
+    if is_noisy(gate, pressure, &gate.pressure) {
+        found[2].1.extend([1.0, -1.0].iter().flat_map(|side| repeated_end(gate, pressure, *side)));
+    }
+    for (_, rows) in &mut found {
+        rows.sort_unstable();
+        rows.dedup();
+    }
+    found
 }
 
 /// Rows with the column's largest or smallest value, if it is stuck there in some run.
@@ -110,16 +117,18 @@ fn in_column(
     gate.data.paths().flat_map(|(sweep, _)| sweep.rows.clone()).filter(at_end).collect()
 }
 
-/// Rows with the largest force, if it is far more frequent than any other.
-fn repeated_top(gate: &Gate) -> Vec<usize> {
-    let force = gate.data.force();
+/// Rows with the largest (side 1) or smallest (side -1) reading, if it is far more frequent than any other.
+fn repeated_end(gate: &Gate, values: &[f64], side: f64) -> Vec<usize> {
+    let largest = bounds(values).1.abs().max(bounds(values).0.abs());
     let mut rows: Vec<usize> = gate.data.paths().flat_map(|(sweep, _)| sweep.rows.clone()).collect();
-    rows.sort_by(|a, b| force[*b].total_cmp(&force[*a]).then(a.cmp(b)));
-    let mut equal = rows.chunk_by(|a, b| force[*a].total_cmp(&force[*b]).is_eq());
-    let top = equal.next().unwrap_or_default();
-    let others = equal.filter(|rows| force[rows[0]].abs() > 1e-9 * gate.largest_force).map(<[usize]>::len);
-    let is_clipped = top.len() >= AGAIN && others.max().is_some_and(|most| top.len() >= TIMES * most);
-    if is_clipped { top.to_vec() } else { Vec::new() }
+    rows.sort_by(|a, b| (side * values[*b]).total_cmp(&(side * values[*a])).then(a.cmp(b)));
+    let mut equal = rows.chunk_by(|a, b| values[*a].total_cmp(&values[*b]).is_eq());
+    let end = equal.next().unwrap_or_default();
+    let others = equal.filter(|rows| values[rows[0]].abs() > 1e-9 * largest).map(<[usize]>::len);
+    let is_clipped = end.len() >= AGAIN && others.max().is_some_and(|most| end.len() >= TIMES * most);
+    // Zero is the end of what there is, not of the sensor.
+    let is_zero = end.first().is_none_or(|row| values[*row].abs() <= 1e-9 * largest);
+    if is_clipped && !is_zero { end.to_vec() } else { Vec::new() }
 }
 
 /// Expected change of the force in a run, from its change with motion and pressure just before and after.

@@ -1,5 +1,6 @@
 //! Frozen recordings: consecutive rows with the same pressure, motion and force although the readings are
-//! noisy, or with the same force while the others move on.
+//! noisy; and channels that are filled in while the others move on, with the last reading or with a straight
+//! line to the next.
 
 use super::clipping::expected;
 use super::{Finding, FindingKind, Gate, Severity, rows_in_words};
@@ -14,88 +15,186 @@ const RUN: usize = 8;
 const STEPS: f64 = 2.0;
 /// Noise below this fraction of the range comes from arithmetic, not from measuring.
 const LEAST: f64 = 1e-7;
-/// The same limit if only the force is frozen while the rest moves on.
+/// Fraction of neighbouring fourth differences with opposite signs from which a channel is noisy. White noise
+/// has 1/2 + asin(4/5)/pi = 80 %, a smooth curve hardly any.
+const TURNS: f64 = 0.65;
+/// The limit of [`RUN`] if one channel is filled in while the rest moves on.
 const RUN_ALONE: usize = 4;
-/// Probability that a run of equal forces occurs by chance in a file of this length.
+/// Probability that a run occurs by chance in a file of this length.
 const CHANCE: f64 = 1e-6;
+/// Rows on each side that show how often a row does the same there.
+const AROUND: usize = 20;
 /// Expected change of the force relative to its resolution: its noise, its steps, and the next fraction of
 /// its range.
 const MOVES: f64 = 10.0;
 const LEAST_SEEN: f64 = 1e-3;
 /// A force below this fraction of the largest may be that of a slack muscle, which is constant.
 const SLACK: f64 = 0.01;
-/// If the force is constant in more than this fraction of the rows, the test was made that way.
-const MOST: f64 = 0.2;
+/// If a channel is filled in in more than this fraction of the rows, the test was made that way.
+const MOST: f64 = 0.3;
+/// Second differences of a straight line in quantisation steps: the three readings are rounded by up to half a
+/// step each, the middle one twice.
+const LINE: f64 = 2.01;
+/// Rise of a straight line in these tolerances.
+const RISES: f64 = 5.0;
 
-/// Rows that repeat the one before: in all readings, and in the force alone.
+/// Rows whose readings aren't those of their time.
 pub(super) struct Frozen {
+    /// Rows that repeat the one before in all readings.
     pub(super) all: Vec<usize>,
-    pub(super) force: Vec<usize>,
+    /// Name of a channel, whether it repeats the last reading or lies on a straight line, and its rows.
+    pub(super) alone: Vec<(&'static str, Filled, Vec<usize>)>,
+}
+
+/// How a channel is filled in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Filled {
+    /// With the last reading.
+    Held,
+    /// With a straight line to the next.
+    Drawn,
+}
+
+impl Filled {
+    pub(super) fn says(self) -> &'static str {
+        match self {
+            Self::Held => "repeats the row before to the last digit while the rest moved on",
+            Self::Drawn => "lies on a straight line to the last digit, as if a gap was interpolated",
+        }
+    }
 }
 
 pub(super) fn rows(gate: &Gate) -> Frozen {
     let (pressure, motion, force) = (gate.data.pressure(), gate.motion, gate.data.force());
-    let is_noisy = |resolution: &Resolution| {
-        resolution.noise > STEPS * resolution.step && resolution.noise > LEAST * resolution.range
-    };
-    let resolutions = [&gate.pressure, gate.motion_resolution(), &gate.force];
+    let columns = [
+        ("force", force, &gate.force),
+        (gate.motion_name(), motion, gate.motion_resolution()),
+        ("pressure", pressure, &gate.pressure),
+    ];
+    let is_noisy = |(_, values, resolution): &(&str, &[f64], &Resolution)| is_noisy(gate, values, resolution);
     // One noisy column is enough if all columns repeat.
-    let all = if resolutions.into_iter().any(is_noisy) {
-        runs(gate, RUN, |row| [pressure[row].to_bits(), motion[row].to_bits(), force[row].to_bits()])
+    let all = if columns.iter().any(is_noisy) {
+        let is_equal = |row: usize| columns.iter().all(|(_, values, _)| repeats(values, row));
+        runs(gate, is_equal).into_iter().filter(|run| run.len() >= RUN - 1).collect()
     } else {
         Vec::new()
     };
-    // The force should have changed by more than its resolution.
-    let seen = (3.0 * gate.force.noise).max(gate.force.step).max(LEAST_SEEN * gate.force.range);
-    let moves = |rows: &Range<usize>| expected(gate, rows) > MOVES * seen;
-    let repeats = runs(gate, longest_by_chance(gate), |row| force[row].to_bits());
-    // Under a weight the force is constant by design.
-    let sweeps = gate.data.sweeps();
-    let is_weight = |row: usize| sweeps[gate.data.sweep_of(row)].kind == SweepKind::Isotonic;
-    let is_alone = |rows: &Range<usize>| {
-        !is_weight(rows.start)
-            && moves(rows)
-            && force[rows.start].abs() > SLACK * gate.largest_force
-            && !all.contains(rows)
-    };
-    let mut alone: Vec<Range<usize>> = repeats.into_iter().filter(is_alone).collect();
-    if (alone.iter().map(Range::len).sum::<usize>() as f64) > MOST * force.len() as f64 {
-        alone.clear();
+    let mut alone = Vec::new();
+    for column in &columns {
+        let (name, values, resolution) = *column;
+        let is_force = name == "force";
+        let mut held = filled(gate, is_force, |row| repeats(values, row));
+        held.retain(|run| !all.contains(run));
+        if !is_noisy(column) {
+            held.retain(|run| is_force && is_stuck(gate, run));
+        }
+        let mut drawn = Vec::new();
+        if is_noisy(column) {
+            let tolerance = (LINE * resolution.step).max(LEAST * resolution.range);
+            drawn = filled(gate, is_force, |row| is_between(gate, values, row, tolerance));
+            // A level line is a reading that is held, or coarse.
+            let rises = |line: &Range<usize>| (values[line.end] - values[line.start - 1]).abs();
+            drawn.retain(|line| rises(line) > RISES * tolerance);
+            drawn.retain(|line| ![&all, &held].iter().any(|runs| runs.iter().any(|run| meets(run, line))));
+        }
+        for (how, runs) in [(Filled::Held, held), (Filled::Drawn, drawn)] {
+            let count = runs.iter().map(Range::len).sum::<usize>();
+            if count > 0 && count as f64 <= MOST * values.len() as f64 {
+                alone.push((name, how, runs.into_iter().flatten().collect()));
+            }
+        }
     }
-    // The first row of a run is a genuine reading.
-    let repeated = |runs: &[Range<usize>]| runs.iter().flat_map(|run| run.start + 1..run.end).collect();
-    Frozen { all: repeated(&all), force: repeated(&alone) }
+    Frozen { all: all.into_iter().flatten().collect(), alone }
 }
 
-/// Runs of equal rows of at least this length, within the sweeps.
-fn runs<T: PartialEq>(gate: &Gate, least: usize, bits: impl Fn(usize) -> T) -> Vec<Range<usize>> {
-    let mut found = Vec::new();
-    for (sweep, _) in gate.data.paths() {
-        let mut start = sweep.rows.start;
-        for row in sweep.rows.start + 1..=sweep.rows.end {
-            if row == sweep.rows.end || bits(row) != bits(start) {
-                if row - start >= least {
-                    found.push(start..row);
-                }
-                start = row;
+/// Whether the readings of a column have white noise above their resolution.
+pub(super) fn is_noisy(gate: &Gate, values: &[f64], resolution: &Resolution) -> bool {
+    resolution.noise > STEPS * resolution.step
+        && resolution.noise > LEAST * resolution.range
+        && turns(gate, values) > TURNS
+}
+
+/// Whether a force that repeats should have changed by more than its resolution.
+fn is_stuck(gate: &Gate, run: &Range<usize>) -> bool {
+    let seen = (3.0 * gate.force.noise).max(gate.force.step).max(LEAST_SEEN * gate.force.range);
+    // The first row of a run is a genuine reading.
+    expected(gate, &(run.start - 1..run.end)) > MOVES * seen
+}
+
+/// Fraction of neighbouring fourth differences within sweeps that have opposite signs.
+fn turns(gate: &Gate, values: &[f64]) -> f64 {
+    let (mut opposite, mut pairs) = (0_usize, 0_usize);
+    for sweep in gate.data.sweeps() {
+        let fourth = |w: &[f64]| w[0] - 4.0 * w[1] + 6.0 * w[2] - 4.0 * w[3] + w[4];
+        let bends: Vec<f64> = values[sweep.rows.clone()].windows(5).map(fourth).collect();
+        for pair in bends.windows(2).filter(|pair| pair[0] != 0.0 && pair[1] != 0.0) {
+            pairs += 1;
+            opposite += usize::from((pair[0] > 0.0) != (pair[1] > 0.0));
+        }
+    }
+    opposite as f64 / pairs.max(1) as f64
+}
+
+fn repeats(values: &[f64], row: usize) -> bool {
+    values[row].total_cmp(&values[row - 1]).is_eq()
+}
+
+/// Whether a reading lies on the line through its neighbours.
+fn is_between(gate: &Gate, values: &[f64], row: usize, tolerance: f64) -> bool {
+    let end = gate.data.sweeps()[gate.data.sweep_of(row)].rows.end;
+    row + 1 < end && (values[row - 1] - 2.0 * values[row] + values[row + 1]).abs() <= tolerance
+}
+
+fn meets(a: &Range<usize>, b: &Range<usize>) -> bool {
+    a.start <= b.end && b.start <= a.end
+}
+
+/// Runs of rows that do what a noisy channel does by chance only, and too long for it. A force is excepted where the
+/// muscle is slack or hangs on a weight.
+fn filled(gate: &Gate, is_force: bool, is_filled: impl Fn(usize) -> bool) -> Vec<Range<usize>> {
+    let found = runs(gate, is_filled);
+    let short: usize = found.iter().map(Range::len).filter(|length| *length + 1 < RUN).sum();
+    let everywhere = (short as f64 + 1.0) / gate.data.len().max(1) as f64;
+    let sweeps = gate.data.sweeps();
+    let is_measured = |run: &Range<usize>| {
+        let sweep = &sweeps[gate.data.sweep_of(run.start)];
+        let is_constant = sweep.kind == SweepKind::Isotonic
+            || gate.data.force()[run.start].abs() <= SLACK * gate.largest_force;
+        // What holds all through a sweep was set.
+        !(is_force && is_constant) && run.len() + 2 < sweep.rows.len()
+    };
+    let is_long = |place: usize| {
+        let run = &found[place];
+        let sweep = &sweeps[gate.data.sweep_of(run.start)].rows;
+        // A sensor may be coarser here than elsewhere.
+        let sides = run.start.saturating_sub(AROUND).max(sweep.start)..(run.end + AROUND).min(sweep.end);
+        let near = |other: &&Range<usize>| other.start < sides.end && sides.start < other.end;
+        let below = found[..place].iter().rev().take_while(near);
+        let others: usize = below.chain(found[place + 1..].iter().take_while(near)).map(Range::len).sum();
+        let here = (others as f64 + 1.0) / (sides.len() - run.len()).max(1) as f64;
+        run.len() + 1 >= longest_by_chance(gate.data.len(), everywhere.max(here))
+    };
+    let long = (0..found.len()).filter(|place| is_long(*place) && is_measured(&found[*place]));
+    long.map(|place| found[place].clone()).collect()
+}
+
+/// Runs of rows for which `is_filled` holds, never the first of a sweep.
+fn runs(gate: &Gate, is_filled: impl Fn(usize) -> bool) -> Vec<Range<usize>> {
+    let mut found: Vec<Range<usize>> = Vec::new();
+    for sweep in gate.data.sweeps() {
+        for row in (sweep.rows.start + 1..sweep.rows.end).filter(|row| is_filled(*row)) {
+            match found.last_mut() {
+                Some(run) if run.end == row => run.end += 1,
+                _ => found.push(row..row + 1),
             }
         }
     }
     found
 }
 
-/// The length from which a run of equal forces isn't chance: `n q^(k - 1) < CHANCE`. The probability q that
-/// neighbours are equal is estimated from the rows of short runs that repeat the one before.
-fn longest_by_chance(gate: &Gate) -> usize {
-    let force = gate.data.force();
-    let short: usize = runs(gate, 2, |row| force[row].to_bits())
-        .iter()
-        .filter(|run| run.len() < RUN)
-        .map(|run| run.len() - 1)
-        .sum();
-    let rows = force.len().max(1) as f64;
-    let share = ((short as f64 + 1.0) / rows).min(0.99);
-    let length = 1.0 + (CHANCE / rows).ln() / share.ln();
+/// The length from which a run isn't chance: `n q^(k - 1) < CHANCE`, with the probability q of one such row.
+fn longest_by_chance(rows: usize, probability: f64) -> usize {
+    let length = 1.0 + (CHANCE / rows.max(1) as f64).ln() / probability.min(0.99).ln();
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
@@ -106,9 +205,9 @@ fn longest_by_chance(gate: &Gate) -> usize {
 }
 
 pub(super) fn find(gate: &Gate) -> Vec<Finding> {
-    let Frozen { all, force } = rows(gate);
+    let Frozen { all, alone } = rows(gate);
     let instead =
-        "nothing: these rows don't count; the recording stood still, or filled a gap with the last reading";
+        "nothing: these rows don't count; the recording stood still, or a gap was filled in afterwards";
     let all_says = |count| {
         format!(
             "{} with the same pressure, {} and force as the row before, to the last digit",
@@ -116,15 +215,10 @@ pub(super) fn find(gate: &Gate) -> Vec<Finding> {
             gate.motion_name()
         )
     };
-    let force_says = |count| {
-        format!(
-            "{} with the same force as the row before, to the last digit, while the rest moved on",
-            rows_in_words(count)
-        )
-    };
-    let found = [
-        gate.finding_if_any(FindingKind::Frozen, Severity::Warning, &all, all_says, instead),
-        gate.finding_if_any(FindingKind::Frozen, Severity::Warning, &force, force_says, instead),
-    ];
-    found.into_iter().flatten().collect()
+    let all = gate.finding_if_any(FindingKind::Frozen, Severity::Warning, &all, all_says, instead);
+    let alone = alone.iter().filter_map(|(name, how, rows)| {
+        let says = |count| format!("{}: the {name} {}", rows_in_words(count), how.says());
+        gate.finding_if_any(FindingKind::Frozen, Severity::Warning, rows, says, instead)
+    });
+    all.into_iter().chain(alone).collect()
 }

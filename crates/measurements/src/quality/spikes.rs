@@ -180,7 +180,7 @@ fn in_run(values: &[f64], least: f64) -> Vec<usize> {
     found
 }
 
-/// Whether `length` readings from `first` lie on one side of the predictions from both sides.
+/// Whether each of `length` readings from `first` lies beyond the predictions from both sides.
 fn is_spike(x: &[f64], first: usize, length: usize, least: f64) -> bool {
     let end = first + length;
     let (Some(before), Some(after)) = (x.get(first - SIDE..first), x.get(end..end + SIDE)) else {
@@ -204,7 +204,7 @@ fn is_spike(x: &[f64], first: usize, length: usize, least: f64) -> bool {
             leads.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], v| [l.min(*v), h.max(*v)]);
         [x[row] - high, low - x[row]]
     };
-    [0, 1].iter().any(|side| (first..end).all(|row| excess(row)[*side] > needed))
+    (first..end).all(|row| excess(row).into_iter().any(|beyond| beyond > needed))
 }
 
 /// Replaces spiked readings by linear interpolation between their neighbours.

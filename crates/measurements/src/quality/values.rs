@@ -20,44 +20,58 @@ const CONTRACTION: [f64; 2] = [-1.0, 0.6];
 /// Temperatures at which muscles are tested \[K\].
 const TEMPERATURE: [f64; 2] = [150.0, 500.0];
 
+/// Rows with an impossible value, in ascending order.
+struct Impossible {
+    rows: Vec<usize>,
+    says: String,
+    instead: &'static str,
+}
+
 pub(super) fn find(gate: &Gate) -> Vec<Finding> {
+    let found = readings(gate).into_iter().chain(others(gate));
+    let finding = |Impossible { rows, says, instead }| {
+        gate.finding(FindingKind::ImpossibleValue, Severity::Error, &rows, says, instead)
+    };
+    found.map(finding).collect()
+}
+
+/// Rows with an impossible pressure, motion or force, and what is. Where half of all rows have one it is the unit
+/// that is wrong, not the rows.
+pub(super) fn rows(gate: &Gate) -> impl Iterator<Item = (Vec<usize>, String)> {
+    let is_few = |found: &Impossible| 2 * found.rows.len() < gate.data.len();
+    readings(gate).into_iter().filter(is_few).map(|found| (found.rows, found.says))
+}
+
+fn readings(gate: &Gate) -> Vec<Impossible> {
     let mut found = pressures(gate);
     found.extend(motions(gate));
     found.extend(forces(gate));
-    found.extend(others(gate));
     found
 }
 
 /// Rows with an impossible value; `what` comes after "3 rows with" and before the worst value and its unit.
 fn impossible(
-    gate: &Gate,
     values: &[f64],
     [what, unit]: [&str; 2],
     is_wrong: impl Fn(usize, f64) -> bool,
-    instead: &str,
-) -> Option<Finding> {
+    instead: &'static str,
+) -> Option<Impossible> {
     let rows: Vec<usize> =
         values.iter().enumerate().filter(|(row, v)| is_wrong(*row, **v)).map(|(row, _)| row).collect();
-    let says = |count| {
-        let worst = rows.iter().map(|row| values[*row]).max_by(|a, b| a.abs().total_cmp(&b.abs()));
-        format!("{} with {what}, such as {:.6} {unit}", rows_in_words(count), worst.unwrap_or(0.0))
-            .trim_end()
-            .to_owned()
-    };
-    gate.finding_if_any(FindingKind::ImpossibleValue, Severity::Error, &rows, says, instead)
+    let worst = rows.iter().map(|row| values[*row]).max_by(|a, b| a.abs().total_cmp(&b.abs()))?;
+    let says = format!("{} with {what}, such as {worst:.6} {unit}", rows_in_words(rows.len()));
+    Some(Impossible { rows, says: says.trim_end().to_owned(), instead })
 }
 
-fn pressures(gate: &Gate) -> Vec<Finding> {
+fn pressures(gate: &Gate) -> Vec<Impossible> {
     let values = gate.data.pressure();
     let below = impossible(
-        gate,
         values,
         ["a gauge pressure below a vacuum", "Pa"],
         |_, p| p < VACUUM,
         "check the unit, and that the pressure is gauge pressure",
     );
     let above = impossible(
-        gate,
         values,
         ["a pressure above 150 bar", "Pa"],
         |_, p| p > BURST,
@@ -68,7 +82,6 @@ fn pressures(gate: &Gate) -> Vec<Finding> {
     // Readings around zero belong to a vented muscle.
     let is_tiny = low >= 0.0 && high > 0.0 && high < HARDLY && mean > 0.25 * high;
     let tiny = impossible(
-        gate,
         values,
         ["a pressure below 20 Pa, though above 0", "Pa"],
         |_, p| is_tiny && p > 0.0,
@@ -77,21 +90,19 @@ fn pressures(gate: &Gate) -> Vec<Finding> {
     below.into_iter().chain(above).chain(tiny).collect()
 }
 
-fn motions(gate: &Gate) -> Vec<Finding> {
+fn motions(gate: &Gate) -> Vec<Impossible> {
     let l0 = gate.options.l0_m.filter(|l0| *l0 > 0.0);
     let (contraction, length): (Vec<f64>, &[f64]) = match gate.data.motion() {
         Trace::Contraction(values) => (values.clone(), &[]),
         Trace::Length(values) => (l0.map_or_else(Vec::new, |l0| gate.data.contraction(l0)), values),
     };
     let outside = impossible(
-        gate,
         &contraction,
         ["a contraction outside -1 to 0.6", ""],
         |_, c| !(CONTRACTION[0]..=CONTRACTION[1]).contains(&c),
         "write `contraction [%]` if it is in per cent; for lengths, check the unit and the muscle's own length",
     );
     let gone = impossible(
-        gate,
         length,
         ["a length of 0 or less", "m"],
         |_, l| l <= 0.0,
@@ -100,7 +111,7 @@ fn motions(gate: &Gate) -> Vec<Finding> {
     outside.into_iter().chain(gone).collect()
 }
 
-fn forces(gate: &Gate) -> Option<Finding> {
+fn forces(gate: &Gate) -> Option<Impossible> {
     let pressure = gate.data.pressure();
     let area = gate.options.radius_m.map(|radius| PI * radius * radius);
     let is_absurd = |row: usize, force: f64| {
@@ -108,7 +119,6 @@ fn forces(gate: &Gate) -> Option<Finding> {
         force.abs() > limit.map_or(FORCE, |limit| limit.min(FORCE))
     };
     impossible(
-        gate,
         gate.data.force(),
         ["a force beyond any muscle of this size", "N"],
         is_absurd,
@@ -116,10 +126,9 @@ fn forces(gate: &Gate) -> Option<Finding> {
     )
 }
 
-fn others(gate: &Gate) -> Vec<Finding> {
+fn others(gate: &Gate) -> Vec<Impossible> {
     let data = gate.data;
     let temperature = impossible(
-        gate,
         data.temperature().unwrap_or_default(),
         ["a temperature outside 150 K to 500 K", "K"],
         |_, t| !(TEMPERATURE[0]..=TEMPERATURE[1]).contains(&t),
@@ -132,7 +141,7 @@ fn others(gate: &Gate) -> Vec<Finding> {
     ];
     let not_positive = positive.into_iter().filter_map(|(values, what)| {
         let instead = "remove the rows, or check unit and sign: it must be greater than 0";
-        impossible(gate, values.unwrap_or_default(), what, |_, v| v <= 0.0, instead)
+        impossible(values.unwrap_or_default(), what, |_, v| v <= 0.0, instead)
     });
     temperature.into_iter().chain(not_positive).collect()
 }

@@ -309,6 +309,24 @@ fn what_the_user_says_settles_it() {
 /// A displacement is measured from the unpressurised length; its sign is found from the force, given by its
 /// name, or stated.
 #[test]
+fn displacements_of_specimens_count_from_their_own_lengths() {
+    let text = "pressure [bar], displacement [mm], force [N], specimen\n2, 0, 900, short\n2, 6, 700, short\n2, 0, 900, long\n2, 25, 700, long\n";
+    let options = ReadOptions { l0_m: Some(0.25), ..ReadOptions::default() };
+    let data = Data::from_bytes(text.as_bytes(), "pull.csv", &options).unwrap();
+    let own = data.clone().with_lengths(|name| (name == "short").then_some(0.06));
+    let is_near = |found: Vec<f64>, expected: [f64; 4]| {
+        assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-12), "{found:?}");
+    };
+    is_near(own.contraction(0.25), [0.0, 0.1, 0.0, 0.1]);
+    // Said again, or taken back.
+    is_near(
+        own.clone().with_lengths(|name| (name == "short").then_some(0.06)).contraction(0.25),
+        [0.0, 0.1, 0.0, 0.1],
+    );
+    is_near(own.with_lengths(|_| None).contraction(0.25), [0.0, 0.024, 0.0, 0.1]);
+}
+
+#[test]
 fn displacements() {
     let table = |name: &str, values: [f64; 5]| {
         let mut text = format!("t [s],p [bar],{name},F [N]\n");

@@ -144,6 +144,25 @@ fn a_recording_that_stands_still() {
     // A load cell that is frozen while the muscle moves on.
     plants(FindingKind::Frozen, &rows, |columns| columns.force_n[300..340].fill(333.3));
     plants(FindingKind::Frozen, &rows[..7], |columns| columns.force_n[300..308].fill(333.3));
+    // One of the other channels, or a gap that was interpolated.
+    plants(FindingKind::Frozen, &rows, |columns| columns.pressure_pa[300..340].fill(1.0001e5));
+    plants(FindingKind::Frozen, &rows, |columns| {
+        let last = motion(columns)[300];
+        motion(columns)[300..340].fill(last);
+    });
+    for channel in 0..3 {
+        plants(FindingKind::Frozen, &rows, |columns| {
+            let values = match channel {
+                0 => &mut columns.force_n,
+                1 => &mut columns.pressure_pa,
+                _ => motion(columns),
+            };
+            let [from, to] = [values[300], values[340]];
+            for (step, value) in values[301..340].iter_mut().enumerate() {
+                *value = from + (to - from) * (step + 1) as f64 / 40.0;
+            }
+        });
+    }
     // A load cell that shows full newtons, at the turning points of a slow loop, isn't frozen.
     let mut columns = clean_loops(1, 1);
     columns.force_n.iter_mut().for_each(|force| *force = (*force / 5.0).round() * 5.0);
@@ -155,6 +174,39 @@ fn a_recording_that_stands_still() {
     columns.pressure_pa.fill(2e5);
     *motion(&mut columns) = (0..rows).map(|row| 0.02 + 0.005 * ((row / 50) as f64)).collect();
     assert_eq!(quality(columns).of(FindingKind::Frozen).count(), 0);
+    // An encoder without noise that dwells at the ends of each stroke wasn't frozen, nor did anybody draw the
+    // straight ramps between.
+    let mut columns = clean_loops(2, 1);
+    for (row, contraction) in motion(&mut columns).iter_mut().enumerate() {
+        let part = (row % SWEEP % LOOP) as f64 / LOOP as f64;
+        *contraction = 0.02 + 0.2 * (1.2 * (1.0 - (2.0 * part - 1.0).abs()) - 0.1).clamp(0.0, 1.0);
+    }
+    assert_eq!(quality(columns).of(FindingKind::Frozen).count(), 0);
+}
+
+#[test]
+fn copied_blocks() {
+    let copied: Vec<usize> = (700..760).collect();
+    plants(FindingKind::DuplicateRow, &copied, |columns| {
+        columns.force_n.copy_within(200..260, 700);
+        columns.pressure_pa.copy_within(200..260, 700);
+        motion(columns).copy_within(200..260, 700);
+    });
+    // Of one channel alone nobody knows which block was measured.
+    let both: Vec<usize> = (200..260).chain(700..760).collect();
+    plants(FindingKind::DuplicateRow, &both, |columns| columns.force_n.copy_within(200..260, 700));
+    plants(FindingKind::DuplicateRow, &both, |columns| motion(columns).copy_within(200..260, 700));
+    // A simulated loop repeats itself, and so does a drive that is told where to go.
+    let mut columns = clean_loops(4, 1);
+    for (row, contraction) in motion(&mut columns).iter_mut().enumerate() {
+        let phase = (row % (4 * LOOP + 1) % LOOP) as f64 / LOOP as f64;
+        *contraction = 0.12 - 0.10 * (std::f64::consts::TAU * phase).cos();
+    }
+    assert_eq!(quality(columns.clone()).of(FindingKind::DuplicateRow).count(), 0);
+    let (pressure, motion) = (columns.pressure_pa.clone(), columns.motion.values().to_vec());
+    columns.pressure_pa = pressure.iter().map(|p| (p / 1e5).round() * 1e5).collect();
+    columns.force_n = (0..motion.len()).map(|i| force(columns.pressure_pa[i], motion[i], 0.0)).collect();
+    assert_eq!(quality(columns).of(FindingKind::DuplicateRow).count(), 0);
 }
 
 #[test]
@@ -163,6 +215,11 @@ fn spikes_in_each_column() {
     plants(FindingKind::Spike, &[150, 151, 900, 901, 902], |columns| {
         columns.force_n[150..152].iter_mut().for_each(|f| *f -= 30.0);
         columns.force_n[900..903].iter_mut().for_each(|f| *f += 30.0);
+    });
+    // A pair, one to each side.
+    plants(FindingKind::Spike, &[150, 151], |columns| {
+        columns.force_n[150] += 40.0;
+        columns.force_n[151] -= 30.0;
     });
     plants(FindingKind::Spike, &[250], |columns| columns.pressure_pa[250] += 2e4);
     plants(FindingKind::Spike, &[350], |columns| motion(columns)[350] += 0.02);

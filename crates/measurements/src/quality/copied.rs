@@ -1,0 +1,122 @@
+//! Copied readings: a block of rows, or of one channel, that repeats an earlier block to the last digit.
+
+use super::{Finding, FindingKind, Gate, Severity, frozen::is_noisy, rows_in_words};
+use crate::resolution::Resolution;
+use std::collections::{BTreeMap, HashMap, HashSet};
+
+/// Fewest consecutive rows that must agree. Readings with a noise of some steps agree so with a probability of 10^-8,
+/// those of a moving muscle hardly ever.
+const BLOCK: usize = 8;
+/// Fewest different readings among them.
+const DIFFERENT: usize = 6;
+/// Coarser readings repeat by chance.
+const LEVELS: f64 = 100.0;
+/// If more than this fraction of the rows is copied, the readings were made that way.
+const MOST: f64 = 0.5;
+/// If more than this fraction of the other rows equals the row as far away, a drive repeats itself.
+const REPEATS: f64 = 0.2;
+/// More different distances than this between equal blocks come from a drive as well.
+const MOST_LAGS: usize = 20;
+
+/// Rows that repeat earlier ones: in all readings, and in single channels, where nobody knows which of the two
+/// blocks was measured.
+pub(super) struct Copied {
+    pub(super) all: Vec<usize>,
+    pub(super) alone: Vec<(&'static str, Vec<usize>)>,
+}
+
+pub(super) fn rows(gate: &Gate) -> Copied {
+    let columns = [
+        ("force", gate.data.force(), &gate.force),
+        (gate.motion_name(), gate.motion, gate.motion_resolution()),
+        ("pressure", gate.data.pressure(), &gate.pressure),
+    ];
+    let is_measured = |(_, values, resolution): &(&str, &[f64], &Resolution)| {
+        is_noisy(gate, values, resolution) && resolution.levels().is_none_or(|levels| levels > LEVELS)
+    };
+    if !columns.iter().any(is_measured) {
+        return Copied { all: Vec::new(), alone: Vec::new() };
+    }
+    let pairs = blocks(gate.data.len(), |row| columns.map(|(_, values, _)| values[row].to_bits()));
+    // Rows that are equal in their times as well are another finding.
+    let is_later = |(earlier, later): &(usize, usize)| {
+        gate.data.time().map_or(gate.data.is_path(), |time| time[*earlier].total_cmp(&time[*later]).is_ne())
+    };
+    let later: Vec<(usize, usize)> = pairs.iter().copied().filter(is_later).collect();
+    let all = marked(&later, false);
+    let of_all = marked(&pairs, true);
+    let alone = columns.iter().filter(|column| is_measured(column)).filter_map(|(name, values, _)| {
+        let rows = marked(&blocks(values.len(), |row| values[row].to_bits()), true);
+        let rows: Vec<usize> = rows.into_iter().filter(|row| of_all.binary_search(row).is_err()).collect();
+        is_few(&rows, values.len()).then_some((*name, rows))
+    });
+    let alone = alone.collect();
+    Copied { all: if is_few(&all, gate.data.len()) { all } else { Vec::new() }, alone }
+}
+
+fn is_few(rows: &[usize], of: usize) -> bool {
+    !rows.is_empty() && rows.len() as f64 <= MOST * of as f64
+}
+
+/// First rows of blocks that repeat a block of equal length before them, with the first row of that block, unless
+/// the rows around them do as well.
+fn blocks<K: PartialEq + std::hash::Hash + Eq + Copy>(
+    rows: usize,
+    key: impl Fn(usize) -> K,
+) -> Vec<(usize, usize)> {
+    let mut first: HashMap<[K; BLOCK], usize> = HashMap::with_capacity(rows);
+    let mut found: BTreeMap<usize, Vec<(usize, usize)>> = BTreeMap::new();
+    for row in 0..(rows + 1).saturating_sub(BLOCK) {
+        let block: [K; BLOCK] = std::array::from_fn(|k| key(row + k));
+        // Few levels repeat by chance, and what stands still repeats itself.
+        if block.iter().collect::<HashSet<_>>().len() < DIFFERENT {
+            continue;
+        }
+        match first.get(&block) {
+            Some(earlier) if earlier + BLOCK <= row => {
+                found.entry(row - earlier).or_default().push((*earlier, row));
+            }
+            Some(_) => {}
+            None => {
+                first.insert(block, row);
+            }
+        }
+    }
+    if found.len() > MOST_LAGS {
+        return Vec::new();
+    }
+    let is_alone = |(lag, pairs): &(usize, Vec<(usize, usize)>)| {
+        let copied: HashSet<usize> =
+            pairs.iter().flat_map(|(earlier, _)| *earlier..earlier + BLOCK).collect();
+        let others = (0..rows - lag).filter(|row| !copied.contains(row));
+        let equal = others.clone().filter(|row| key(*row) == key(row + lag)).count();
+        equal as f64 <= REPEATS * others.count() as f64
+    };
+    found.into_iter().filter(is_alone).flat_map(|(_, pairs)| pairs).collect()
+}
+
+/// The rows of the later blocks, and of the earlier ones if they count, in ascending order.
+fn marked(blocks: &[(usize, usize)], with_earlier: bool) -> Vec<usize> {
+    let earlier = blocks.iter().filter(|_| with_earlier).map(|(earlier, _)| *earlier);
+    let starts = blocks.iter().map(|(_, later)| *later).chain(earlier);
+    let mut rows: Vec<usize> = starts.flat_map(|start| start..start + BLOCK).collect();
+    rows.sort_unstable();
+    rows.dedup();
+    rows
+}
+
+/// What is said of copied rows and of a copied channel.
+pub(super) const ALL: &str = "the readings of a block of earlier rows again, to the last digit";
+pub(super) const ALONE: &str = "is the same in two blocks of rows, to the last digit, while the rest differs";
+
+pub(super) fn find(gate: &Gate) -> Vec<Finding> {
+    let Copied { all, alone } = rows(gate);
+    let instead = "nothing: these rows don't count; remove what was copied";
+    let all_says = |count| format!("{}: {ALL}", rows_in_words(count));
+    let all = gate.finding_if_any(FindingKind::DuplicateRow, Severity::Warning, &all, all_says, instead);
+    let alone = alone.iter().filter_map(|(name, rows)| {
+        let says = |count| format!("{}: the {name} {ALONE}", rows_in_words(count));
+        gate.finding_if_any(FindingKind::DuplicateRow, Severity::Warning, rows, says, instead)
+    });
+    all.into_iter().chain(alone).collect()
+}
