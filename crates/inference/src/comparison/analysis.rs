@@ -15,7 +15,8 @@ use crate::comparison::levels::{Folds, Levels};
 use crate::comparison::loops::branches;
 use crate::comparison::mismatch::questions;
 use crate::comparison::options::Options;
-use crate::comparison::requirements::{COMPARED, check_memory, check_needs, check_size};
+use crate::comparison::other_units::in_other_units;
+use crate::comparison::requirements::{COMPARED, check_memory, check_needs, check_size, of_no_muscle};
 use crate::comparison::rows::{BY_HAND, Used, full_scale, lines, used};
 use crate::comparison::specimens::of_specimens;
 use crate::comparison::{loops, residuals};
@@ -98,6 +99,9 @@ impl<'a> Analysis<'a> {
         }
         for effect in &options.effects {
             check_needs(effect, &record)?;
+        }
+        if let Some((rows, why)) = of_no_muscle(muscle, &record, &used) {
+            used.leave_out(&data, rows, why);
         }
         check_size(&data, muscle, &record, &used.mask)?;
         let full_scale = full_scale(data.force(), used.rows());
@@ -298,13 +302,19 @@ impl<'a> Analysis<'a> {
         })
     }
 
-    /// Checks once for impossible units, signs and scales, and leaves out rows in which the muscle as stated
-    /// is slack.
+    /// Checks once for impossible units, signs and scales, and leaves out parts of the rows that are in other
+    /// units, and rows in which the muscle as stated is slack.
     pub(crate) fn ask(&mut self) -> Result<(), InferenceError> {
         if self.slack.is_some() {
             return Ok(());
         }
         let prepared = self.model(0)?;
+        let used = &self.used.mask;
+        for (rows, why) in in_other_units(&self.data, self.muscle, &prepared.model, &self.record, used) {
+            self.used.leave_out(&self.data, rows, why);
+            self.full_scale = full_scale(self.data.force(), self.used.rows());
+            self.noise = Noise::of(self.muscle, (0.01 * self.full_scale).max(f64::MIN_POSITIVE));
+        }
         self.findings = questions(&self.data, self.muscle, &prepared.model, &self.record, &self.used.mask);
         let is_law = self.options.law.is_some();
         let slack = if is_law { Vec::new() } else { buckled(&prepared.model, &self.record, &self.used.mask) };

@@ -25,13 +25,13 @@ const ALIKE: f64 = 1.3;
 const ROWS: usize = 300;
 const FEW_ROWS: usize = 20;
 /// Fraction of these rows that must have a state; the next constant is for the few rows.
-const ANSWERED: f64 = 0.9;
+pub(crate) const ANSWERED: f64 = 0.9;
 const ANSWERED_OF_FEW: f64 = 0.7;
 /// The standard atmosphere \[Pa\].
 const ATMOSPHERE: f64 = 101_325.0;
 /// The atmospheric pressure is above this value \[Pa\] in any weather and at usual heights, so that a lower
 /// reading is no absolute pressure.
-const LEAST_AIR: f64 = 0.85e5;
+pub(crate) const LEAST_AIR: f64 = 0.85e5;
 /// If the pressure is absolute, offsets that differ from the standard atmosphere by this much fit worse
 /// \[Pa\].
 const OTHER_OFFSET: f64 = 0.25e5;
@@ -61,29 +61,39 @@ const PRESSURES: [(f64, &str); 8] = [
 const OTHER_MUSCLE: &str = ", or is the muscle not the one that was measured (its kind, its radius)?";
 
 /// A possible meaning of the readings.
-struct Meaning {
-    kind: &'static str,
+pub(crate) struct Meaning {
+    pub(crate) kind: &'static str,
     /// The question, following "with ... the error falls from ... to ...: ".
-    with: String,
-    question: String,
-    instead: String,
+    pub(crate) with: String,
+    pub(crate) question: String,
+    pub(crate) instead: String,
     /// Maps pressure, contraction and force as read to those that are meant.
-    of: Box<dyn Fn([f64; 3]) -> [f64; 3]>,
+    pub(crate) of: Box<dyn Fn([f64; 3]) -> [f64; 3]>,
+}
+
+impl Meaning {
+    /// The question as a sentence of its own, about a part of the rows: the others are of the same muscle.
+    pub(crate) fn asks_of_part(&self) -> String {
+        let question = self.question.replace(OTHER_MUSCLE, "?");
+        let mut letters = question.chars();
+        let first = letters.next().map(|letter| letter.to_uppercase().to_string()).unwrap_or_default();
+        first + letters.as_str()
+    }
 }
 
 /// A muscle as stated, and some of the rows that count.
-struct Trial<'a> {
-    model: &'a Model,
-    record: &'a Record,
-    used: &'a [bool],
+pub(crate) struct Trial<'a> {
+    pub(crate) model: &'a Model,
+    pub(crate) record: &'a Record,
+    pub(crate) used: &'a [bool],
     /// Fraction of the rows that must have a state.
-    answered: f64,
+    pub(crate) answered: f64,
 }
 
 impl Trial<'_> {
     /// RMS error \[N\] and force of each row, with the readings as they are meant; none if too few rows have
     /// a state.
-    fn error(&self, of: &dyn Fn([f64; 3]) -> [f64; 3]) -> Option<(f64, Vec<f64>)> {
+    pub(crate) fn error(&self, of: &dyn Fn([f64; 3]) -> [f64; 3]) -> Option<(f64, Vec<f64>)> {
         let moments = self.record.moments();
         let meant: Vec<[f64; 3]> = moments
             .iter()
@@ -158,7 +168,7 @@ pub(crate) fn questions(
 }
 
 /// Ratio of the forces as meant to the forces as read.
-fn scale_of(meaning: &Meaning) -> f64 {
+pub(crate) fn scale_of(meaning: &Meaning) -> f64 {
     (meaning.of)([1.0, 0.0, 1.0])[2].abs()
 }
 
@@ -193,8 +203,20 @@ fn asked(before: f64, after: f64, full: f64, meaning: Meaning) -> Mismatch {
     }
 }
 
+/// Pressures that count from a vacuum.
+pub(crate) fn absolute() -> Meaning {
+    Meaning {
+            kind: "absolute-pressure",
+            with: "with 1.013 bar less".to_owned(),
+            question: "is the pressure absolute?".to_owned(),
+            instead: "write `pressure [bar abs]` (or the unit that it has, with `abs`) in the header, or `--columns \"pressure=NAME [bar abs]\"`: the standard atmosphere is then taken off; with a barometer, subtract its reading"
+                .to_owned(),
+            of: Box::new(|[p, c, f]| [p - ATMOSPHERE, c, f]),
+        }
+}
+
 /// All meanings that these columns may have.
-fn meanings(data: &Data, muscle: &Muscle) -> Vec<Meaning> {
+pub(crate) fn meanings(data: &Data, muscle: &Muscle) -> Vec<Meaning> {
     let mut found = vec![Meaning {
         kind: "force-sign",
         with: "with the sign of the force turned over".to_owned(),
@@ -203,14 +225,7 @@ fn meanings(data: &Data, muscle: &Muscle) -> Vec<Meaning> {
         of: Box::new(|[p, c, f]| [p, c, -f]),
     }];
     if data.pressure().iter().all(|p| *p >= LEAST_AIR) {
-        found.push(Meaning {
-            kind: "absolute-pressure",
-            with: "with 1.013 bar less".to_owned(),
-            question: "is the pressure absolute?".to_owned(),
-            instead: "write `pressure [bar abs]` (or the unit that it has, with `abs`) in the header, or `--columns \"pressure=NAME [bar abs]\"`: the standard atmosphere is then taken off; with a barometer, subtract its reading"
-                .to_owned(),
-            of: Box::new(|[p, c, f]| [p - ATMOSPHERE, c, f]),
-        });
+        found.push(absolute());
     }
     found.extend(FORCES.map(|(factor, what, heading)| Meaning {
         kind: "force-unit",

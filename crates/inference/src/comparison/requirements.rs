@@ -3,17 +3,21 @@
 use bulge_effects::{Effect, Needs};
 use bulge_measurements::Data;
 use bulge_model::Record;
+use bulge_muscles::units::significant;
 use bulge_muscles::{Muscle, Quantity, memory};
 use std::ops::RangeInclusive;
 use std::sync::Arc;
 
 use crate::comparison::mismatch::possible_motion;
-use crate::comparison::rows::lines;
+use crate::comparison::rows::{Used, lines};
 use crate::error::InferenceError;
 
 /// Contractions that a muscle can have. A braid with fibres at less than 60 deg is straight before it reaches
 /// twice its rest length, and no pleated muscle shortens by more than 54.3 %.
 const POSSIBLE: RangeInclusive<f64> = -1.0..=0.6;
+
+/// Fraction of the rows that may have others: a lost comma, one file in another unit.
+const FEW: f64 = 0.25;
 
 /// Bytes that a row takes beside its columns. Measured on 10^6 rows in time: 240 in a comparison, with and
 /// without effects, while the record is made from the motion; 410 in a diagnosis.
@@ -28,6 +32,24 @@ pub(crate) fn check_memory(data: &Data, bytes_per_row: u64) -> Result<(), Infere
     })
 }
 
+/// Contractions that no muscle can have, if few rows have them, and why they don't count.
+pub(crate) fn of_no_muscle(muscle: &Muscle, record: &Record, used: &Used) -> Option<(Vec<usize>, String)> {
+    let rows: Vec<usize> = used.rows().filter(|row| !is_possible(record, *row)).collect();
+    let contraction = record.moments()[*rows.first()?].contraction;
+    (rows.len() as f64 <= FEW * used.rows().count() as f64).then(|| {
+        let why = format!(
+            "an impossible length: no muscle of {} mm has a contraction of {} %; check the unit and the digits there",
+            significant(1e3 * muscle.length().si(), 4),
+            significant(100.0 * contraction, 3),
+        );
+        (rows, why)
+    })
+}
+
+fn is_possible(record: &Record, row: usize) -> bool {
+    POSSIBLE.contains(&record.moments()[row].contraction)
+}
+
 /// Refuses contractions that no muscle can have: the data are those of another one.
 pub(crate) fn check_size(
     data: &Data,
@@ -35,9 +57,7 @@ pub(crate) fn check_size(
     record: &Record,
     mask: &[bool],
 ) -> Result<(), InferenceError> {
-    let contraction = |row: usize| record.moments()[row].contraction;
-    let outside = |row: &usize| mask[*row] && !POSSIBLE.contains(&contraction(*row));
-    let rows: Vec<usize> = (0..record.len()).filter(outside).collect();
+    let rows: Vec<usize> = (0..record.len()).filter(|row| mask[*row] && !is_possible(record, *row)).collect();
     let Some(&row) = rows.first() else { return Ok(()) };
     let specimen = record.specimens().get(record.moments()[row].specimen as usize);
     let own = specimen.and_then(|name| Some((name, muscle.of_specimen(name).ok()?)));
@@ -50,7 +70,7 @@ pub(crate) fn check_size(
     Err(InferenceError::OtherSize {
         muscle: name,
         lines: format!("line {}", lines(data, &rows)),
-        contraction: contraction(row),
+        contraction: record.moments()[row].contraction,
         length_m: length.si(),
         meant: possible_motion(data, muscle, &is_possible),
     })

@@ -20,7 +20,7 @@ use crate::diagnosis::classes::Class;
 use crate::diagnosis::confidence::{Confidence, confidence};
 use crate::diagnosis::document::Diagnosis;
 use crate::diagnosis::either::quieter;
-use crate::diagnosis::event::{Without, event};
+use crate::diagnosis::event::{Anew, event};
 use crate::diagnosis::fits::Fits;
 use crate::diagnosis::geometry::{Doubt, geometry};
 use crate::diagnosis::linearised_model::Context;
@@ -142,17 +142,35 @@ fn diagnosed(
     }
     let first = analysis.begin()?;
     let mut base = analysis.climb(options.base.effects.len(), Some(&first.climbed))?;
+    let silent = || DiagnoseOptions { progress: Progress::default(), ..options.clone() };
     let without = |rows: &[usize]| {
-        let mut base = options.base.clone();
-        base.excluded.extend_from_slice(rows);
-        let options = DiagnoseOptions { base, progress: Progress::default(), ..options.clone() };
+        let mut options = silent();
+        options.base.excluded.extend_from_slice(rows);
         diagnosed(data, [stated, muscle], &options, Across::Anything).ok()
     };
-    let without: Option<Without<'_>> = (across == Across::NoEvent).then_some(&without);
+    let exchanged = |names: [&str; 2]| {
+        let [stated, muscle] = [with_exchanged(stated, names)?, with_exchanged(muscle, names)?];
+        diagnosed(data, [&stated, &muscle], &silent(), Across::Anything).ok()
+    };
+    let anew = Anew { without: &without, exchanged: &exchanged };
+    let anew = (across == Across::NoEvent).then_some(anew);
     let (diagnosis, used) = where_it_has_a_state(&analysis, &mut base, |base, used| {
-        on_rows(&analysis, &first, base, used, (options, without))
+        on_rows(&analysis, &first, base, used, (options, anew))
     })?;
     Ok(diagnosis.without(&analysis, &used))
+}
+
+/// The muscle with the numbers of two specimens exchanged; none if they don't differ.
+fn with_exchanged(muscle: &Muscle, [one, other]: [&str; 2]) -> Option<Muscle> {
+    let numbers = |name: &str| {
+        let own = muscle.specimens().iter().find(|specimen| specimen.name() == name);
+        own.map_or(Vec::new(), |specimen| specimen.numbers().to_vec())
+    };
+    let [of_one, of_other] = [numbers(one), numbers(other)];
+    if of_one == of_other {
+        return None;
+    }
+    muscle.clone().with_specimen(one, of_other).ok()?.with_specimen(other, of_one).ok()
 }
 
 /// The result of `find` on the rows at which the base has a state, and those rows.
@@ -204,7 +222,7 @@ fn on_rows(
     first: &First,
     base: &mut Climbed,
     used: &[bool],
-    (options, without): (&DiagnoseOptions, Option<Without<'_>>),
+    (options, anew): (&DiagnoseOptions, Option<Anew<'_>>),
 ) -> Result<Diagnosis, Stop> {
     let progress = &options.progress;
     progress.at(0.1, "the noise");
@@ -241,10 +259,10 @@ fn on_rows(
     let quieter = quieter.map_err(|error| Stop::at_means(error, &averaged_data.averaged, analysis))?;
     if let Some((law, whitening)) = &quieter {
         let quiet = Context { whitening, law, fits: None, ..context };
-        return concluded((analysis, first), (&quiet, averaged_data), &model, search, (options, without));
+        return concluded((analysis, first), (&quiet, averaged_data), &model, search, (options, anew));
     }
     context.exchange(&model, &mut search);
-    concluded((analysis, first), (&context, averaged_data), &model, search, (options, without))
+    concluded((analysis, first), (&context, averaged_data), &model, search, (options, anew))
 }
 
 /// Classes, confidence and the ladder for the result of a search.
@@ -253,7 +271,7 @@ fn concluded(
     (context, averaged_data): (&Context<'_>, &AveragedData),
     model: &Model,
     mut search: Search,
-    (options, without): (&DiagnoseOptions, Option<Without<'_>>),
+    (options, anew): (&DiagnoseOptions, Option<Anew<'_>>),
 ) -> Result<Diagnosis, Stop> {
     let progress = &options.progress;
     progress.at(0.6, "rivals");
@@ -286,8 +304,7 @@ fn concluded(
         next,
         event: None,
     };
-    found.event =
-        without.and_then(|without| event(&found, &analysis.data, &averaged_data.averaged.groups, without));
+    found.event = anew.and_then(|anew| event(&found, &analysis.data, &averaged_data.averaged.groups, anew));
     let effects: Vec<Arc<dyn Effect>> = options.base.effects.iter().chain(found.shown()).cloned().collect();
     let answer = compare_after(first, analysis, &effects, found.last().confirmed.numbers())?;
     progress.at(1.0, "done");

@@ -5,9 +5,12 @@
 //!   after it are diagnosed each on their own, and what is named on one side must be named on the other,
 //! - *odd rows*, as files, sweeps or stretches of a record (a sensor zeroed anew, another unit, a reversed column,
 //!   a reading that is held): those few whose misfit stands far out are left out. If nothing is then missing,
-//!   although what was named would have shown in the others, they deny it.
+//!   although what was named would have shown in the others, they deny it,
+//! - *exchanged specimens*: if nothing is missing when two specimens have each other's numbers, they may have
+//!   each other's name.
 
 use bulge_measurements::Data;
+use bulge_muscles::shown::shortened;
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::comparison::rows::lines;
@@ -27,23 +30,57 @@ const ODD: f64 = 4.0;
 /// which on effects are detected in nearly all tests (suite).
 const EXPECTED: f64 = 64.0;
 
-/// The diagnosis without some rows of the files; none if there is no answer.
-pub(crate) type Without<'a> = &'a dyn Fn(&[usize]) -> Option<Diagnosis>;
+/// Most specimens that are exchanged in pairs.
+const MOST_SPECIMENS: usize = 5;
+
+/// Diagnoses of the same data made anew; none if there is no answer.
+#[derive(Clone, Copy)]
+pub(crate) struct Anew<'a> {
+    /// Without some rows of the files.
+    pub(crate) without: &'a dyn Fn(&[usize]) -> Option<Diagnosis>,
+    /// With the numbers of two specimens exchanged.
+    pub(crate) exchanged: &'a dyn Fn([&str; 2]) -> Option<Diagnosis>,
+}
 
 /// What is said of an event across which no effect may be named, if there is one.
 pub(crate) fn event(
     found: &Findings<'_>,
     data: &Data,
     groups: &[Vec<usize>],
-    without: Without<'_>,
+    anew: Anew<'_>,
 ) -> Option<String> {
     if !found.verdict().0.shows_effects() {
         return None;
     }
-    jump(found, data, groups, without).or_else(|| odd(found, data, groups, without))
+    jump(found, data, groups, anew)
+        .or_else(|| odd(found, data, groups, anew))
+        .or_else(|| exchanged(data, anew))
 }
 
-fn jump(found: &Findings<'_>, data: &Data, groups: &[Vec<usize>], without: Without<'_>) -> Option<String> {
+/// Two specimens with each other's numbers, of which nothing is missing.
+fn exchanged(data: &Data, anew: Anew<'_>) -> Option<String> {
+    let names = data.specimens();
+    if names.len() > MOST_SPECIMENS {
+        return None;
+    }
+    let pairs = (1..names.len()).flat_map(|other| (0..other).map(move |one| [one, other]));
+    let fits = |pair: &[usize; 2]| {
+        let found = (anew.exchanged)(pair.map(|place| names[place].as_str()));
+        found.is_some_and(|found| found.verdict == Verdict::Adequate)
+    };
+    let [one, other] = pairs.into_iter().find(fits)?.map(|place| shortened(&names[place]));
+    Some(format!(
+        "with the numbers of the specimens `{one}` and `{other}` exchanged nothing is missing: has each the name of the other, in the data or in the muscle \
+         file? Correct it, and ask again"
+    ))
+}
+
+fn jump(
+    found: &Findings<'_>,
+    data: &Data,
+    groups: &[Vec<usize>],
+    Anew { without, .. }: Anew<'_>,
+) -> Option<String> {
     let (row, what) = found.jump_left()?;
     let row = *groups.get(row)?.first()?;
     let own = |other: &usize| data.specimen_of(*other) == data.specimen_of(row);
@@ -71,7 +108,12 @@ fn is_on_both(sides: [&Option<Diagnosis>; 2], claim: Claim<'_>) -> bool {
     sides.iter().any(|side| on(side)) && sides.iter().all(|side| on(side) || silent(side))
 }
 
-fn odd(found: &Findings<'_>, data: &Data, groups: &[Vec<usize>], without: Without<'_>) -> Option<String> {
+fn odd(
+    found: &Findings<'_>,
+    data: &Data,
+    groups: &[Vec<usize>],
+    Anew { without, .. }: Anew<'_>,
+) -> Option<String> {
     let sweep = |row: usize| data.sweeps().partition_point(|sweep| sweep.rows.end <= row);
     let file = |row: usize| data.line(row).0;
     let stretch = |row: usize| row * STRETCHES / data.len();

@@ -254,6 +254,40 @@ fn an_effect_on_both_sides_of_an_event_is_named() {
     assert!(found.remaining.jump.is_some(), "{}", found.says);
 }
 
+/// A braid of which three specimens differ by some per cent, and their readings under these names.
+fn specimens(names: [&str; 3]) -> (Muscle, Data) {
+    let tables = "\n[specimens.A]\nradius = \"10 mm\"\n[specimens.B]\nradius = \"10.2 mm\"\n[specimens.C]\nradius = \"9.9 mm\"\n";
+    let muscle = from_toml(&format!("{BRAID}{tables}"), "braid.toml").unwrap();
+    let of = |(seed, name)| {
+        let (model, theta) = (Model::new(&muscle.of_specimen(name).unwrap()), []);
+        simulate(&model, &theta, &protocol(2.0, 0.0), seed).unwrap().data.columns().as_ref().clone()
+    };
+    let parts: Vec<Columns> = (1..).zip(["A", "B", "C"]).map(of).collect();
+    let all = |column: &dyn Fn(&Columns) -> Vec<f64>| parts.iter().flat_map(column).collect::<Vec<f64>>();
+    let values = all(&|part| part.motion.values().to_vec());
+    let motion = match parts[0].motion {
+        Trace::Contraction(_) => Trace::Contraction(values),
+        Trace::Length(_) => Trace::Length(values),
+    };
+    let mut columns =
+        Columns::new(all(&|part| part.pressure_pa.clone()), motion, all(&|part| part.force_n.clone()));
+    columns.time_s = Some(all(&|part| part.time_s.clone().unwrap()));
+    let rows = parts[0].force_n.len();
+    columns.specimen = Some((0..3 * rows).map(|row| names[row / rows]).collect());
+    (muscle, Data::from_columns(columns).unwrap())
+}
+
+#[test]
+fn exchanged_names_of_specimens_are_no_physics() {
+    let (muscle, data) = specimens(["A", "B", "C"]);
+    let found = diagnose(&data, &muscle, &diagnosing(&[])).unwrap();
+    assert_eq!((found.verdict, found.remaining.event), (Verdict::Adequate, None), "{}", found.says);
+    let (muscle, data) = specimens(["A", "C", "B"]);
+    let found = diagnose(&data, &muscle, &diagnosing(&[])).unwrap();
+    assert_eq!((found.verdict, names(&found)), (Verdict::CannotTell, vec![]), "{}", found.says);
+    assert!(found.says.contains("specimens `C` and `B` exchanged nothing is missing"), "{}", found.says);
+}
+
 fn cylinder(pressure: f64, e: f64) -> f64 {
     let angle = 25.0_f64.to_radians();
     std::f64::consts::PI
