@@ -62,6 +62,7 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
     ("python", EVERYTHING),
     ("validation", EVERYTHING),
     ("benches", EVERYTHING),
+    ("fuzz", EVERYTHING),
 ];
 
 const EVERYTHING: &[&str] = &["*"];
@@ -158,11 +159,11 @@ fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the package lies in the workspace").to_owned()
 }
 
-/// Folders of all packages: `crates/*`, `validation`, `benches`.
+/// Folders of all packages: `crates/*`, `validation`, `benches`, `fuzz`.
 fn packages() -> Vec<PathBuf> {
     let entries = fs::read_dir(root().join("crates")).expect("the workspace has a folder `crates`");
     let mut folders: Vec<PathBuf> = entries.map(|entry| entry.unwrap().path()).collect();
-    folders.extend(["validation", "benches"].map(|name| root().join(name)));
+    folders.extend(["validation", "benches", "fuzz"].map(|name| root().join(name)));
     folders.retain(|folder| folder.join("Cargo.toml").is_file());
     folders.sort();
     folders
