@@ -196,7 +196,7 @@ mod tests {
     use bulge_muscles::{Quantity, preset};
 
     /// Loops of 40 rows between 2 and 14 % at 1 to 5 bar, one sweep each, in pascals, metres and newtons, with the
-    /// friction of a fifth of the force that the model lacks.
+    /// friction of a few per cent of the force that the model lacks.
     fn loops(muscle: &Muscle) -> Columns {
         let length = muscle.length().si();
         let (mut pressure, mut lengths, mut direction) = (Vec::new(), Vec::new(), Vec::new());
@@ -212,7 +212,8 @@ mod tests {
         columns.sweep = Some((0..200).map(|row| (1 + row / 40).to_string()).collect());
         let record = Record::new(&Data::from_columns(columns.clone()).unwrap(), length);
         let exact = Model::new(muscle).evaluate(&record, &[], &Wanted::default()).unwrap().force;
-        columns.force_n = exact.iter().zip(direction).map(|(force, way)| force * (1.0 + 0.1 * way)).collect();
+        columns.force_n =
+            exact.iter().zip(direction).map(|(force, way)| force * (1.0 + 0.02 * way)).collect();
         columns
     }
 
@@ -244,7 +245,7 @@ mod tests {
         meant(&|columns| times(&mut columns.pressure_pa, 0.1), "10.00 times as large");
         meant(&|columns| times(&mut columns.force_n, 1.0 / 4.448_222), "pounds");
         meant(&|columns| times(&mut columns.force_n, 100.0), "0.01000 times as large");
-        meant(&|columns| times(&mut columns.force_n, -1.0), "does this load cell read a pull as negative");
+        meant(&|columns| times(&mut columns.force_n, -1.0), "Does this load cell read a pull as negative?");
         meant(
             &|columns| columns.pressure_pa[own.clone()].iter_mut().for_each(|p| *p += 101_325.0),
             "absolute",

@@ -15,6 +15,8 @@ const LEVELS: f64 = 100.0;
 const MOST: f64 = 0.5;
 /// If more than this fraction of the other rows equals the row as far away, a drive repeats itself.
 const REPEATS: f64 = 0.2;
+/// Fewest other rows, relative to the copied ones, that show whether a drive repeats itself.
+const OTHERS: f64 = 0.5;
 /// More different distances than this between equal blocks come from a drive as well.
 const MOST_LAGS: usize = 20;
 
@@ -37,7 +39,7 @@ pub(super) fn rows(gate: &Gate) -> Copied {
     if !columns.iter().any(is_measured) {
         return Copied { all: Vec::new(), alone: Vec::new() };
     }
-    let pairs = blocks(gate.data.len(), |row| columns.map(|(_, values, _)| values[row].to_bits()));
+    let pairs = blocks(gate.data.len(), 0.0, |row| columns.map(|(_, values, _)| values[row].to_bits()));
     // Rows that are equal in their times as well are another finding.
     let is_later = |(earlier, later): &(usize, usize)| {
         gate.data.time().map_or(gate.data.is_path(), |time| time[*earlier].total_cmp(&time[*later]).is_ne())
@@ -46,7 +48,7 @@ pub(super) fn rows(gate: &Gate) -> Copied {
     let all = marked(&later, false);
     let of_all = marked(&pairs, true);
     let alone = columns.iter().filter(|column| is_measured(column)).filter_map(|(name, values, _)| {
-        let rows = marked(&blocks(values.len(), |row| values[row].to_bits()), true);
+        let rows = marked(&blocks(values.len(), OTHERS, |row| values[row].to_bits()), true);
         let rows: Vec<usize> = rows.into_iter().filter(|row| of_all.binary_search(row).is_err()).collect();
         is_few(&rows, values.len()).then_some((*name, rows))
     });
@@ -59,9 +61,10 @@ fn is_few(rows: &[usize], of: usize) -> bool {
 }
 
 /// First rows of blocks that repeat a block of equal length before them, with the first row of that block, unless
-/// the rows around them do as well.
+/// the rows around them do as well, or so few are around them that nobody knows.
 fn blocks<K: PartialEq + std::hash::Hash + Eq + Copy>(
     rows: usize,
+    least_others: f64,
     key: impl Fn(usize) -> K,
 ) -> Vec<(usize, usize)> {
     let mut first: HashMap<[K; BLOCK], usize> = HashMap::with_capacity(rows);
@@ -90,7 +93,8 @@ fn blocks<K: PartialEq + std::hash::Hash + Eq + Copy>(
             pairs.iter().flat_map(|(earlier, _)| *earlier..earlier + BLOCK).collect();
         let others = (0..rows - lag).filter(|row| !copied.contains(row));
         let equal = others.clone().filter(|row| key(*row) == key(row + lag)).count();
-        equal as f64 <= REPEATS * others.count() as f64
+        let others = others.count() as f64;
+        others >= least_others * copied.len() as f64 && equal as f64 <= REPEATS * others
     };
     found.into_iter().filter(is_alone).flat_map(|(_, pairs)| pairs).collect()
 }

@@ -203,6 +203,16 @@ fn copied_blocks() {
         *contraction = 0.12 - 0.10 * (std::f64::consts::TAU * phase).cos();
     }
     assert_eq!(quality(columns.clone()).of(FindingKind::DuplicateRow).count(), 0);
+    // The first sweep and the last one, of a drive whose steps look like noise.
+    let mut far = clean_loops(1, 1);
+    for row in 0..=LOOP {
+        let again = (row * 7919) % 1009;
+        motion(&mut far)[row] += 1e-5 * again as f64 / 1009.0;
+    }
+    let first = motion(&mut far)[..=LOOP].to_vec();
+    let end = far.force_n.len();
+    motion(&mut far)[end - LOOP - 1..].copy_from_slice(&first);
+    assert_eq!(quality(far).of(FindingKind::DuplicateRow).count(), 0);
     let (pressure, motion) = (columns.pressure_pa.clone(), columns.motion.values().to_vec());
     columns.pressure_pa = pressure.iter().map(|p| (p / 1e5).round() * 1e5).collect();
     columns.force_n = (0..motion.len()).map(|i| force(columns.pressure_pa[i], motion[i], 0.0)).collect();
