@@ -2,6 +2,7 @@
 //! changed.
 
 mod clipping;
+mod column;
 mod copied;
 mod design;
 mod drift;
@@ -15,6 +16,7 @@ mod values;
 
 use crate::data::Data;
 use crate::resolution::Resolution;
+use column::Column;
 use serde::Serialize;
 use std::ops::Range;
 
@@ -235,6 +237,8 @@ struct Gate<'a> {
     data: &'a Data,
     options: &'a QualityOptions,
     motion: &'a [f64],
+    /// Force, motion, pressure.
+    columns: [Column<'a>; 3],
     pressure: Resolution,
     force: Resolution,
     largest_force: f64,
@@ -245,12 +249,19 @@ impl<'a> Gate<'a> {
     fn new(data: &'a Data, options: &'a QualityOptions) -> Self {
         let sweeps: Vec<Range<usize>> = data.sweeps().iter().map(|sweep| sweep.rows.clone()).collect();
         let largest = |values: &[f64]| values.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+        let motion = data.columns().motion.values();
+        let [force, pressure] = [data.force(), data.pressure()].map(|values| Resolution::of(values, &sweeps));
         let mut gate = Self {
             data,
             options,
-            motion: data.columns().motion.values(),
-            pressure: Resolution::of(data.pressure(), &sweeps),
-            force: Resolution::of(data.force(), &sweeps),
+            motion,
+            columns: [
+                Column::new("force", data.force(), force, &sweeps),
+                Column::new(motion_name(data), motion, data.structure.resolution, &sweeps),
+                Column::new("pressure", data.pressure(), pressure, &sweeps),
+            ],
+            pressure,
+            force,
             largest_force: largest(data.force()),
             largest_pressure: largest(data.pressure()),
         };
@@ -289,10 +300,7 @@ impl<'a> Gate<'a> {
     }
 
     fn motion_name(&self) -> &'static str {
-        match self.data.motion() {
-            crate::Trace::Contraction(_) => "contraction",
-            crate::Trace::Length(_) => "length",
-        }
+        motion_name(self.data)
     }
 
     /// A finding about some rows, in ascending order.
@@ -326,6 +334,13 @@ impl<'a> Gate<'a> {
         instead: &str,
     ) -> Option<Finding> {
         (!rows.is_empty()).then(|| self.finding(kind, severity, rows, says(rows.len()), instead))
+    }
+}
+
+fn motion_name(data: &Data) -> &'static str {
+    match data.motion() {
+        crate::Trace::Contraction(_) => "contraction",
+        crate::Trace::Length(_) => "length",
     }
 }
 

@@ -1,6 +1,5 @@
 //! Clipped readings: a sensor at the end of its range repeats its extreme value while the others move on.
 
-use super::frozen::is_noisy;
 use super::{Finding, FindingKind, Gate, Severity, rows_in_words};
 use crate::resolution::{Resolution, bounds};
 use std::ops::Range;
@@ -75,7 +74,7 @@ pub(super) fn in_columns(gate: &Gate) -> Vec<(&'static str, Vec<usize>)> {
         ("pressure", in_column(gate, pressure, &stuck_pressure)),
     ];
     found[0].1.extend(repeated_end(gate, force, 1.0));
-    if is_noisy(gate, pressure, &gate.pressure) {
+    if gate.columns[2].is_noisy {
         found[2].1.extend([1.0, -1.0].iter().flat_map(|side| repeated_end(gate, pressure, *side)));
     }
     for (_, rows) in &mut found {

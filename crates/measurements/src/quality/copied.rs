@@ -1,7 +1,7 @@
 //! Copied readings: a block of rows, or of one channel, that repeats an earlier block to the last digit.
 
-use super::{Finding, FindingKind, Gate, Severity, frozen::is_noisy, rows_in_words};
-use crate::resolution::Resolution;
+use super::column::Column;
+use super::{Finding, FindingKind, Gate, Severity, rows_in_words};
 use std::collections::{BTreeMap, HashMap, HashSet};
 
 /// Fewest consecutive rows that must agree. Readings with a noise of some steps agree so with a probability of 10^-8,
@@ -28,18 +28,14 @@ pub(super) struct Copied {
 }
 
 pub(super) fn rows(gate: &Gate) -> Copied {
-    let columns = [
-        ("force", gate.data.force(), &gate.force),
-        (gate.motion_name(), gate.motion, gate.motion_resolution()),
-        ("pressure", gate.data.pressure(), &gate.pressure),
-    ];
-    let is_measured = |(_, values, resolution): &(&str, &[f64], &Resolution)| {
-        is_noisy(gate, values, resolution) && resolution.levels().is_none_or(|levels| levels > LEVELS)
+    let is_measured = |column: &Column<'_>| {
+        column.is_noisy && column.resolution.levels().is_none_or(|levels| levels > LEVELS)
     };
-    if !columns.iter().any(is_measured) {
+    if !gate.columns.iter().any(is_measured) {
         return Copied { all: Vec::new(), alone: Vec::new() };
     }
-    let pairs = blocks(gate.data.len(), 0.0, |row| columns.map(|(_, values, _)| values[row].to_bits()));
+    let key = |row: usize| gate.columns.map(|column| column.values[row].to_bits());
+    let pairs = blocks(gate.data.len(), 0.0, key);
     // Rows that are equal in their times as well are another finding.
     let is_later = |(earlier, later): &(usize, usize)| {
         gate.data.time().map_or(gate.data.is_path(), |time| time[*earlier].total_cmp(&time[*later]).is_ne())
@@ -47,10 +43,11 @@ pub(super) fn rows(gate: &Gate) -> Copied {
     let later: Vec<(usize, usize)> = pairs.iter().copied().filter(is_later).collect();
     let all = marked(&later, false);
     let of_all = marked(&pairs, true);
-    let alone = columns.iter().filter(|column| is_measured(column)).filter_map(|(name, values, _)| {
+    let alone = gate.columns.iter().filter(|column| is_measured(column)).filter_map(|column| {
+        let (name, values) = (column.name, column.values);
         let rows = marked(&blocks(values.len(), OTHERS, |row| values[row].to_bits()), true);
         let rows: Vec<usize> = rows.into_iter().filter(|row| of_all.binary_search(row).is_err()).collect();
-        is_few(&rows, values.len()).then_some((*name, rows))
+        is_few(&rows, values.len()).then_some((name, rows))
     });
     let alone = alone.collect();
     Copied { all: if is_few(&all, gate.data.len()) { all } else { Vec::new() }, alone }

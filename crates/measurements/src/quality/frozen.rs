@@ -3,21 +3,13 @@
 //! line to the next.
 
 use super::clipping::expected;
+use super::column::Column;
 use super::{Finding, FindingKind, Gate, Severity, rows_in_words};
-use crate::resolution::Resolution;
 use crate::sweep::SweepKind;
 use std::ops::Range;
 
 /// Fewer consecutive equal rows may be chance.
 const RUN: usize = 8;
-/// With noise of this many quantisation steps, neighbours differ: two normal readings are equal with a
-/// probability of 1/(2 * 2 sqrt(pi)) = 14 %.
-const STEPS: f64 = 2.0;
-/// Noise below this fraction of the range comes from arithmetic, not from measuring.
-const LEAST: f64 = 1e-7;
-/// Fraction of neighbouring fourth differences with opposite signs from which a channel is noisy. White noise
-/// has 1/2 + asin(4/5)/pi = 80 %, a smooth curve hardly any.
-const TURNS: f64 = 0.65;
 /// The limit of [`RUN`] if one channel is filled in while the rest moves on.
 const RUN_ALONE: usize = 4;
 /// Probability that a run occurs by chance in a file of this length.
@@ -65,32 +57,25 @@ impl Filled {
 }
 
 pub(super) fn rows(gate: &Gate) -> Frozen {
-    let (pressure, motion, force) = (gate.data.pressure(), gate.motion, gate.data.force());
-    let columns = [
-        ("force", force, &gate.force),
-        (gate.motion_name(), motion, gate.motion_resolution()),
-        ("pressure", pressure, &gate.pressure),
-    ];
-    let is_noisy = |(_, values, resolution): &(&str, &[f64], &Resolution)| is_noisy(gate, values, resolution);
     // One noisy column is enough if all columns repeat.
-    let all = if columns.iter().any(is_noisy) {
-        let is_equal = |row: usize| columns.iter().all(|(_, values, _)| repeats(values, row));
+    let all = if gate.columns.iter().any(|column| column.is_noisy) {
+        let is_equal = |row: usize| gate.columns.iter().all(|column| repeats(column.values, row));
         runs(gate, is_equal).into_iter().filter(|run| run.len() >= RUN - 1).collect()
     } else {
         Vec::new()
     };
     let mut alone = Vec::new();
-    for column in &columns {
-        let (name, values, resolution) = *column;
+    for column in &gate.columns {
+        let Column { name, values, resolution, is_noisy } = *column;
         let is_force = name == "force";
         let mut held = filled(gate, is_force, |row| repeats(values, row));
         held.retain(|run| !all.contains(run));
-        if !is_noisy(column) {
+        if !is_noisy {
             held.retain(|run| is_force && is_stuck(gate, run));
         }
         let mut drawn = Vec::new();
-        if is_noisy(column) {
-            let tolerance = (LINE * resolution.step).max(LEAST * resolution.range);
+        if is_noisy {
+            let tolerance = (LINE * resolution.step).max(column.rounding());
             drawn = filled(gate, is_force, |row| is_between(gate, values, row, tolerance));
             // A level line is a reading that is held, or coarse.
             let rises = |line: &Range<usize>| (values[line.end] - values[line.start - 1]).abs();
@@ -107,32 +92,11 @@ pub(super) fn rows(gate: &Gate) -> Frozen {
     Frozen { all: all.into_iter().flatten().collect(), alone }
 }
 
-/// Whether the readings of a column have white noise above their resolution.
-pub(super) fn is_noisy(gate: &Gate, values: &[f64], resolution: &Resolution) -> bool {
-    resolution.noise > STEPS * resolution.step
-        && resolution.noise > LEAST * resolution.range
-        && turns(gate, values) > TURNS
-}
-
 /// Whether a force that repeats should have changed by more than its resolution.
 fn is_stuck(gate: &Gate, run: &Range<usize>) -> bool {
     let seen = (3.0 * gate.force.noise).max(gate.force.step).max(LEAST_SEEN * gate.force.range);
     // The first row of a run is a genuine reading.
     expected(gate, &(run.start - 1..run.end)) > MOVES * seen
-}
-
-/// Fraction of neighbouring fourth differences within sweeps that have opposite signs.
-fn turns(gate: &Gate, values: &[f64]) -> f64 {
-    let (mut opposite, mut pairs) = (0_usize, 0_usize);
-    for sweep in gate.data.sweeps() {
-        let fourth = |w: &[f64]| w[0] - 4.0 * w[1] + 6.0 * w[2] - 4.0 * w[3] + w[4];
-        let bends: Vec<f64> = values[sweep.rows.clone()].windows(5).map(fourth).collect();
-        for pair in bends.windows(2).filter(|pair| pair[0] != 0.0 && pair[1] != 0.0) {
-            pairs += 1;
-            opposite += usize::from((pair[0] > 0.0) != (pair[1] > 0.0));
-        }
-    }
-    opposite as f64 / pairs.max(1) as f64
 }
 
 fn repeats(values: &[f64], row: usize) -> bool {

@@ -1,5 +1,6 @@
 //! Spikes: one to three readings off the path on which their neighbours on both sides agree.
 
+use super::column::Column;
 use super::{Finding, FindingKind, Gate, Severity, rows_in_words};
 use crate::data::Data;
 use crate::resolution::Resolution;
@@ -41,15 +42,11 @@ fn paths(data: &Data) -> Vec<Range<usize>> {
 
 /// Spikes of each column.
 pub(super) fn in_columns<'a>(gate: &Gate<'a>) -> Vec<(&'static str, Vec<usize>)> {
-    let columns: [(&'static str, &'a [f64], &Resolution); 3] = [
-        ("force", gate.data.force(), &gate.force),
-        (gate.motion_name(), gate.motion, gate.motion_resolution()),
-        ("pressure", gate.data.pressure(), &gate.pressure),
-    ];
     let paths = paths(gate.data);
-    columns
-        .map(|(name, values, resolution)| (name, along(gate.data, values, resolution, RANGE, &paths)))
-        .to_vec()
+    let spikes = |column: Column<'a>| {
+        (column.name, along(gate.data, column.values, &column.resolution, RANGE, &paths))
+    };
+    gate.columns.map(spikes).to_vec()
 }
 
 pub(super) fn find(gate: &Gate) -> Vec<Finding> {

@@ -39,7 +39,11 @@ pub(super) fn find(gate: &Gate) -> Vec<Finding> {
 /// that is wrong, not the rows.
 pub(super) fn rows(gate: &Gate) -> impl Iterator<Item = (Vec<usize>, String)> {
     let is_few = |found: &Impossible| 2 * found.rows.len() < gate.data.len();
-    readings(gate).into_iter().filter(is_few).map(|found| (found.rows, found.says))
+    let told = |found: Impossible| {
+        let why = format!("impossible: {}; {}", found.says, found.instead);
+        (found.rows, why)
+    };
+    readings(gate).into_iter().filter(is_few).map(told)
 }
 
 fn readings(gate: &Gate) -> Vec<Impossible> {
