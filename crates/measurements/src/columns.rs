@@ -21,9 +21,35 @@ impl Trace {
         }
     }
 
-    fn values_mut(&mut self) -> &mut Vec<f64> {
+    pub(crate) fn values_mut(&mut self) -> &mut Vec<f64> {
         match self {
             Self::Contraction(values) | Self::Length(values) => values,
+        }
+    }
+}
+
+/// A column that is measured.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Channel {
+    /// The pressure.
+    Pressure,
+    /// The contraction or length.
+    Motion,
+    /// The force.
+    Force,
+}
+
+impl Channel {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Pressure, Self::Motion, Self::Force];
+
+    /// Its name in messages.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Pressure => "pressure",
+            Self::Motion => "motion",
+            Self::Force => "force",
         }
     }
 }

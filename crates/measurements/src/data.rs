@@ -1,6 +1,6 @@
 //! The data set: checked columns, files, specimens and sweeps.
 
-use crate::columns::{Columns, Trace, picked};
+use crate::columns::{Channel, Columns, Trace, picked};
 use crate::error::MeasurementError;
 use crate::reading::{ReadOptions, Reading, SetApart};
 use crate::resolution::{Resolution, bounds};
@@ -448,6 +448,37 @@ impl Data {
         found.contradictions = placed.collect();
         found.sweeps.retain(|sweep| !sweep.rows.is_empty());
         found.finished()
+    }
+
+    /// The data with the readings of one column moved to rows before theirs, within each sweep; to rows after
+    /// theirs if `rows` is negative. Rows at the end of a sweep for which there are none keep their own.
+    ///
+    /// ```
+    /// use bulge_measurements::{Channel, Data};
+    /// let text = "pressure [bar], length [mm], force [N], sweep\n2, 300, 9, 1\n2, 290, 7, 1\n2, 280, 5, 1\n";
+    /// let data = Data::from_csv(text, "pull.csv")?;
+    /// assert_eq!(data.clone().moved(Channel::Force, 1).force(), [7.0, 5.0, 5.0]);
+    /// assert_eq!(data.moved(Channel::Force, -2).force(), [9.0, 7.0, 9.0]);
+    /// # Ok::<(), bulge_measurements::MeasurementError>(())
+    /// ```
+    #[must_use]
+    pub fn moved(mut self, channel: Channel, rows: isize) -> Self {
+        let columns = Arc::make_mut(&mut self.columns);
+        let values = match channel {
+            Channel::Pressure => &mut columns.pressure_pa,
+            Channel::Motion => columns.motion.values_mut(),
+            Channel::Force => &mut columns.force_n,
+        };
+        for sweep in &self.sweeps {
+            let (own, by) = (&mut values[sweep.rows.clone()], rows.unsigned_abs());
+            let count = own.len();
+            if by < count && rows > 0 {
+                own.copy_within(by.., 0);
+            } else if by < count {
+                own.copy_within(..count - by, by);
+            }
+        }
+        self.finished()
     }
 
     /// All columns, shared, because copies are large.

@@ -57,7 +57,7 @@ mod window;
 mod written;
 
 pub use column_map::{ColumnEntry, ColumnMap};
-pub use columns::{Columns, Labels, Trace};
+pub use columns::{Channel, Columns, Labels, Trace};
 pub use data::Data;
 pub use error::MeasurementError;
 pub use heading::{RecognisedColumn, recognised_columns};

@@ -23,6 +23,7 @@ use crate::diagnosis::either::quieter;
 use crate::diagnosis::event::{Anew, event};
 use crate::diagnosis::fits::Fits;
 use crate::diagnosis::geometry::{Doubt, geometry};
+use crate::diagnosis::late::Late;
 use crate::diagnosis::linearised_model::Context;
 use crate::diagnosis::next::{Judged, next_experiment};
 use crate::diagnosis::not_looked_for::not_looked_for;
@@ -152,7 +153,13 @@ fn diagnosed(
         let [stated, muscle] = [with_exchanged(stated, names)?, with_exchanged(muscle, names)?];
         diagnosed(data, [&stated, &muscle], &silent(), Across::Anything).ok()
     };
-    let anew = Anew { without: &without, exchanged: &exchanged };
+    let moved = |late: Late| {
+        let mut options = silent();
+        options.base.excluded.extend(late.without_partner(data));
+        diagnosed(&data.clone().moved(late.channel, late.rows), [stated, muscle], &options, Across::Anything)
+            .ok()
+    };
+    let anew = Anew { without: &without, exchanged: &exchanged, moved: &moved };
     let anew = (across == Across::NoEvent).then_some(anew);
     let (diagnosis, used) = where_it_has_a_state(&analysis, &mut base, |base, used| {
         on_rows(&analysis, &first, base, used, (options, anew))

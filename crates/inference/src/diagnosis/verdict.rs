@@ -189,7 +189,10 @@ impl Findings<'_> {
             // If something remains, effects with impossible parameters stand in for something else and are
             // not claimed.
             let claimed = if last.adequate { sound.into_iter().chain(odd).collect() } else { sound };
-            let (claimed, _) = self.apart(claimed);
+            let (claimed, doubtful) = self.apart(claimed);
+            if claimed.is_empty() {
+                return self.nameless(&doubtful);
+            }
             let says = format!(
                 "missing: {}; {beside} most of the misfit, and {size} of structure remain {further}",
                 self.labels(&claimed)
@@ -285,17 +288,10 @@ impl Findings<'_> {
 
     /// The verdict if these effects explain the data.
     fn explained_by(&self, all: Vec<String>) -> Said {
-        if let [only] = &all[..]
-            && self.mechanism(only) < RULE.nameless
-        {
-            let says = format!(
-                "something may be missing, and these data don't say what: {} is the likeliest, and such a name is right in fewer than one case in three; measure more \
-                 rows, or more of what moves",
-                self.labels(&all)
-            );
-            return Said::nothing(Verdict::CannotTell, says);
-        }
         let (claimed, doubtful) = self.apart(all);
+        if claimed.is_empty() {
+            return self.nameless(&doubtful);
+        }
         let with = if claimed.len() + doubtful.len() == 1 { "it" } else { "them" };
         let but = self.unsmooth().map_or_else(String::new, |left| format!(", but for {left}"));
         let and = if doubtful.is_empty() {
@@ -306,6 +302,16 @@ impl Findings<'_> {
         let says =
             format!("missing: {}{and}; with {with} the model explains the data{but}", self.labels(&claimed));
         Said { verdict: Verdict::Missing, says, claimed }
+    }
+
+    /// The verdict if none of the effects that explain the data deserves a claim.
+    fn nameless(&self, doubtful: &[String]) -> Said {
+        let says = format!(
+            "something may be missing, and these data don't say what: the likeliest is {}, and such names are wrong more often than right; measure more rows, or more of \
+             what moves",
+            self.labels(doubtful)
+        );
+        Said::nothing(Verdict::CannotTell, says)
     }
 
     /// Confidence in the mechanism of a named effect.
@@ -319,8 +325,9 @@ impl Findings<'_> {
     }
 
     /// Separates claims from doubtful names: further effects with little evidence over a model without them,
-    /// or with a mechanism that is more likely wrong than right. The effect with the largest evidence is
-    /// always a claim, and the surest one needn't be more likely right than wrong.
+    /// or with a mechanism that is more likely wrong than right. The effect with the largest evidence and the
+    /// surest one needn't be more likely right than wrong, but no name is claimed that is wrong in most cases, or
+    /// that is likelier nothing and within the noise.
     fn apart(&self, names: Vec<String>) -> (Vec<String>, Vec<String>) {
         let evidence =
             |name: &String| self.class(name).map_or(f64::INFINITY, |(class, _)| class.log_evidence);
@@ -328,7 +335,14 @@ impl Findings<'_> {
         let surest = names.iter().map(|name| self.mechanism(name)).fold(0.0, f64::max);
         let is_seen = |name: &String| evidence(name) >= RULE.seen.min(most);
         let is_decided = |name: &String| self.mechanism(name) >= RULE.decides.min(surest);
-        names.into_iter().partition(|name| evidence(name) >= most || is_seen(name) && is_decided(name))
+        let is_there = |name: &String| {
+            let is_seen = |class: &Class| class.log_evidence >= 0.0 || class.detectability >= RULE.separation;
+            self.class(name).is_none_or(|(class, _)| is_seen(class))
+        };
+        let is_named = |name: &String| self.mechanism(name) >= RULE.nameless && is_there(name);
+        names
+            .into_iter()
+            .partition(|name| is_named(name) && (evidence(name) >= most || is_seen(name) && is_decided(name)))
     }
 
     /// Whether the formulas of the effects explain nearly everything as they are, so that the rest is their

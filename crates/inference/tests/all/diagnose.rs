@@ -8,7 +8,7 @@ use bulge_inference::{
     BentCurve, Block, DiagnoseOptions, Diagnosis, Options, Path, Protocol, ReadingNoise, Verdict, diagnose,
     simulate,
 };
-use bulge_measurements::{Columns, Data, Trace};
+use bulge_measurements::{Channel, Columns, Data, Trace};
 use bulge_model::{Model, Record, Wanted};
 use bulge_muscles::{Muscle, Quantity, from_toml};
 use bulge_numerics::Random;
@@ -239,6 +239,50 @@ fn a_pressure_that_reads_more_for_a_while_is_no_physics() {
     let found = diagnosed(&Data::from_columns(columns).unwrap());
     assert_eq!((found.verdict, names(&found)), (Verdict::CannotTell, vec![]), "{}", found.says);
     assert!(found.says.contains("nothing is missing") && found.remaining.event.is_some(), "{}", found.says);
+}
+
+/// Rows whose readings were replaced; `spoil` gets the columns.
+fn spoilt(data: &Data, spoil: impl FnOnce(&mut Columns)) -> Diagnosis {
+    let mut columns = data.columns().as_ref().clone();
+    spoil(&mut columns);
+    diagnosed(&Data::from_columns(columns).unwrap())
+}
+
+#[test]
+fn a_column_that_comes_late_is_no_lag_and_a_lag_is_no_late_column() {
+    let data = measured(&[], &protocol(2.0, 0.0), 7);
+    for (channel, rows) in [(Channel::Force, 3), (Channel::Motion, 2), (Channel::Force, -4)] {
+        let late = diagnosed(&data.clone().moved(channel, -rows));
+        assert_eq!((late.verdict, names(&late)), (Verdict::CannotTell, vec![]), "{}", late.says);
+        let earlier = if rows > 0 { "earlier" } else { "later" };
+        let says = format!("the {} {} rows (", channel.name(), rows.abs());
+        assert!(late.says.contains(&says) && late.says.contains(earlier), "{}", late.says);
+    }
+    // A lag of two rows leaves nothing by its own formula.
+    let seconds = data.time().unwrap()[2] - data.time().unwrap()[0];
+    let found = diagnosed(&measured(&[("force-lag", &[seconds])], &protocol(2.0, 0.0), 7));
+    assert_eq!((found.verdict, names(&found)), (Verdict::Missing, vec!["force-lag"]), "{}", found.says);
+}
+
+#[test]
+fn a_length_that_slips_for_the_rest_of_the_test_is_no_creep() {
+    let data = measured(&[], &protocol(2.0, 0.0), 8);
+    let slipped = 170..data.len();
+    let found = spoilt(&data, |columns| {
+        let Trace::Contraction(values) = &mut columns.motion else { unreachable!() };
+        values[slipped.clone()].iter_mut().for_each(|value| *value += 0.004);
+    });
+    assert_eq!((found.verdict, names(&found)), (Verdict::CannotTell, vec![]), "{}", found.says);
+    assert!(found.says.contains("contraction read 0.40 points too much"), "{}", found.says);
+}
+
+#[test]
+fn rows_here_and_there_that_are_something_else_are_no_physics() {
+    let data = measured(&[], &protocol(2.0, 0.0), 9);
+    // A third of the readings in half of the record miss a bit: they are 30 N too low.
+    let missing: Vec<usize> = (40..240).filter(|row| row * 7 % 11 < 3).collect();
+    let found = spoilt(&data, |columns| missing.iter().for_each(|row| columns.force_n[*row] -= 30.0));
+    assert!(found.missing.is_empty() && found.verdict != Verdict::Unknown, "{}", found.says);
 }
 
 #[test]

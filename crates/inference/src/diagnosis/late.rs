@@ -1,0 +1,183 @@
+//! A column that comes late: loggers of their own, whose clocks were put together by hand. Each row then holds
+//! readings of different times, and lags and friction explain a part of what follows from it.
+
+use bulge_measurements::{Channel, Data, Sweep};
+use bulge_model::{Wanted, Warm};
+use bulge_muscles::units::significant;
+use std::ops::Range;
+
+use crate::diagnosis::write::Findings;
+use crate::median::median;
+
+/// Rows by which a column is tried to be late or early; between two of them the error has no other minimum.
+const TRIED: [isize; 12] = [1, 2, 3, 4, 6, 8, 11, 15, 20, 26, 33, 40];
+/// Fewest rows that are left, as a fraction of all.
+const LEFT: f64 = 0.6;
+/// RMS error with the column moved over that as read,
+const FALLS: f64 = 0.5;
+/// and over that of what was named: a lag of the rig leaves less itself.
+const BETTER: f64 = 0.95;
+/// Columns whose sums of squares differ by less than this factor are alike.
+const ALIKE: f64 = 1.5;
+
+/// A column and the rows by which it is late; negative if it is early.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Late {
+    pub(crate) channel: Channel,
+    pub(crate) rows: isize,
+}
+
+impl Late {
+    /// The columns that leave the base the least error if one of them is moved, if that is much less than as read,
+    /// and less than the last model leaves. At constant pressure, a late force is as good as an early motion; late
+    /// columns come first.
+    pub(crate) fn of(found: &Findings<'_>, data: &Data, groups: &[Vec<usize>]) -> Vec<Self> {
+        let Some(base) = found.search.stages.first() else { return Vec::new() };
+        if !data.is_path() || groups.iter().any(|group| group.len() != 1) {
+            return Vec::new();
+        }
+        let trial = Trial { found, next: &Next::of(found, groups) };
+        let square = |force: &[f64], kept: &[bool]| Trial::square(&trial.at(Channel::Force, 0), force, kept);
+        let best = Channel::ALL.into_iter().filter_map(|channel| trial.best(channel));
+        let mut tried: Vec<(Self, f64)> = best
+            .filter_map(|late| {
+                let (moved, kept) = trial.moved(late)?;
+                let part = moved / square(&base.linear.force, &kept);
+                let is_better = moved < BETTER * BETTER * square(&found.last().linear.force, &kept);
+                (part < FALLS * FALLS && is_better).then_some((late, part))
+            })
+            .collect();
+        let least = tried.iter().map(|(_, part)| *part).fold(f64::INFINITY, f64::min);
+        tried.retain(|(_, part)| *part < ALIKE * least);
+        tried.sort_by_key(|(late, _)| late.rows < 0);
+        tried.into_iter().map(|(late, _)| late).collect()
+    }
+
+    /// Rows for which the column has no reading once it is moved: those at the ends of the sweeps.
+    pub(crate) fn without_partner(self, data: &Data) -> Vec<usize> {
+        let by = self.rows.unsigned_abs();
+        let of = |sweep: &Sweep| {
+            let Range { start, end } = sweep.rows;
+            if self.rows > 0 { end.saturating_sub(by).max(start)..end } else { start..(start + by).min(end) }
+        };
+        data.sweeps().iter().flat_map(of).collect()
+    }
+
+    /// A question about one of several that are alike.
+    pub(crate) fn asks(alike: &[Self], data: &Data) -> String {
+        let step = data
+            .time()
+            .map(|time| median(&mut time.windows(2).map(|pair| pair[1] - pair[0]).collect::<Vec<f64>>()));
+        let moved = |late: &Self| {
+            let rows = late.rows.unsigned_abs();
+            let plural = if rows == 1 { "" } else { "s" };
+            let seconds =
+                step.map_or_else(String::new, |step| format!(" ({} s)", significant(step * rows as f64, 2)));
+            let side = if late.rows > 0 { "earlier" } else { "later" };
+            format!("the {} {rows} row{plural}{seconds} {side}", late.channel.name())
+        };
+        format!(
+            "with {} nothing is missing: was a column recorded late, or by another clock? Put the readings of one moment into one row, and ask again",
+            alike.iter().map(moved).collect::<Vec<String>>().join(", or ")
+        )
+    }
+}
+
+/// The row that follows each mean after some rows, if it is one of the same sweep.
+struct Next {
+    /// Row of the file of each mean, and the end of its sweep.
+    rows: Vec<(usize, Range<usize>)>,
+}
+
+impl Next {
+    fn of(found: &Findings<'_>, groups: &[Vec<usize>]) -> Self {
+        let sweeps = found.context.record.sweeps();
+        let rows = groups.iter().enumerate().map(|(place, group)| {
+            let own = sweeps.iter().find(|sweep| sweep.contains(&place));
+            (group.first().copied().unwrap_or(0), own.cloned().unwrap_or(place..place + 1))
+        });
+        Self { rows: rows.collect() }
+    }
+
+    /// The mean `by` rows after another.
+    fn after(&self, place: usize, by: isize) -> Option<usize> {
+        let other = place.checked_add_signed(by)?;
+        let ((row, sweep), (other_row, _)) = (self.rows.get(place)?, self.rows.get(other)?);
+        // Rows that don't count may lie between them.
+        (sweep.contains(&other) && row.checked_add_signed(by)? == *other_row).then_some(other)
+    }
+}
+
+/// The base, with columns that are moved.
+struct Trial<'a> {
+    found: &'a Findings<'a>,
+    next: &'a Next,
+}
+
+impl Trial<'_> {
+    /// The rows by which a column leaves the least error, by descent from the best of those that are tried.
+    fn best(&self, channel: Channel) -> Option<Late> {
+        let error = |rows: isize| {
+            let (square, kept) = self.moved(Late { channel, rows })?;
+            Some(square / kept.iter().filter(|kept| **kept).count() as f64)
+        };
+        let signed = TRIED.iter().flat_map(|rows| [*rows, -rows]);
+        let tried = signed.filter_map(|rows| Some((rows, error(rows)?)));
+        let (mut rows, mut least) = tried.min_by(|a, b| a.1.total_cmp(&b.1))?;
+        for step in [1, -1] {
+            while let Some(other) = error(rows + step).filter(|other| rows + step != 0 && *other < least) {
+                (rows, least) = (rows + step, other);
+            }
+        }
+        Some(Late { channel, rows })
+    }
+
+    /// The sum of squared errors of the base with a column moved, and the rows that have one; none if they are
+    /// few.
+    fn moved(&self, late: Late) -> Option<(f64, Vec<bool>)> {
+        let (record, base) = (self.found.context.record, &self.found.search.stages.first()?.confirmed);
+        let kept: Vec<bool> =
+            (0..record.len()).map(|place| self.next.after(place, late.rows).is_some()).collect();
+        if (kept.iter().filter(|kept| **kept).count() as f64) < LEFT * kept.len() as f64 {
+            return None;
+        }
+        let read = self.at(late.channel, late.rows);
+        let force = if late.channel == Channel::Force {
+            self.found.search.stages.first()?.linear.force.clone()
+        } else {
+            let moments = record.moments();
+            let [pressure, contraction] = match late.channel {
+                Channel::Pressure => [read.clone(), moments.iter().map(|m| m.contraction).collect()],
+                Channel::Motion | Channel::Force => {
+                    [moments.iter().map(|m| m.pressure).collect(), read.clone()]
+                }
+            };
+            let record = record.clone().at(&pressure, &contraction);
+            let model = &base.prepared.model;
+            let partly = model
+                .evaluate_partly(&record, &base.theta, &Wanted::default(), &Warm::of_rows(&kept))
+                .ok()?;
+            partly.prediction.force
+        };
+        let read = if late.channel == Channel::Force { read } else { self.at(Channel::Force, 0) };
+        Some((Self::square(&read, &force, &kept), kept))
+    }
+
+    /// A column moved by some rows; where there is none its own value stays.
+    fn at(&self, channel: Channel, by: isize) -> Vec<f64> {
+        let record = self.found.context.record;
+        let value = |place: usize| match channel {
+            Channel::Pressure => record.moments()[place].pressure,
+            Channel::Motion => record.moments()[place].contraction,
+            Channel::Force => record.force()[place],
+        };
+        (0..record.len()).map(|place| value(self.next.after(place, by).unwrap_or(place))).collect()
+    }
+
+    /// Sum of squared differences in the rows that are kept; a row without a state counts as infinitely far.
+    fn square(read: &[f64], force: &[f64], kept: &[bool]) -> f64 {
+        let own = read.iter().zip(force).zip(kept).filter(|(_, kept)| **kept);
+        let squares = own.map(|((read, force), _)| (read - force).powi(2));
+        squares.map(|square| if square.is_finite() { square } else { f64::INFINITY }).sum()
+    }
+}

@@ -1,0 +1,84 @@
+//! A channel that is shifted from some moment on, or for a sweep: a clamp that slipped, a sensor that was zeroed anew.
+//! The force is as good a channel as the others, and what looks like creep or heat may be one step of the length.
+
+use bulge_effects::Moment;
+use bulge_model::{Record, Wanted, Warm};
+use bulge_muscles::units::significant;
+
+use crate::diagnosis::trimmed::Linearised;
+use crate::diagnosis::write::Findings;
+use crate::vector::{dot, minus};
+
+/// Sum of squares that a shift of a channel explains over that of what was named, at least.
+const AS_WELL: f64 = 0.8;
+/// Rows on either side of one at which another state may be set, and the least step as a fraction of the range.
+const AROUND: usize = 2;
+const STEP: f64 = 0.2;
+
+/// A part of the rows, in which a channel is shifted.
+pub(crate) struct Shifted {
+    pub(crate) odd: Vec<bool>,
+    /// The shift in words.
+    pub(crate) says: String,
+    /// Whether it explains clearly more than what was named.
+    pub(crate) is_better: bool,
+}
+
+/// The shift of a channel that explains the data as well as what was named: in its window, or in all other rows.
+/// The smaller part is left out first.
+pub(crate) fn shifts(found: &Findings<'_>, linear: &Linearised) -> Vec<Shifted> {
+    let of = || {
+        let (record, base) = (found.context.record, found.search.stages.first()?);
+        let wanted = Wanted { parameters: Vec::new(), readings: true };
+        let at = &base.confirmed;
+        let slopes = at.prepared.model.evaluate_warm(record, &at.theta, &wanted, &Warm::new()).ok()?;
+        let square = |force: &[f64]| {
+            let left = minus(record.force(), force);
+            dot(&left, &left)
+        };
+        let named = square(&base.linear.force) - square(&found.last().linear.force);
+        // In the order of the channels; a force that reads too much is no change of the model's.
+        let slopes = [slopes.by_pressure, slopes.by_contraction, vec![-1.0; record.len()]];
+        Some((linear.shift(&slopes, record.sweeps(), AS_WELL * named)?, named))
+    };
+    let Some((shift, named)) = of() else { return Vec::new() };
+    let rows = found.context.record.len();
+    let is_better = shift.more > named && !is_another_state(found.context.record, shift.window.start);
+    let part = |is_window: bool| {
+        // The model's force needs another reading than the one that was taken.
+        let by = if is_window { -shift.by } else { shift.by };
+        let of = |scale: f64, unit: &str| {
+            let side = if by > 0.0 { "much" } else { "little" };
+            format!("{} {unit} too {side}", significant((by / scale).abs(), 2))
+        };
+        let says = match shift.channel {
+            0 => format!("the pressure read {}", of(1e5, "bar")),
+            1 => format!("the contraction read {}", of(0.01, "points")),
+            _ => format!("the force read {}", of(1.0, "N")),
+        };
+        let odd = (0..rows).map(|place| shift.window.contains(&place) == is_window).collect();
+        Shifted { odd, says, is_better }
+    };
+    let is_small = 2 * shift.window.len() <= rows;
+    vec![part(is_small), part(!is_small)]
+}
+
+/// Whether another state is set at a row: an effect of what is held then changes there as well.
+fn is_another_state(record: &Record, row: usize) -> bool {
+    let near = |other: usize| other.abs_diff(row) <= AROUND;
+    if record.sweeps().iter().any(|sweep| near(sweep.start)) {
+        return true;
+    }
+    let moments = record.moments();
+    let part = |of: fn(&Moment) -> f64| {
+        let range = |of: &[f64]| {
+            let (low, high) =
+                of.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(*x), b.max(*x)));
+            high - low
+        };
+        let values: Vec<f64> = moments.iter().map(of).collect();
+        let end = (row + AROUND).min(values.len());
+        range(&values[row.saturating_sub(AROUND)..end]) / range(&values).max(f64::MIN_POSITIVE)
+    };
+    part(|moment| moment.pressure) > STEP || part(|moment| moment.contraction) > STEP
+}

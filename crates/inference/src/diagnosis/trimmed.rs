@@ -1,0 +1,319 @@
+//! Least trimmed squares of the base (Rousseeuw 1984): the rows that it fits if a quarter of them may be
+//! anything. It is linearised at its numbers, in newtons and not whitened: a law of the noise that was
+//! estimated from spoilt rows would spread each of them over its neighbours.
+
+use bulge_model::{ModelError, Record};
+use nalgebra::{DMatrix, DVector};
+use std::ops::Range;
+
+use crate::diagnosis::tangents::Tangents;
+use crate::fit::nuisance::Prepared;
+use crate::median::median;
+use crate::vector::{dot, norm};
+
+/// One in so many rows may be anything.
+const SPOILT: usize = 4;
+/// Fraction of the rows that may be odd in the end.
+const MOST: f64 = 0.3;
+/// Standard deviations from which a row is odd: a normal variable exceeds them once in 2000 rows.
+const FAR: f64 = 3.5;
+/// Median of |x| for a standard normal x.
+const MEDIAN_SIZE: f64 = 0.674_489_750_196_081_7;
+/// Starts without a quarter of the record.
+const PARTS: usize = 8;
+/// Most concentration steps; each lowers the sum, and a few suffice.
+const STEPS: usize = 30;
+
+/// Starts of windows in which a channel may be shifted, and fewest rows of each.
+const WINDOWS: usize = 60;
+const FEWEST: usize = 5;
+/// Fraction of a shift that the numbers of the model must leave.
+const SEEN: f64 = 0.02;
+/// Sum of squares of a shift, in variances of what the model leaves: 6 sigma, of some hundred windows that are
+/// tried.
+const CLEAR: f64 = 36.0;
+
+/// A model linearised at its numbers.
+pub(crate) struct Linearised {
+    /// Derivative of the force by each free number.
+    columns: Vec<Vec<f64>>,
+    /// What the prior of a free number asks it to change by, with its standard deviation.
+    priors: Vec<Option<[f64; 2]>>,
+    /// Measured less computed force \[N\].
+    residual: Vec<f64>,
+}
+
+/// What a claim explains in some rows.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Share {
+    /// Its sum of squares beside the numbers of the base, in variances of what the base leaves there.
+    pub(crate) expected: f64,
+    /// Fraction of it that the readings show: 1 if the claim is right, 0 if the rows know nothing of it.
+    pub(crate) shown: f64,
+}
+
+impl Linearised {
+    /// A model at numbers `theta`.
+    pub(crate) fn of(prepared: &Prepared, theta: &[f64], record: &Record) -> Result<Self, ModelError> {
+        let tangents = Tangents::of(prepared, theta, record)?;
+        let prior = |index: &usize| {
+            let (mean, sd) = prepared.priors[*index].filter(|_| prepared.nuisance[*index])?;
+            Some([mean - theta[*index], sd])
+        };
+        let priors = tangents.free.iter().map(prior).collect();
+        Ok(Self { columns: tangents.columns, priors, residual: tangents.residual })
+    }
+
+    /// Rows that the model doesn't fit, if they are few.
+    pub(crate) fn odd(&self) -> Option<Vec<bool>> {
+        let rows = self.residual.len();
+        let spoilt = rows / SPOILT;
+        // From all rows, and from those without a part of the record: many spoilt rows draw the first fit to them.
+        let parts = (0..PARTS).map(|part| part * rows / PARTS);
+        let starts = std::iter::once(rows)
+            .chain(parts)
+            .map(|start| (0..rows).map(|row| row < start || row >= start + spoilt).collect::<Vec<bool>>());
+        let best = starts.filter_map(|kept| self.concentrated(kept, rows - spoilt));
+        let (_, mut left) = best.min_by(|a, b| a.0.total_cmp(&b.0))?;
+        // The best three quarters say how large the noise is, and the noise which rows are odd.
+        let mut kept = Vec::new();
+        for _ in 0..STEPS {
+            let sd = scale(&left);
+            let near: Vec<bool> = left.iter().map(|left| left.abs() <= FAR * sd).collect();
+            if near == kept {
+                break;
+            }
+            kept = near;
+            left = self.left(&kept)?;
+        }
+        let odd: Vec<bool> = kept.iter().map(|kept| !kept).collect();
+        let count = odd.iter().filter(|odd| **odd).count();
+        (count > 0 && count as f64 <= MOST * rows as f64).then_some(odd)
+    }
+
+    /// The least sum of squares of `most` rows that concentration steps reach from a start, and what is left of
+    /// all.
+    fn concentrated(&self, mut kept: Vec<bool>, most: usize) -> Option<(f64, Vec<f64>)> {
+        let mut reached = (f64::INFINITY, Vec::new());
+        for _ in 0..STEPS {
+            let left = self.left(&kept)?;
+            let mut order: Vec<usize> = (0..left.len()).collect();
+            order.sort_by(|a, b| left[*a].abs().total_cmp(&left[*b].abs()));
+            let sum: f64 = order[..most].iter().map(|row| left[*row].powi(2)).sum();
+            if sum >= reached.0 {
+                break;
+            }
+            reached = (sum, left);
+            kept.fill(false);
+            order[..most].iter().for_each(|row| kept[*row] = true);
+        }
+        Some(reached)
+    }
+
+    /// What `claimed` newtons explain in the rows that are kept; none if nothing can be fitted there.
+    pub(crate) fn share(&self, claimed: &[f64], kept: &[bool]) -> Option<Share> {
+        let only = |values: Vec<f64>| -> Vec<f64> {
+            values.into_iter().zip(kept).filter(|(_, kept)| **kept).map(|(value, _)| value).collect()
+        };
+        let left = only(self.left(kept)?);
+        let sd = scale(&left);
+        let claimed = only(self.outside(claimed, kept, sd, 0.0)?);
+        let square = dot(&claimed, &claimed);
+        (square > 0.0).then(|| Share {
+            expected: square / (sd * sd).max(f64::MIN_POSITIVE),
+            shown: dot(&claimed, &left) / square,
+        })
+    }
+
+    /// RMS that the model leaves in the rows that are kept, over that in all \[N\].
+    pub(crate) fn falls_to(&self, kept: &[bool]) -> Option<f64> {
+        let size = |left: &[f64], of: &[bool]| {
+            let of = left.iter().zip(of).filter(|(_, of)| **of).map(|(left, _)| left * left);
+            let (square, rows) = of.fold((0.0, 0.0), |(square, rows), one| (square + one, rows + 1.0));
+            (square / f64::max(rows, 1.0)).sqrt()
+        };
+        let all = vec![true; kept.len()];
+        let before = size(&self.left(&all)?, &all);
+        (before > 0.0).then_some(size(&self.left(kept)?, kept) / before)
+    }
+
+    /// What the model leaves of the readings of all rows if its numbers are those of the rows that are kept
+    /// \[N\].
+    fn left(&self, kept: &[bool]) -> Option<Vec<f64>> {
+        // The weight of the priors depends on the noise, and the noise on what is left: twice is enough.
+        let first = self.outside(&self.residual, kept, scale(&self.residual), 1.0)?;
+        self.outside(&self.residual, kept, scale(&first), 1.0)
+    }
+
+    /// Values without what the numbers of the model make of them in the rows that are kept, for noise of `sd`;
+    /// `towards` is 1 if the numbers are drawn to their priors, 0 if they are only held by them.
+    fn outside(&self, values: &[f64], kept: &[bool], sd: f64, towards: f64) -> Option<Vec<f64>> {
+        let chosen = |values: &[f64]| -> Vec<f64> {
+            values.iter().zip(kept).map(|(value, kept)| if *kept { *value } else { 0.0 }).collect()
+        };
+        let columns: Vec<Vec<f64>> = self.columns.iter().map(|column| chosen(column)).collect();
+        let target = chosen(values);
+        let sizes: Vec<f64> = columns.iter().map(|column| norm(column).max(f64::MIN_POSITIVE)).collect();
+        let count = columns.len();
+        let mut matrix =
+            DMatrix::from_fn(count, count, |a, b| dot(&columns[a], &columns[b]) / (sizes[a] * sizes[b]));
+        let mut right = DVector::from_fn(count, |a, _| dot(&columns[a], &target) / sizes[a]);
+        for (place, prior) in self.priors.iter().enumerate() {
+            // Numbers that two columns can't tell apart share what they explain.
+            matrix[(place, place)] += f64::EPSILON.sqrt();
+            if let Some([mean, width]) = prior {
+                let weight = (sd / width).powi(2) / sizes[place];
+                matrix[(place, place)] += weight / sizes[place];
+                right[place] += towards * weight * mean;
+            }
+        }
+        let numbers = matrix.cholesky()?.solve(&right);
+        let mut outside = values.to_vec();
+        for ((column, size), number) in self.columns.iter().zip(&sizes).zip(numbers.iter()) {
+            outside.iter_mut().zip(column).for_each(|(value, slope)| *value -= number / size * slope);
+        }
+        Some(outside)
+    }
+}
+
+impl Linearised {
+    /// The shift of a channel within a window of rows that explains most of the misfit, if that is a sum of squares
+    /// of at least `least` \[N^2\] and no chance. `slopes` are the changes of the force by each channel.
+    pub(crate) fn shift(&self, slopes: &[Vec<f64>], sweeps: &[Range<usize>], least: f64) -> Option<Shift> {
+        let rows = self.residual.len();
+        let all = vec![true; rows];
+        let left = self.left(&all)?;
+        let sd = scale(&left);
+        let gain = |channel: usize, window: &Range<usize>| {
+            let mut column = vec![0.0; rows];
+            column[window.clone()].copy_from_slice(&slopes[channel][window.clone()]);
+            let outside = self.outside(&column, &all, sd, 0.0)?;
+            let (own, along) = (dot(&outside, &outside), dot(&outside, &left));
+            (own > SEEN * dot(&column, &column)).then(|| (along * along / own, along / own))
+        };
+        let best = |windows: Vec<Range<usize>>| {
+            let each =
+                windows.iter().flat_map(|window| (0..slopes.len()).map(move |channel| (channel, window)));
+            let found = each.filter_map(|(channel, window)| {
+                let (gain, by) = gain(channel, window)?;
+                Some((gain, Shift { channel, window: window.clone(), by, more: gain }))
+            });
+            found.max_by(|a, b| a.0.total_cmp(&b.0))
+        };
+        let stride = (rows / WINDOWS).max(1);
+        let (_, rough) = best(windows(rows, stride, sweeps))?;
+        // Nearer to the row itself.
+        let start = rough.window.start;
+        let near = start.saturating_sub(stride)..(start + stride).min(rough.window.end);
+        let near = near.map(|start| start..rough.window.end).filter(|window| window.len() >= FEWEST);
+        let (gain, shift) = best(near.collect())?;
+        (gain > least && gain > CLEAR * sd * sd).then_some(Shift { more: gain - CLEAR * sd * sd, ..shift })
+    }
+}
+
+/// Windows in which a channel may be shifted: to the end of the record, to the end of a sweep, a whole sweep.
+fn windows(rows: usize, stride: usize, sweeps: &[Range<usize>]) -> Vec<Range<usize>> {
+    let starts = (FEWEST..rows).step_by(stride).chain(sweeps.iter().map(|sweep| sweep.start));
+    let ends = |start: usize| {
+        let own = sweeps.iter().find(|sweep| sweep.contains(&start)).map(|sweep| sweep.end);
+        [Some(rows), own.filter(|end| *end < rows)].into_iter().flatten()
+    };
+    let windows = starts.flat_map(|start| ends(start).map(move |end| start..end));
+    windows.filter(|window| window.len() >= FEWEST && window.len() < rows).collect()
+}
+
+/// A channel that is shifted within a window.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Shift {
+    /// Index of the channel.
+    pub(crate) channel: usize,
+    pub(crate) window: Range<usize>,
+    /// Size, in the unit of the channel.
+    pub(crate) by: f64,
+    /// Sum of squares that it explains beyond chance \[N^2\].
+    pub(crate) more: f64,
+}
+
+/// Standard deviation of values by their median size.
+fn scale(values: &[f64]) -> f64 {
+    median(&mut values.iter().map(|value| value.abs()).collect::<Vec<_>>()) / MEDIAN_SIZE
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bulge_numerics::Random;
+
+    /// 100 readings of 2 + 3 x with noise of 0.1, every `of`-th of them spoilt by 20 N, all to one side.
+    fn line(of: usize) -> Linearised {
+        let mut random = Random::new(5, 0);
+        let x: Vec<f64> = (0..100).map(|row| f64::from(row) / 99.0).collect();
+        let spoilt = |row: usize| if row.is_multiple_of(of) { 20.0 * x[row] + 5.0 } else { 0.0 };
+        let residual = (0..100).map(|row| 2.0 + 3.0 * x[row] + 0.1 * random.normal() + spoilt(row)).collect();
+        Linearised { columns: vec![vec![1.0; 100], x], priors: vec![None; 2], residual }
+    }
+
+    #[test]
+    fn a_fifth_of_the_rows_may_be_anything() {
+        let odd = line(5).odd().unwrap();
+        assert!((0..100).all(|row| odd[row] == row.is_multiple_of(5)), "{odd:?}");
+        assert!(line(200).odd().is_none_or(|odd| odd.iter().filter(|odd| **odd).count() == 1));
+        // A third is too much to be odd.
+        assert!(line(3).odd().is_none());
+    }
+
+    #[test]
+    fn a_channel_that_slips_is_found_with_its_row_and_size() {
+        let mut line = line(200);
+        line.residual[0] = 2.0;
+        let slopes = [vec![1.0; 100], (0..100).map(|row| 4.0 + (0.3 * f64::from(row)).sin()).collect()];
+        let sweeps = [0..50, 50..100];
+        assert_eq!(line.shift(&slopes, &sweeps, 0.0), None);
+        let whole = line.residual.clone();
+        for (channel, window) in [(0, 37..100), (1, 37..100), (1, 20..50), (1, 50..100)] {
+            line.residual.clone_from(&whole);
+            for row in window.clone() {
+                line.residual[row] += 0.5 * slopes[channel][row];
+            }
+            let shift = line.shift(&slopes, &sweeps, 0.0).unwrap();
+            assert_eq!((shift.channel, &shift.window), (channel, &window));
+            assert!((shift.by - 0.5).abs() < 0.05, "{shift:?}");
+        }
+    }
+
+    #[test]
+    fn what_is_claimed_shows_in_the_other_rows_or_does_not() {
+        let mut line = line(5);
+        let kept: Vec<bool> = (0..100).map(|row| !usize::is_multiple_of(row, 5)).collect();
+        // A parabola, of which the numbers of the line explain a part.
+        let claimed: Vec<f64> = line.columns[1].iter().map(|x| 4.0 * x * x).collect();
+        let without = line.share(&claimed, &kept).unwrap();
+        assert!(without.shown.abs() < 0.15 && without.expected > 64.0, "{without:?}");
+        // 4 x^2 beside a line leaves 4^2/180 in the mean, without the ends of a discrete sum.
+        let per_row = without.expected / 80.0 * scale(&line.left(&kept).unwrap()[..]).powi(2);
+        assert!(per_row < 0.1 && per_row > 0.05, "{per_row}");
+        line.residual.iter_mut().zip(&claimed).for_each(|(residual, claimed)| *residual += claimed);
+        let with = line.share(&claimed, &kept).unwrap();
+        assert!((with.shown - 1.0).abs() < 0.15, "{with:?}");
+        // Numbers of the line alone are no claim.
+        let own = line.share(&line.columns[1].clone(), &kept);
+        assert!(own.is_none_or(|own| own.expected < 1e-6), "{own:?}");
+    }
+
+    #[test]
+    fn a_prior_holds_a_number_as_its_width_says() {
+        // One number with a column of ones, n = 100 readings of 3 N, noise s, prior 1 +- w:
+        // (n 3/s^2 + 1/w^2)/(n/s^2 + 1/w^2).
+        let model = Linearised {
+            columns: vec![vec![1.0; 100]],
+            priors: vec![Some([1.0, 0.1])],
+            residual: vec![3.0; 100],
+        };
+        let left = model.outside(&model.residual, &[true; 100], 2.0, 1.0).unwrap();
+        let number = (100.0 * 3.0 / 4.0 + 100.0) / (100.0 / 4.0 + 100.0);
+        assert!((left[0] - (3.0 - number)).abs() < 1e-6, "{}", left[0]);
+        // Held, not drawn: 3 n/s^2 over the same sum.
+        let left = model.outside(&model.residual, &[true; 100], 2.0, 0.0).unwrap();
+        assert!((left[0] - (3.0 - 75.0 / 125.0)).abs() < 1e-6, "{}", left[0]);
+    }
+}
