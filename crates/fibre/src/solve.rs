@@ -157,8 +157,14 @@ impl Problem {
         }
         let start = self.contraction_start().min(contraction);
         let mut seen = Seen::NOTHING;
-        let walked =
-            self.root(scheme, [start, FAR], &mut seen, |found| contraction - found.response.contraction);
+        let way = [start, FAR];
+        let walked = self.root(scheme, way, &mut seen, |found| contraction - found.response.contraction);
+        // Where a direct way is lost, halvings between equilibria on both sides may get there.
+        let walked = walked.or_else(|_| {
+            let side = |found: &Found| if found.response.contraction < contraction { 1.0 } else { -1.0 };
+            let beside = self.root(scheme, way, &mut seen, side)?;
+            self.at(scheme, contraction, beside.unknowns())
+        });
         let walked = walked.ok().filter(|found| self.pulls(&found.response) || !must_pull);
         walked.or_else(|| self.on_a_path(scheme, Goal::Contraction(contraction), must_pull, &seen))
     }
