@@ -55,8 +55,12 @@ impl Problem {
         if volume > most.volume() * (1.0 + FLAT) {
             let found = self.drawn_out(scheme, volume, most.contraction(), &mut seen);
             return found.ok_or_else(|| {
-                let drawn =
-                    seen.fullest.map(|found| Most { found, why: "drawn out as far as its fibres bear" });
+                let why = if self.net.compliance > 0.0 {
+                    "drawn out as far as its fibres bear"
+                } else {
+                    "drawn out as far as an equilibrium was found"
+                };
+                let drawn = seen.fullest.map(|found| Most { found, why });
                 let most = drawn.filter(|drawn| drawn.volume() > most.volume()).unwrap_or(most);
                 FibreError::VolumeTooLarge {
                     volume_m3: volume,
