@@ -26,6 +26,15 @@ const NEARLY_SLACK: f64 = 1e-3;
 const SMALLEST: f64 = 1e-9;
 /// Step below which a neighbour's solution is the only start. Cold starts have been tried nearby.
 const BESIDE: f64 = 1e-3;
+/// Halvings between two equilibria in search of the largest excess, and the part of their distance within which
+/// it is found: the excess then differs from the largest one by the square of that.
+const HALVINGS: u32 = 40;
+const FLAT: f64 = 1e-6;
+/// Part of a way that the first step may take after longer ones have lost the equilibria.
+const PATIENT: f64 = 0.01;
+/// Step of the contraction away from a border at which a way starts: far above rounding, and above
+/// [`SMALLEST`].
+const OFF_BORDER: f64 = 1e-8;
 /// Equilibria after which a walk is given up. A walk to a border takes about 100.
 const MOST_STEPS: u32 = 150;
 /// Where an equilibrium is looked for between the contraction of drawn-out fibres and a start: fractions of
@@ -34,7 +43,7 @@ const DRAWN_OUT: [f64; 7] = [0.3, 0.1, 0.03, 0.01, 3e-3, 1e-3, 1e-4];
 /// Distance from the contraction of drawn-out fibres below which tolerances are relative to it, and the
 /// smallest distance that rounding allows.
 const DRAWN_OUT_ROOM: f64 = 1e-3;
-const LEAST_ROOM: f64 = 1e-5;
+pub(crate) const LEAST_ROOM: f64 = 1e-5;
 /// Newton steps from a place on a path, and the largest one allowed.
 const NEAR_STEPS: u32 = 12;
 const NEARBY: f64 = 1e-4;
@@ -47,23 +56,16 @@ pub(crate) struct Seen {
     /// The largest force \[N\], and its contraction.
     pub(crate) force: f64,
     pub(crate) contraction: f64,
-    /// The least and the largest volume \[m^3\], and the contraction of the largest.
+    /// The least volume \[m^3\], and the equilibrium with the largest one.
     pub(crate) volume: f64,
-    pub(crate) most_volume: f64,
-    pub(crate) fullest: f64,
+    pub(crate) fullest: Option<Found>,
     /// The last equilibrium.
     pub(crate) last: Option<Unknowns>,
 }
 
 impl Seen {
-    pub(crate) const NOTHING: Self = Self {
-        force: f64::NEG_INFINITY,
-        contraction: 0.0,
-        volume: f64::INFINITY,
-        most_volume: 0.0,
-        fullest: 0.0,
-        last: None,
-    };
+    pub(crate) const NOTHING: Self =
+        Self { force: f64::NEG_INFINITY, contraction: 0.0, volume: f64::INFINITY, fullest: None, last: None };
 
     fn add(&mut self, found: &Found) {
         let response = &found.response;
@@ -72,8 +74,8 @@ impl Seen {
             (self.force, self.contraction) = (response.force_n, response.contraction);
         }
         self.volume = self.volume.min(response.volume_m3);
-        if response.volume_m3 > self.most_volume {
-            (self.most_volume, self.fullest) = (response.volume_m3, response.contraction);
+        if self.fullest.is_none_or(|most| response.volume_m3 > most.response.volume_m3) {
+            self.fullest = Some(*found);
         }
     }
 }
@@ -115,16 +117,24 @@ impl<E: Fn(&Found) -> f64> Walk<'_, E> {
     }
 
     fn below_start(&mut self, [start, end]: [f64; 2]) -> Result<(f64, f64), FibreError> {
-        let mut good = None;
+        let mut good: Option<(f64, f64)> = None;
         let mut x = start;
         let mut stride = (0.5 * start.abs()).max(1e-3);
         let mut failures = 0_u32;
         // Go to smaller contractions, in growing strides, until the excess is positive.
         for _ in 0..80 {
-            match (self.at(x, false), good) {
-                (Ok(found), _) if (self.excess)(&found) > 0.0 => return Ok((x, x)),
-                (Ok(_), _) => {
-                    good = Some(x);
+            match (self.value(x, false), good) {
+                (Ok((y, _)), _) if y > 0.0 => return Ok((x, x)),
+                (Ok((_, slope)), _) => {
+                    // Past a largest excess between the last two equilibria.
+                    if let Some((last, before)) = good
+                        && before < 0.0
+                        && slope > 0.0
+                        && let Some(top) = self.top([x, last])
+                    {
+                        return Ok((top, top));
+                    }
+                    good = Some((x, slope));
                     // Elastic fibres can be drawn out farther; beside an end of the range strides stay small.
                     failures -= u32::from(failures > 0 && self.problem.net.compliance > 0.0);
                     stride *= if failures == 0 { 1.6 } else { 1.0 };
@@ -147,9 +157,30 @@ impl<E: Fn(&Found) -> f64> Walk<'_, E> {
                 }
                 (Err(error), _) => return Err(error),
             }
-            x = good.unwrap_or(x) - stride;
+            x = good.map_or(x, |(good, _)| good) - stride;
         }
         Err(not_converged(x, 80))
+    }
+
+    /// A contraction at which the excess is positive, next to its largest value between two contractions: it
+    /// rises at the first and falls at the second. Its slope vanishes there. If the largest value isn't
+    /// positive, the search goes on from where it was.
+    fn top(&mut self, [mut low, mut high]: [f64; 2]) -> Option<f64> {
+        let near = self.near;
+        let room = high - low;
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (low + high);
+            let Ok((y, slope)) = self.value(middle, false) else { break };
+            if y > 0.0 {
+                return Some(middle);
+            }
+            *(if slope > 0.0 { &mut low } else { &mut high }) = middle;
+            if high - low < FLAT * room {
+                break;
+            }
+        }
+        self.near = near;
+        None
     }
 
     /// Far enough drawn out, any muscle has an equilibrium: its fibres are nearly straight and carry far more
@@ -173,16 +204,43 @@ impl<E: Fn(&Found) -> f64> Walk<'_, E> {
         ((self.excess)(&found) > 0.0).then_some((place, place))
     }
 
+    /// The root from `low` on, where the excess is positive, to `end`. The first step leads to `x`. The outer
+    /// error is that of the way up, where no sign changes; the inner one that of the root between two signs.
+    fn root(
+        &mut self,
+        [low, x, end]: [f64; 3],
+        reach: f64,
+        tolerance: [f64; 2],
+    ) -> Result<Result<Found, FibreError>, FibreError> {
+        let (low, high) = match self.up(low, [x, end], reach, tolerance)? {
+            Step::Root(root) => return Ok(self.at(root, false)),
+            Step::Between(low, high) => (low, high),
+        };
+        Ok(match newton_bracketed(|x| self.value(x, false), low, high, high, tolerance) {
+            Ok(root) => self.at(root, false),
+            Err(RootError::Function(error)) => Err(error),
+            Err(RootError::Budget { at, value, .. }) => {
+                Err(FibreError::NotConverged { contraction: at, residual: value, iterations: 100 })
+            }
+        })
+    }
+
     /// Whether the fibres are all but slack at the last equilibrium.
     fn is_nearly_slack(&self) -> bool {
         self.near.is_some_and(|near| near.is_slack_within(&self.problem.net, NEARLY_SLACK))
     }
 
-    /// Goes up by Newton steps until the sign changes. If `end` lies before [`FAR`], the sign has changed
-    /// there. Where there is no equilibrium, the steps are halved until there is none beside the last one.
-    fn up(&mut self, mut low: f64, [mut x, end]: [f64; 2], tolerance: [f64; 2]) -> Result<Step, FibreError> {
-        // The longest step that is trusted, and the contraction at which slack fibres were seen.
-        let (mut reach, mut slack) = (f64::INFINITY, FAR);
+    /// Goes up by Newton steps, the first of which is trusted up to `reach`, until the sign changes. If `end`
+    /// lies before [`FAR`], the sign has changed there. Where there is no equilibrium, the steps are halved until there is none beside the last one.
+    fn up(
+        &mut self,
+        mut low: f64,
+        [mut x, end]: [f64; 2],
+        mut reach: f64,
+        tolerance: [f64; 2],
+    ) -> Result<Step, FibreError> {
+        // The contraction at which slack fibres were seen.
+        let mut slack = FAR;
         let mut failed = false;
         for _ in 0..MOST_STEPS {
             if end < FAR && x >= end {
@@ -207,6 +265,8 @@ impl<E: Fn(&Found) -> f64> Walk<'_, E> {
                     }
                 }
                 Ok(_) => return Ok(Step::Between(low, x)),
+                // At a border, rounding decides whether there is an equilibrium.
+                Err(_) if x - low < SMALLEST && !failed => (x, failed) = (low + OFF_BORDER, true),
                 Err(error) => {
                     failed = true;
                     if matches!(error, FibreError::Slack { .. }) {
@@ -288,17 +348,12 @@ impl Problem {
         } else {
             [ROOT_TOLERANCE * self.room_at(low), 0.0]
         };
-        let (low, high) = match walk.up(low, [x, end], tolerance)? {
-            Step::Root(root) => return walk.at(root, false),
-            Step::Between(low, high) => (low, high),
-        };
-        match newton_bracketed(|x| walk.value(x, false), low, high, high, tolerance) {
-            Ok(root) => walk.at(root, false),
-            Err(RootError::Function(error)) => Err(error),
-            Err(RootError::Budget { at, value, .. }) => {
-                Err(FibreError::NotConverged { contraction: at, residual: value, iterations: 100 })
-            }
-        }
+        let near = walk.near;
+        walk.root([low, x, end], f64::INFINITY, tolerance)?.or_else(|error| {
+            // Newton's method jumped to where no start leads, though the sign changes: go there in steps.
+            walk.near = near;
+            walk.root([low, x, end], PATIENT * (end - low), tolerance)?.map_err(|_| error)
+        })
     }
 }
 
@@ -403,11 +458,12 @@ impl Problem {
     }
 }
 
-/// Derivative of an excess of force or volume by the contraction, per length l0. The response is moved along
-/// its exact slopes by a small shortening.
+/// Derivative of an excess of contraction, force or volume by the contraction, per length l0. The response is
+/// moved along its exact slopes by a small shortening.
 fn slope_of(found: &Found, y: f64, excess: &impl Fn(&Found) -> f64, shortening: f64) -> f64 {
     let mut moved = *found;
     let r = &mut moved.response;
+    r.contraction += shortening * (1.0 - r.contraction) / r.length_m;
     r.force_n -= r.stiffness_n_per_m * shortening;
     r.volume_m3 -= r.volume_slope_m2 * shortening * r.volume_m3 / r.volume_polygon_m3;
     (excess(&moved) - y) / shortening

@@ -8,7 +8,7 @@ use crate::FibreError;
 use crate::outcome::{Approach, Outcome, Scheme, Solution};
 use crate::parts::{OWN_PARTS, PARTS, Parts};
 use crate::problem::Problem;
-use crate::search::{FAR, Goal, Seen};
+use crate::search::{FAR, Goal, LEAST_ROOM, Seen};
 use crate::shape::Response;
 use crate::shooting::{EXACT, Ending, Total, USUAL};
 use crate::start::longest;
@@ -157,8 +157,14 @@ impl Problem {
         }
         let start = self.contraction_start().min(contraction);
         let mut seen = Seen::NOTHING;
-        let walked =
-            self.root(scheme, [start, FAR], &mut seen, |found| contraction - found.response.contraction);
+        let way = [start, FAR];
+        let walked = self.root(scheme, way, &mut seen, |found| contraction - found.response.contraction);
+        // Where a direct way is lost, halvings between equilibria on both sides may get there.
+        let walked = walked.or_else(|_| {
+            let side = |found: &Found| if found.response.contraction < contraction { 1.0 } else { -1.0 };
+            let beside = self.root(scheme, way, &mut seen, side)?;
+            self.at(scheme, contraction, beside.unknowns())
+        });
         let walked = walked.ok().filter(|found| self.pulls(&found.response) || !must_pull);
         walked.or_else(|| self.on_a_path(scheme, Goal::Contraction(contraction), must_pull, &seen))
     }
@@ -314,26 +320,22 @@ impl Problem {
                     high_n,
                     contraction,
                 });
-                // A walk that ended where the muscle would undulate has not seen the largest force.
-                if let Some(error) =
-                    too_large.clone().filter(|_| !matches!(error, FibreError::Undulates { .. }))
+                // A walk that was lost has not seen the largest force, unless the fibres were as good as straight.
+                let is_straight = self.longest().is_some_and(|longest| contraction - longest < LEAST_ROOM);
+                if is_lost(&error)
+                    && !(is_straight && too_large.is_some())
+                    && let Some(found) = self.on_a_path(scheme, Goal::Force(force), true, &seen)
                 {
+                    return Ok(found);
+                }
+                if let Some(error) = too_large {
                     return Err(error);
                 }
-                self.on_a_path(scheme, Goal::Force(force), true, &seen).map_or_else(
-                    || {
-                        if let Some(error) = too_large {
-                            Err(error)
-                        } else {
-                            match self.at_limit(scheme, &mut { Seen::NOTHING }) {
-                                // The force is less than where the fibres slacken.
-                                Err(slack @ FibreError::Slack { limit: Some(_), .. }) => Err(slack),
-                                _ => Err(error),
-                            }
-                        }
-                    },
-                    Ok,
-                )
+                match self.at_limit(scheme, &mut { Seen::NOTHING }) {
+                    // The force is less than where the fibres slacken.
+                    Err(slack @ FibreError::Slack { limit: Some(_), .. }) => Err(slack),
+                    _ => Err(error),
+                }
             }
             other => other,
         }

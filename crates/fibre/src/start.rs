@@ -278,7 +278,8 @@ pub(crate) fn drawn_out(net: &Net<f64>) -> (f64, f64) {
     let q = net.turn.abs();
     let drawn = |ln_mid: f64| {
         let mid = ln_mid.exp();
-        let end = (net.end_radius / mid).acosh();
+        // Rounding of the logarithm may make the middle wider than the fitting.
+        let end = (net.end_radius / mid).max(1.0).acosh();
         let panels = end.ceil().max(1.0);
         let (mut fibre, mut distance, mut left) = (0.0, 0.0, 0.0);
         while left < panels {

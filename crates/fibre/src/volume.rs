@@ -55,12 +55,18 @@ impl Problem {
         if volume > most.volume() * (1.0 + FLAT) {
             let found = self.drawn_out(scheme, volume, most.contraction(), &mut seen);
             return found.ok_or_else(|| {
-                let drawn = seen.most_volume > most.volume();
+                let why = if self.net.compliance > 0.0 {
+                    "drawn out as far as its fibres bear"
+                } else {
+                    "drawn out as far as an equilibrium was found"
+                };
+                let drawn = seen.fullest.map(|found| Most { found, why });
+                let most = drawn.filter(|drawn| drawn.volume() > most.volume()).unwrap_or(most);
                 FibreError::VolumeTooLarge {
                     volume_m3: volume,
-                    high_m3: most.volume().max(seen.most_volume),
-                    contraction: if drawn { seen.fullest } else { most.contraction() },
-                    why: if drawn { "drawn out as far as its fibres bear" } else { most.why },
+                    high_m3: most.volume(),
+                    contraction: most.contraction(),
+                    why: most.why,
                 }
             });
         }
@@ -75,7 +81,6 @@ impl Problem {
                 .then(|| self.falling(scheme, volume, beyond, &mut seen))
                 .flatten()
         });
-        let found = found.or_else(|| self.beside_least(scheme, volume, most.contraction(), &mut seen));
         let found = found.or_else(|| ((volume / end.volume() - 1.0).abs() <= FLAT).then_some(end.found));
         found.or_else(|| self.on_a_path(scheme, Goal::Volume(volume), true, &seen)).ok_or({
             let least = seen.volume.min(end.volume());
@@ -104,26 +109,14 @@ impl Problem {
         found.ok().filter(|found| self.pulls(&found.response))
     }
 
-    /// The equilibrium of elastic fibres that are drawn out to more than the largest volume. The latter is at
-    /// the contraction `peak`.
+    /// The equilibrium with more than the largest volume that was found on the way to the end of the range, at
+    /// the contraction `peak`: a muscle that stores energy may hold more drawn out, or on another branch.
     fn drawn_out(&self, scheme: Scheme, volume: f64, peak: f64, seen: &mut Seen) -> Option<Found> {
-        if self.net.compliance == 0.0 {
+        if self.is_scale_free() {
             return None;
         }
         let found = self.falling(scheme, volume, self.way_to(peak), seen);
         found.or_else(|| self.on_a_path(scheme, Goal::Volume(volume), true, seen))
-    }
-
-    /// The same for a volume just above the least one, beyond which the muscle holds more again. The steps of
-    /// a search pass over it.
-    fn beside_least(&self, scheme: Scheme, volume: f64, peak: f64, seen: &mut Seen) -> Option<Found> {
-        if self.net.compliance == 0.0 {
-            return None;
-        }
-        let [start, _] = self.way_to(peak);
-        let least = self.root(scheme, [start, start], seen, |found| found.response.volume_slope_m2).ok()?;
-        let way = [least.response.contraction, peak];
-        (least.response.volume_m3 < volume).then(|| self.rising(scheme, volume, way, seen)).flatten()
     }
 
     /// The last equilibrium that pulls with taut fibres.
@@ -154,8 +147,8 @@ impl Problem {
         let mut seen = Seen::NOTHING;
         let peak = self.root(scheme, self.way_to(end.contraction()), &mut seen, rising);
         // The volume falls from the point where the fibres can't be drawn out farther.
-        match peak.or_else(|_| self.at(scheme, seen.fullest, None)) {
-            Ok(found) if found.response.volume_m3 > end.volume() => {
+        match peak.ok().or(seen.fullest) {
+            Some(found) if found.response.volume_m3 > end.volume() => {
                 Most { found, why: "and less if it contracts more" }
             }
             _ => *end,

@@ -2,5 +2,6 @@
 
 mod cloth_energy;
 mod elastic_waist;
+mod found_again;
 mod quadrature_and_ode;
 mod slack;
