@@ -231,7 +231,8 @@ impl<E: Fn(&Found) -> f64> Walk<'_, E> {
     }
 
     /// Goes up by Newton steps, the first of which is trusted up to `reach`, until the sign changes. If `end`
-    /// lies before [`FAR`], the sign has changed there. Where there is no equilibrium, the steps are halved until there is none beside the last one.
+    /// lies before [`FAR`], the sign has changed there. Where there is no equilibrium, the steps are halved
+    /// until there is none beside the last one.
     fn up(
         &mut self,
         mut low: f64,
