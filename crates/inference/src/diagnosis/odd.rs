@@ -75,13 +75,10 @@ pub(crate) fn odd(
         let is_better = shifted.as_ref().is_some_and(|shifted| shifted.is_better);
         let others = if is_better { Some(Others::Deny) } else { doubt(&odd) };
         let others = others.filter(|_| tried.insert(odd.clone()))?;
-        let of = |is_odd: bool| -> Vec<usize> {
-            let own = groups.iter().zip(&odd).filter(|(_, odd)| **odd == is_odd);
-            let mut rows: Vec<usize> = own.flat_map(|(group, _)| group.iter().copied()).collect();
-            rows.sort_unstable();
-            rows
-        };
-        let rest = without(&of(true))?;
+        let own = groups.iter().zip(&odd).filter(|(_, odd)| **odd);
+        let mut rows: Vec<usize> = own.flat_map(|(group, _)| group.iter().copied()).collect();
+        rows.sort_unstable();
+        let rest = without(&rows)?;
         let denied = match rest.verdict {
             Verdict::Adequate => true,
             Verdict::Missing => !claims.is_empty() && !claims.iter().any(|claim| names(&rest, *claim)),
@@ -95,11 +92,10 @@ pub(crate) fn odd(
         let as_if = shifted.map_or_else(String::new, |shifted| format!(", as if {} there", shifted.says));
         denied.then(|| {
             format!(
-                "{asks}{as_if}: without line {} {} (line {}). See what happened there: a fitting that slipped, a sensor zeroed anew, reversed or held, another unit, another \
+                "{asks}{as_if}: without line {} {}. See what happened there: a fitting that slipped, a sensor zeroed anew, reversed or held, another unit, another \
                  specimen",
-                lines(data, &of(true)),
+                lines(data, &rows),
                 said(Some(&rest)),
-                lines(data, &of(false)),
             )
         })
     })

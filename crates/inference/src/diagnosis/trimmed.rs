@@ -9,7 +9,7 @@ use std::ops::Range;
 use crate::diagnosis::tangents::Tangents;
 use crate::fit::nuisance::Prepared;
 use crate::median::median;
-use crate::vector::{dot, norm};
+use crate::vector::{add, dot, norm};
 
 /// One in so many rows may be anything.
 const SPOILT: usize = 4;
@@ -24,6 +24,9 @@ const PARTS: usize = 8;
 /// Most concentration steps; each lowers the sum, and a few suffice.
 const STEPS: usize = 30;
 
+/// Lengths of blocks of neighbouring values, and fewest of them.
+const BLOCKS: [usize; 3] = [4, 16, 64];
+const FEWEST_BLOCKS: usize = 6;
 /// Starts of windows in which a channel may be shifted, and fewest rows of each.
 const WINDOWS: usize = 60;
 const FEWEST: usize = 5;
@@ -120,7 +123,7 @@ impl Linearised {
         let claimed = only(self.outside(claimed, kept, sd, 0.0)?);
         let square = dot(&claimed, &claimed);
         (square > 0.0).then(|| Share {
-            expected: square / (sd * sd).max(f64::MIN_POSITIVE),
+            expected: square / (sd * sd * shared(&left)).max(f64::MIN_POSITIVE),
             shown: dot(&claimed, &left) / square,
         })
     }
@@ -207,7 +210,12 @@ impl Linearised {
         let near = start.saturating_sub(stride)..(start + stride).min(rough.window.end);
         let near = near.map(|start| start..rough.window.end).filter(|window| window.len() >= FEWEST);
         let (gain, shift) = best(near.collect())?;
-        (gain > least && gain > CLEAR * sd * sd).then_some(Shift { more: gain - CLEAR * sd * sd, ..shift })
+        let mut column = vec![0.0; rows];
+        column[shift.window.clone()].copy_from_slice(&slopes[shift.channel][shift.window.clone()]);
+        let mut rest = left;
+        add(&mut rest, -shift.by, &self.outside(&column, &all, sd, 0.0)?);
+        let chance = CLEAR * scale(&rest).powi(2) * shared(&rest);
+        (gain > least && gain > chance).then_some(Shift { more: gain - chance, ..shift })
     }
 }
 
@@ -232,6 +240,22 @@ pub(crate) struct Shift {
     pub(crate) by: f64,
     /// Sum of squares that it explains beyond chance \[N^2\].
     pub(crate) more: f64,
+}
+
+/// Factor by which what neighbouring values share makes sums of them vary more than those of independent ones, from
+/// the means of blocks.
+fn shared(values: &[f64]) -> f64 {
+    let square = |values: &mut dyn Iterator<Item = f64>| {
+        let (sum, count) = values.fold((0.0, 0.0), |(sum, count), value| (sum + value * value, count + 1.0));
+        sum / f64::max(count, 1.0)
+    };
+    let single = square(&mut values.iter().copied()).max(f64::MIN_POSITIVE);
+    let of_blocks =
+        BLOCKS.into_iter().filter(|length| values.len() >= FEWEST_BLOCKS * length).map(|length| {
+            let means = values.chunks_exact(length).map(|block| block.iter().sum::<f64>() / length as f64);
+            length as f64 * square(&mut means.into_iter()) / single
+        });
+    of_blocks.fold(1.0, f64::max)
 }
 
 /// Standard deviation of values by their median size.
@@ -298,6 +322,16 @@ mod tests {
         // Numbers of the line alone are no claim.
         let own = line.share(&line.columns[1].clone(), &kept);
         assert!(own.is_none_or(|own| own.expected < 1e-6), "{own:?}");
+    }
+
+    #[test]
+    fn shared_noise_counts_as_its_blocks_vary() {
+        let mut random = Random::new(11, 0);
+        let white: Vec<f64> = (0..6400).map(|_| random.normal()).collect();
+        assert!(shared(&white) < 1.5, "{}", shared(&white));
+        // Eight neighbours with one value: sums vary as those of an eighth of the rows.
+        let steps: Vec<f64> = white.iter().flat_map(|value| [*value; 8]).collect();
+        assert!((shared(&steps) - 8.0).abs() < 1.5, "{}", shared(&steps));
     }
 
     #[test]
