@@ -82,7 +82,8 @@ pub(crate) fn odd(
         let denied = match rest.verdict {
             Verdict::Adequate => true,
             Verdict::Missing => !claims.is_empty() && !claims.iter().any(|claim| names(&rest, *claim)),
-            Verdict::CannotTell => is_better,
+            // Most of the rows know nothing of what a shift of the others explains better.
+            Verdict::CannotTell => is_better && 2 * count(&odd) <= odd.len(),
             Verdict::Unknown => false,
         };
         let asks = match others {

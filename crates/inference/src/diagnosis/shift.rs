@@ -11,6 +11,8 @@ use crate::vector::{dot, minus};
 
 /// Sum of squares that a shift of a channel explains over that of what was named, at least.
 const AS_WELL: f64 = 0.8;
+/// Fraction of the rows that must be left: a few say nothing against the others.
+const LEAST: f64 = 0.25;
 /// Rows on either side of one at which another state may be set, and the least step as a fraction of the range.
 const AROUND: usize = 2;
 const STEP: f64 = 0.2;
@@ -60,7 +62,11 @@ pub(crate) fn shifts(found: &Findings<'_>, linear: &Linearised) -> Vec<Shifted> 
         Shifted { odd, says, is_better }
     };
     let is_small = 2 * shift.window.len() <= rows;
-    vec![part(is_small), part(!is_small)]
+    let leaves_enough = |part: &Shifted| {
+        let odd = part.odd.iter().filter(|odd| **odd).count();
+        (rows - odd) as f64 >= LEAST * rows as f64
+    };
+    [part(is_small), part(!is_small)].into_iter().filter(leaves_enough).collect()
 }
 
 /// Whether another state is set at a row: an effect of what is held then changes there as well.

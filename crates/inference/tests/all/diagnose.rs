@@ -557,7 +557,8 @@ fn more_rows_and_cycles_never_hurt_the_law_of_the_noise() {
         let found = diagnosed(&data);
         let ratio = found.noise.sd_n / 2.0;
         assert!((0.8..1.2).contains(&ratio), "{rows} rows, {cycles} cycles: {:?}", found.noise);
-        assert_eq!(names(&found), hidden.iter().map(|(name, _)| *name).collect::<Vec<_>>());
+        let hidden: Vec<&str> = hidden.iter().map(|(name, _)| *name).collect();
+        assert_eq!(names(&found), hidden, "{rows} rows, {cycles} cycles: {}", found.says);
     }
 }
 
