@@ -313,9 +313,11 @@ mod tests {
         let claimed: Vec<f64> = line.columns[1].iter().map(|x| 4.0 * x * x).collect();
         let without = line.share(&claimed, &kept).unwrap();
         assert!(without.shown.abs() < 0.15 && without.expected > 64.0, "{without:?}");
-        // 4 x^2 beside a line leaves 4^2/180 in the mean, without the ends of a discrete sum.
-        let per_row = without.expected / 80.0 * scale(&line.left(&kept).unwrap()[..]).powi(2);
-        assert!(per_row < 0.1 && per_row > 0.05, "{per_row}");
+        // 4 x^2 beside a line leaves 4^2/180 in the mean, but for the ends of a discrete sum.
+        let left = line.left(&kept).unwrap().into_iter().zip(&kept).filter(|(_, kept)| **kept);
+        let left: Vec<f64> = left.map(|(left, _)| left).collect();
+        let per_row = without.expected / 80.0 * scale(&left).powi(2) * shared(&left);
+        assert!((per_row * 180.0 / 16.0 - 1.0).abs() < 0.05, "{per_row}");
         line.residual.iter_mut().zip(&claimed).for_each(|(residual, claimed)| *residual += claimed);
         let with = line.share(&claimed, &kept).unwrap();
         assert!((with.shown - 1.0).abs() < 0.15, "{with:?}");
