@@ -21,7 +21,7 @@ impl Trace {
         }
     }
 
-    pub(crate) fn values_mut(&mut self) -> &mut Vec<f64> {
+    fn values_mut(&mut self) -> &mut Vec<f64> {
         match self {
             Self::Contraction(values) | Self::Length(values) => values,
         }
@@ -151,6 +151,15 @@ pub struct Columns {
 }
 
 impl Columns {
+    /// The readings of one channel.
+    pub(crate) fn values_mut(&mut self, channel: Channel) -> &mut Vec<f64> {
+        match channel {
+            Channel::Pressure => &mut self.pressure_pa,
+            Channel::Motion => self.motion.values_mut(),
+            Channel::Force => &mut self.force_n,
+        }
+    }
+
     /// The mandatory columns of a data set.
     #[must_use]
     pub fn new(pressure_pa: Vec<f64>, motion: Trace, force_n: Vec<f64>) -> Self {

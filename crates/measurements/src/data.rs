@@ -452,31 +452,14 @@ impl Data {
 
     /// The data with the readings of one column moved to rows before theirs, within each sweep; to rows after
     /// theirs if `rows` is negative. Rows at the end of a sweep for which there are none keep their own.
-    ///
-    /// ```
-    /// use bulge_measurements::{Channel, Data};
-    /// let text = "pressure [bar], length [mm], force [N], sweep\n2, 300, 9, 1\n2, 290, 7, 1\n2, 280, 5, 1\n";
-    /// let data = Data::from_csv(text, "pull.csv")?;
-    /// assert_eq!(data.clone().moved(Channel::Force, 1).force(), [7.0, 5.0, 5.0]);
-    /// assert_eq!(data.moved(Channel::Force, -2).force(), [9.0, 7.0, 9.0]);
-    /// # Ok::<(), bulge_measurements::MeasurementError>(())
-    /// ```
     #[must_use]
     pub fn moved(mut self, channel: Channel, rows: isize) -> Self {
-        let columns = Arc::make_mut(&mut self.columns);
-        let values = match channel {
-            Channel::Pressure => &mut columns.pressure_pa,
-            Channel::Motion => columns.motion.values_mut(),
-            Channel::Force => &mut columns.force_n,
-        };
+        let values = Arc::make_mut(&mut self.columns).values_mut(channel);
         for sweep in &self.sweeps {
-            let (own, by) = (&mut values[sweep.rows.clone()], rows.unsigned_abs());
-            let count = own.len();
-            if by < count && rows > 0 {
-                own.copy_within(by.., 0);
-            } else if by < count {
-                own.copy_within(..count - by, by);
-            }
+            let own = &mut values[sweep.rows.clone()];
+            let by = rows.unsigned_abs().min(own.len());
+            let (from, to) = if rows > 0 { (by..own.len(), 0) } else { (0..own.len() - by, by) };
+            own.copy_within(from, to);
         }
         self.finished()
     }
