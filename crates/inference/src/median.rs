@@ -8,3 +8,8 @@ pub(crate) fn median(values: &mut [f64]) -> f64 {
 
 /// Ratio of the standard deviation of a normal variable x to the median of |x|.
 pub(crate) const MAD_TO_SD: f64 = 1.482_602_218_505_602;
+
+/// Standard deviation of normal values around 0 by their median size, whatever a few of them are.
+pub(crate) fn robust_sd(values: &[f64]) -> f64 {
+    MAD_TO_SD * median(&mut values.iter().map(|value| value.abs()).collect::<Vec<_>>())
+}

@@ -1,5 +1,10 @@
 //! Vectors of numbers: products, sums, ranges.
 
+/// Number of marked rows.
+pub(crate) fn count(mask: &[bool]) -> usize {
+    mask.iter().filter(|is_marked| **is_marked).count()
+}
+
 /// Sum of the products of two series, over the length of the shorter one. Eight interleaved partial sums are
 /// added at once.
 pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {

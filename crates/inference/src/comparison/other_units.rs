@@ -13,6 +13,7 @@ use std::collections::BTreeMap;
 
 use crate::comparison::mismatch::{ANSWERED, LEAST_AIR, Meaning, Trial, absolute, meanings, scale_of};
 use crate::median::median;
+use crate::vector::count;
 
 /// Rows on which meanings are tried.
 const ROWS: usize = 400;
@@ -182,10 +183,6 @@ fn likeliest(tried: Vec<(f64, Meaning)>, usual: f64) -> Option<(f64, Meaning)> {
     let unlike = |(after, _): &(f64, Meaning)| (after / usual).max(f64::MIN_POSITIVE).ln().abs();
     let near = tried.into_iter().filter(|one| relative(one) <= ALIKE * least);
     near.min_by(|a, b| unlike(a).total_cmp(&unlike(b)))
-}
-
-fn count(mask: &[bool]) -> usize {
-    mask.iter().filter(|counts| **counts).count()
 }
 
 #[cfg(test)]

@@ -14,7 +14,7 @@ use statrs::function::erf::erfc;
 
 use crate::diagnosis::decision_rule::RULE;
 use crate::diagnosis::space::Space;
-use crate::median::median;
+use crate::median::robust_sd;
 use crate::noise::whitening::Whitening;
 
 /// Rows next to the ends of a sweep and to its turns, where a jump can't be distinguished from end effects.
@@ -25,8 +25,6 @@ const FEWEST: usize = 60;
 const MOST: usize = 1500;
 /// Fraction of a jump's square that must remain outside the model's tangents.
 const OWN: f64 = 0.1;
-/// Median of |x| for a standard normal x.
-const MEDIAN_SIZE: f64 = 0.674_489_750_196_081_7;
 
 /// A jump in the residuals of a model.
 #[derive(Debug, Clone, Copy)]
@@ -45,8 +43,8 @@ pub(crate) fn jump(record: &Record, whitening: &Whitening, space: &Space, left: 
     }
     let tried: Vec<(Jump, f64)> =
         places.par_iter().map(|(row, end)| score(whitening, space, left, (*row, *end))).collect();
-    let mut sizes: Vec<f64> = tried.iter().map(|(_, z)| z.abs()).collect();
-    let level = (median(&mut sizes) / MEDIAN_SIZE).max(1.0);
+    let sizes: Vec<f64> = tried.iter().map(|(_, z)| *z).collect();
+    let level = robust_sd(&sizes).max(1.0);
     let (found, z) = tried.into_iter().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
     (chance(z / level, sizes.len()) < RULE.jump).then_some(found)
 }

@@ -8,6 +8,7 @@ use std::ops::Range;
 
 use crate::diagnosis::write::Findings;
 use crate::median::median;
+use crate::vector::count;
 
 /// Rows by which a column is tried to be late or early; between two of them the error has no other minimum.
 const TRIED: [isize; 12] = [1, 2, 3, 4, 6, 8, 11, 15, 20, 26, 33, 40];
@@ -119,7 +120,7 @@ impl Trial<'_> {
     fn best(&self, channel: Channel) -> Option<Late> {
         let error = |rows: isize| {
             let (square, kept) = self.moved(Late { channel, rows })?;
-            Some(square / kept.iter().filter(|kept| **kept).count() as f64)
+            Some(square / count(&kept) as f64)
         };
         let signed = TRIED.iter().flat_map(|rows| [*rows, -rows]);
         let tried = signed.filter_map(|rows| Some((rows, error(rows)?)));
@@ -135,32 +136,21 @@ impl Trial<'_> {
     /// The sum of squared errors of the base with a column moved, and the rows that have one; none if they are
     /// few.
     fn moved(&self, late: Late) -> Option<(f64, Vec<bool>)> {
-        let (record, base) = (self.found.context.record, &self.found.search.stages.first()?.confirmed);
+        let (record, base) = (self.found.context.record, self.found.search.stages.first()?);
         let kept: Vec<bool> =
             (0..record.len()).map(|place| self.next.after(place, late.rows).is_some()).collect();
-        if (kept.iter().filter(|kept| **kept).count() as f64) < LEFT * kept.len() as f64 {
+        if (count(&kept) as f64) < LEFT * kept.len() as f64 {
             return None;
         }
-        let read = self.at(late.channel, late.rows);
-        let force = if late.channel == Channel::Force {
-            self.found.search.stages.first()?.linear.force.clone()
-        } else {
-            let moments = record.moments();
-            let [pressure, contraction] = match late.channel {
-                Channel::Pressure => [read.clone(), moments.iter().map(|m| m.contraction).collect()],
-                Channel::Motion | Channel::Force => {
-                    [moments.iter().map(|m| m.pressure).collect(), read.clone()]
-                }
-            };
-            let record = record.clone().at(&pressure, &contraction);
-            let model = &base.prepared.model;
-            let partly = model
-                .evaluate_partly(&record, &base.theta, &Wanted::default(), &Warm::of_rows(&kept))
-                .ok()?;
-            partly.prediction.force
-        };
-        let read = if late.channel == Channel::Force { read } else { self.at(Channel::Force, 0) };
-        Some((Self::square(&read, &force, &kept), kept))
+        let [pressure, contraction, read] =
+            Channel::ALL.map(|channel| self.at(channel, if channel == late.channel { late.rows } else { 0 }));
+        if late.channel == Channel::Force {
+            return Some((Self::square(&read, &base.linear.force, &kept), kept));
+        }
+        let (record, at) = (record.clone().at(&pressure, &contraction), &base.confirmed);
+        let model = &at.prepared.model;
+        let partly = model.evaluate_partly(&record, &at.theta, &Wanted::default(), &Warm::of_rows(&kept));
+        Some((Self::square(&read, &partly.ok()?.prediction.force, &kept), kept))
     }
 
     /// A column moved by some rows; where there is none its own value stays.

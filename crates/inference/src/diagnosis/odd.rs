@@ -12,7 +12,7 @@ use crate::diagnosis::shift::shifts;
 use crate::diagnosis::trimmed::Linearised;
 use crate::diagnosis::write::Findings;
 use crate::median::median;
-use crate::vector::minus;
+use crate::vector::{count, minus};
 
 /// Fewest parts among which one can be odd, and how many of them may be.
 const FEWEST: usize = 3;
@@ -109,10 +109,6 @@ enum Others {
     Deny,
     /// They could not show it.
     AreSilent,
-}
-
-fn count(mask: &[bool]) -> usize {
-    mask.iter().filter(|counts| **counts).count()
 }
 
 /// The rows behind the clearest jump in the misfit of the base, and those before it: what stays after an event

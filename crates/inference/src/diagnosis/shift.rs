@@ -7,7 +7,7 @@ use bulge_muscles::units::significant;
 
 use crate::diagnosis::trimmed::Linearised;
 use crate::diagnosis::write::Findings;
-use crate::vector::{dot, minus};
+use crate::vector::{count, dot, minus};
 
 /// Sum of squares that a shift of a channel explains over that of what was named, at least.
 const AS_WELL: f64 = 0.8;
@@ -62,10 +62,7 @@ pub(crate) fn shifts(found: &Findings<'_>, linear: &Linearised) -> Vec<Shifted> 
         Shifted { odd, says, is_better }
     };
     let is_small = 2 * shift.window.len() <= rows;
-    let leaves_enough = |part: &Shifted| {
-        let odd = part.odd.iter().filter(|odd| **odd).count();
-        (rows - odd) as f64 >= LEAST * rows as f64
-    };
+    let leaves_enough = |part: &Shifted| (rows - count(&part.odd)) as f64 >= LEAST * rows as f64;
     [part(is_small), part(!is_small)].into_iter().filter(leaves_enough).collect()
 }
 

@@ -8,8 +8,8 @@ use std::ops::Range;
 
 use crate::diagnosis::tangents::Tangents;
 use crate::fit::nuisance::Prepared;
-use crate::median::median;
-use crate::vector::{add, dot, norm};
+use crate::median::robust_sd;
+use crate::vector::{add, count, dot, norm};
 
 /// One in so many rows may be anything.
 const SPOILT: usize = 4;
@@ -17,8 +17,6 @@ const SPOILT: usize = 4;
 const MOST: f64 = 0.3;
 /// Standard deviations from which a row is odd: a normal variable exceeds them once in 2000 rows.
 const FAR: f64 = 3.5;
-/// Median of |x| for a standard normal x.
-const MEDIAN_SIZE: f64 = 0.674_489_750_196_081_7;
 /// Starts without a quarter of the record.
 const PARTS: usize = 8;
 /// Most concentration steps; each lowers the sum, and a few suffice.
@@ -81,7 +79,7 @@ impl Linearised {
         // The best three quarters say how large the noise is, and the noise which rows are odd.
         let mut kept = Vec::new();
         for _ in 0..STEPS {
-            let sd = scale(&left);
+            let sd = robust_sd(&left);
             let near: Vec<bool> = left.iter().map(|left| left.abs() <= FAR * sd).collect();
             if near == kept {
                 break;
@@ -90,7 +88,7 @@ impl Linearised {
             left = self.left(&kept)?;
         }
         let odd: Vec<bool> = kept.iter().map(|kept| !kept).collect();
-        let count = odd.iter().filter(|odd| **odd).count();
+        let count = count(&odd);
         (count > 0 && count as f64 <= MOST * rows as f64).then_some(odd)
     }
 
@@ -119,7 +117,7 @@ impl Linearised {
             values.into_iter().zip(kept).filter(|(_, kept)| **kept).map(|(value, _)| value).collect()
         };
         let left = only(self.left(kept)?);
-        let sd = scale(&left);
+        let sd = robust_sd(&left);
         let claimed = only(self.outside(claimed, kept, sd, 0.0)?);
         let square = dot(&claimed, &claimed);
         (square > 0.0).then(|| Share {
@@ -144,8 +142,8 @@ impl Linearised {
     /// \[N\].
     fn left(&self, kept: &[bool]) -> Option<Vec<f64>> {
         // The weight of the priors depends on the noise, and the noise on what is left: twice is enough.
-        let first = self.outside(&self.residual, kept, scale(&self.residual), 1.0)?;
-        self.outside(&self.residual, kept, scale(&first), 1.0)
+        let first = self.outside(&self.residual, kept, robust_sd(&self.residual), 1.0)?;
+        self.outside(&self.residual, kept, robust_sd(&first), 1.0)
     }
 
     /// Values without what the numbers of the model make of them in the rows that are kept, for noise of `sd`;
@@ -186,13 +184,18 @@ impl Linearised {
         let rows = self.residual.len();
         let all = vec![true; rows];
         let left = self.left(&all)?;
-        let sd = scale(&left);
-        let gain = |channel: usize, window: &Range<usize>| {
+        let sd = robust_sd(&left);
+        // A channel within a window, beside the numbers of the model.
+        let outside = |channel: usize, window: &Range<usize>| {
             let mut column = vec![0.0; rows];
             column[window.clone()].copy_from_slice(&slopes[channel][window.clone()]);
             let outside = self.outside(&column, &all, sd, 0.0)?;
+            (dot(&outside, &outside) > SEEN * dot(&column, &column)).then_some(outside)
+        };
+        let gain = |channel: usize, window: &Range<usize>| {
+            let outside = outside(channel, window)?;
             let (own, along) = (dot(&outside, &outside), dot(&outside, &left));
-            (own > SEEN * dot(&column, &column)).then(|| (along * along / own, along / own))
+            Some((along * along / own, along / own))
         };
         let best = |windows: Vec<Range<usize>>| {
             let each =
@@ -208,13 +211,13 @@ impl Linearised {
         // Nearer to the row itself.
         let start = rough.window.start;
         let near = start.saturating_sub(stride)..(start + stride).min(rough.window.end);
-        let near = near.map(|start| start..rough.window.end).filter(|window| window.len() >= FEWEST);
+        let near =
+            near.map(|start| start..rough.window.end).filter(|window| (FEWEST..rows).contains(&window.len()));
         let (gain, shift) = best(near.collect())?;
-        let mut column = vec![0.0; rows];
-        column[shift.window.clone()].copy_from_slice(&slopes[shift.channel][shift.window.clone()]);
-        let mut rest = left;
-        add(&mut rest, -shift.by, &self.outside(&column, &all, sd, 0.0)?);
-        let chance = CLEAR * scale(&rest).powi(2) * shared(&rest);
+        let outside = outside(shift.channel, &shift.window)?;
+        let mut rest = left.clone();
+        add(&mut rest, -shift.by, &outside);
+        let chance = CLEAR * robust_sd(&rest).powi(2) * shared(&rest);
         (gain > least && gain > chance).then_some(Shift { more: gain - chance, ..shift })
     }
 }
@@ -258,11 +261,6 @@ fn shared(values: &[f64]) -> f64 {
     of_blocks.fold(1.0, f64::max)
 }
 
-/// Standard deviation of values by their median size.
-fn scale(values: &[f64]) -> f64 {
-    median(&mut values.iter().map(|value| value.abs()).collect::<Vec<_>>()) / MEDIAN_SIZE
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -281,7 +279,7 @@ mod tests {
     fn a_fifth_of_the_rows_may_be_anything() {
         let odd = line(5).odd().unwrap();
         assert!((0..100).all(|row| odd[row] == row.is_multiple_of(5)), "{odd:?}");
-        assert!(line(200).odd().is_none_or(|odd| odd.iter().filter(|odd| **odd).count() == 1));
+        assert!(line(200).odd().is_none_or(|odd| count(&odd) == 1));
         // A third is too much to be odd.
         assert!(line(3).odd().is_none());
     }
@@ -316,7 +314,7 @@ mod tests {
         // 4 x^2 beside a line leaves 4^2/180 in the mean, but for the ends of a discrete sum.
         let left = line.left(&kept).unwrap().into_iter().zip(&kept).filter(|(_, kept)| **kept);
         let left: Vec<f64> = left.map(|(left, _)| left).collect();
-        let per_row = without.expected / 80.0 * scale(&left).powi(2) * shared(&left);
+        let per_row = without.expected / 80.0 * robust_sd(&left).powi(2) * shared(&left);
         assert!((per_row * 180.0 / 16.0 - 1.0).abs() < 0.05, "{per_row}");
         line.residual.iter_mut().zip(&claimed).for_each(|(residual, claimed)| *residual += claimed);
         let with = line.share(&claimed, &kept).unwrap();
