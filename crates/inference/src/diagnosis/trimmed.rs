@@ -301,6 +301,16 @@ mod tests {
             assert_eq!((shift.channel, &shift.window), (channel, &window));
             assert!((shift.by - 0.5).abs() < 0.05, "{shift:?}");
         }
+        // Without noise its size is exact, and nothing is chance.
+        line.residual = (37..100).fold(vec![1.0; 100], |mut residual, row| {
+            residual[row] += 0.5 * slopes[1][row];
+            residual
+        });
+        let shift = line.shift(&slopes, &sweeps, 0.0).unwrap();
+        assert!((shift.by - 0.5).abs() < 1e-6 && shift.window == (37..100), "{shift:?}");
+        let column = (0..100).map(|row| if row < 37 { 0.0 } else { slopes[1][row] }).collect::<Vec<f64>>();
+        let outside = line.outside(&column, &[true; 100], 1.0, 0.0).unwrap();
+        assert!((shift.more / (0.25 * dot(&outside, &outside)) - 1.0).abs() < 1e-6, "{shift:?}");
     }
 
     #[test]
@@ -311,11 +321,13 @@ mod tests {
         let claimed: Vec<f64> = line.columns[1].iter().map(|x| 4.0 * x * x).collect();
         let without = line.share(&claimed, &kept).unwrap();
         assert!(without.shown.abs() < 0.15 && without.expected > 64.0, "{without:?}");
-        // 4 x^2 beside a line leaves 4^2/180 in the mean, but for the ends of a discrete sum.
-        let left = line.left(&kept).unwrap().into_iter().zip(&kept).filter(|(_, kept)| **kept);
-        let left: Vec<f64> = left.map(|(left, _)| left).collect();
-        let per_row = without.expected / 80.0 * robust_sd(&left).powi(2) * shared(&left);
-        assert!((per_row * 180.0 / 16.0 - 1.0).abs() < 0.05, "{per_row}");
+        // 4 x^2 at N equal steps h leaves 4^2 h^4 N (N^2 - 1) (N^2 - 4)/180 beside a line (the orthogonal polynomial
+        // of the second degree).
+        let all = [true; 100];
+        let left = line.left(&all).unwrap();
+        let found = line.share(&claimed, &all).unwrap().expected * robust_sd(&left).powi(2) * shared(&left);
+        let exact = 16.0 * 99.0_f64.powi(-4) * 100.0 * 9_999.0 * 9_996.0 / 180.0;
+        assert!((found / exact - 1.0).abs() < 1e-6, "{found} {exact}");
         line.residual.iter_mut().zip(&claimed).for_each(|(residual, claimed)| *residual += claimed);
         let with = line.share(&claimed, &kept).unwrap();
         assert!((with.shown - 1.0).abs() < 0.15, "{with:?}");
