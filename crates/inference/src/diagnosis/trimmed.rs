@@ -331,6 +331,10 @@ mod tests {
         line.residual.iter_mut().zip(&claimed).for_each(|(residual, claimed)| *residual += claimed);
         let with = line.share(&claimed, &kept).unwrap();
         assert!((with.shown - 1.0).abs() < 0.15, "{with:?}");
+        // Without noise it is all there.
+        line.residual =
+            line.columns[1].iter().zip(&claimed).map(|(x, claimed)| 2.0 + 3.0 * x + claimed).collect();
+        assert!((line.share(&claimed, &all).unwrap().shown - 1.0).abs() < 1e-6);
         // Numbers of the line alone are no claim.
         let own = line.share(&line.columns[1].clone(), &kept);
         assert!(own.is_none_or(|own| own.expected < 1e-6), "{own:?}");
@@ -344,6 +348,9 @@ mod tests {
         // Eight neighbours with one value: sums vary as those of an eighth of the rows.
         let steps: Vec<f64> = white.iter().flat_map(|value| [*value; 8]).collect();
         assert!((shared(&steps) - 8.0).abs() < 1.5, "{}", shared(&steps));
+        // Blocks of 16 of one sign each: exactly as a sixteenth of the rows, and those of 64 vanish.
+        let signs: Vec<f64> = (0..640).map(|row| if row / 16 % 2 == 0 { 1.0 } else { -1.0 }).collect();
+        assert!((shared(&signs) - 16.0).abs() < 1e-12, "{}", shared(&signs));
     }
 
     #[test]
