@@ -2,7 +2,9 @@
 //! (a sensor zeroed anew, another unit, a reversed column, a reading that is held, a clamp that slipped). If nothing
 //! is missing without them, although what was named would have shown in the others, it is no effect of the muscle.
 
+use bulge_effects::Moment;
 use bulge_measurements::Data;
+use bulge_model::Record;
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::comparison::rows::lines;
@@ -92,13 +94,40 @@ pub(crate) fn odd(
         };
         let as_if = shifted.map_or_else(String::new, |shifted| format!(", as if {} there", shifted.says));
         denied.then(|| {
+            let or = beyond(found.context.record, &odd).map_or_else(String::new, |what| {
+                format!("; or an effect that begins there: no other row has {what}; measure between")
+            });
             format!(
                 "{asks}{as_if}: without line {} {}. See what happened there: a fitting that slipped, a sensor zeroed anew, reversed or held, another unit, another \
-                 specimen",
+                 specimen{or}",
                 lines(data, &rows),
                 said(Some(&rest)),
             )
         })
+    })
+}
+
+/// What only the odd rows have, if all of them lie beyond the range of the others: what shows there alone needn't
+/// be an event.
+fn beyond(record: &Record, odd: &[bool]) -> Option<&'static str> {
+    type State = fn(&Moment) -> f64;
+    let of: [(State, [&'static str; 2]); 2] = [
+        (|moment| moment.contraction, ["a contraction as small", "a contraction as large"]),
+        (|moment| moment.pressure, ["a pressure as low", "a pressure as high"]),
+    ];
+    of.into_iter().find_map(|(state, [low, high])| {
+        let range = |is_odd: bool| {
+            let own = record.moments().iter().zip(odd).filter(|(_, odd)| **odd == is_odd);
+            own.map(|(moment, _)| state(moment))
+                .fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], value| {
+                    [least.min(value), most.max(value)]
+                })
+        };
+        let ([least, most], [least_of_others, most_of_others]) = (range(true), range(false));
+        if most < least_of_others {
+            return Some(low);
+        }
+        (least > most_of_others).then_some(high)
     })
 }
 
@@ -144,4 +173,23 @@ fn stand_out(
     let odd: BTreeSet<usize> =
         sums.iter().filter(|(_, sum)| mean(**sum) > ODD * usual).map(|(place, _)| *place).collect();
     (!odd.is_empty() && odd.len() <= (sums.len() / ONE_IN).max(1)).then_some(odd)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_beyond_the_others_may_show_an_effect_that_begins_there() {
+        // Three pressures at each of three contractions.
+        let states = (0..9).map(|i| Moment::at_rest(1e5 * f64::from(1 + i % 3), 0.05 * f64::from(i / 3)));
+        let record = Record::from_moments(states.collect(), vec![0.0; 9], vec![0..3, 3..6, 6..9]).unwrap();
+        let of = |is_odd: fn(usize) -> bool| beyond(&record, &(0..9).map(is_odd).collect::<Vec<bool>>());
+        assert_eq!(of(|i| i >= 6), Some("a contraction as large"));
+        assert_eq!(of(|i| i < 3), Some("a contraction as small"));
+        assert_eq!(of(|i| i % 3 == 2), Some("a pressure as high"));
+        assert_eq!(of(|i| i % 3 == 0), Some("a pressure as low"));
+        assert_eq!(of(|i| (3..6).contains(&i)), None);
+        assert_eq!(of(|i| i == 8), None);
+    }
 }
