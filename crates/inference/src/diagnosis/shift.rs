@@ -2,6 +2,7 @@
 //! The force is as good a channel as the others, and what looks like creep or heat may be one step of the length.
 
 use bulge_effects::Moment;
+use bulge_measurements::Channel;
 use bulge_model::{Record, Wanted, Warm};
 use bulge_muscles::units::significant;
 
@@ -39,8 +40,12 @@ pub(crate) fn shifts(found: &Findings<'_>, linear: &Linearised) -> Vec<Shifted> 
             dot(&left, &left)
         };
         let named = square(&base.linear.force) - square(&found.last().linear.force);
-        // In the order of the channels; a force that reads too much is no change of the model's.
-        let slopes = [slopes.by_pressure, slopes.by_contraction, vec![-1.0; record.len()]];
+        // A force that reads too much is no change of the model's.
+        let slopes = [
+            (Channel::Pressure, slopes.by_pressure),
+            (Channel::Motion, slopes.by_contraction),
+            (Channel::Force, vec![-1.0; record.len()]),
+        ];
         Some((linear.shift(&slopes, record.sweeps(), AS_WELL * named)?, named))
     };
     let Some((shift, named)) = of() else { return Vec::new() };
@@ -54,9 +59,9 @@ pub(crate) fn shifts(found: &Findings<'_>, linear: &Linearised) -> Vec<Shifted> 
             format!("{} {unit} too {side}", significant((by / scale).abs(), 2))
         };
         let says = match shift.channel {
-            0 => format!("the pressure read {}", of(1e5, "bar")),
-            1 => format!("the contraction read {}", of(0.01, "points")),
-            _ => format!("the force read {}", of(1.0, "N")),
+            Channel::Pressure => format!("the pressure read {}", of(1e5, "bar")),
+            Channel::Motion => format!("the contraction read {}", of(0.01, "points")),
+            Channel::Force => format!("the force read {}", of(1.0, "N")),
         };
         let odd = (0..rows).map(|place| shift.window.contains(&place) == is_window).collect();
         Shifted { odd, says, is_better }

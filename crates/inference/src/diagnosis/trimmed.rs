@@ -2,8 +2,9 @@
 //! anything. It is linearised at its numbers, in newtons and not whitened: a law of the noise that was
 //! estimated from spoilt rows would spread each of them over its neighbours.
 
+use bulge_measurements::Channel;
 use bulge_model::{ModelError, Record};
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use std::ops::Range;
 
 use crate::diagnosis::tangents::Tangents;
@@ -118,7 +119,7 @@ impl Linearised {
         };
         let left = only(self.left(kept)?);
         let sd = robust_sd(&left);
-        let claimed = only(self.outside(claimed, kept, sd, 0.0)?);
+        let claimed = only(self.on(kept, sd)?.outside(claimed, 0.0));
         let square = dot(&claimed, &claimed);
         (square > 0.0).then(|| Share {
             expected: square / (sd * sd * shared(&left)).max(f64::MIN_POSITIVE),
@@ -142,83 +143,110 @@ impl Linearised {
     /// \[N\].
     fn left(&self, kept: &[bool]) -> Option<Vec<f64>> {
         // The weight of the priors depends on the noise, and the noise on what is left: twice is enough.
-        let first = self.outside(&self.residual, kept, robust_sd(&self.residual), 1.0)?;
-        self.outside(&self.residual, kept, robust_sd(&first), 1.0)
+        let first = self.on(kept, robust_sd(&self.residual))?.outside(&self.residual, 1.0);
+        Some(self.on(kept, robust_sd(&first))?.outside(&self.residual, 1.0))
     }
 
-    /// Values without what the numbers of the model make of them in the rows that are kept, for noise of `sd`;
-    /// `towards` is 1 if the numbers are drawn to their priors, 0 if they are only held by them.
-    fn outside(&self, values: &[f64], kept: &[bool], sd: f64, towards: f64) -> Option<Vec<f64>> {
-        let chosen = |values: &[f64]| -> Vec<f64> {
-            values.iter().zip(kept).map(|(value, kept)| if *kept { *value } else { 0.0 }).collect()
-        };
-        let columns: Vec<Vec<f64>> = self.columns.iter().map(|column| chosen(column)).collect();
-        let target = chosen(values);
+    /// The numbers of the model as the rows that are kept determine them, for noise of `sd`; none if they can't.
+    fn on<'a>(&'a self, kept: &'a [bool], sd: f64) -> Option<Determined<'a>> {
+        let columns: Vec<Vec<f64>> = self.columns.iter().map(|column| chosen(column, kept)).collect();
         let sizes: Vec<f64> = columns.iter().map(|column| norm(column).max(f64::MIN_POSITIVE)).collect();
         let count = columns.len();
         let mut matrix =
             DMatrix::from_fn(count, count, |a, b| dot(&columns[a], &columns[b]) / (sizes[a] * sizes[b]));
-        let mut right = DVector::from_fn(count, |a, _| dot(&columns[a], &target) / sizes[a]);
+        let mut drawn = vec![0.0; count];
         for (place, prior) in self.priors.iter().enumerate() {
             // Numbers that two columns can't tell apart share what they explain.
             matrix[(place, place)] += f64::EPSILON.sqrt();
             if let Some([mean, width]) = prior {
                 let weight = (sd / width).powi(2) / sizes[place];
                 matrix[(place, place)] += weight / sizes[place];
-                right[place] += towards * weight * mean;
+                drawn[place] = weight * mean;
             }
         }
-        let numbers = matrix.cholesky()?.solve(&right);
+        Some(Determined { model: self, kept, sizes, drawn, factor: matrix.cholesky()? })
+    }
+}
+
+/// Values in the rows that are kept, and 0 elsewhere.
+fn chosen(values: &[f64], kept: &[bool]) -> Vec<f64> {
+    values.iter().zip(kept).map(|(value, kept)| if *kept { *value } else { 0.0 }).collect()
+}
+
+/// The numbers of a linearised model, determined by some of the rows.
+struct Determined<'a> {
+    model: &'a Linearised,
+    kept: &'a [bool],
+    /// Norm of each column in the rows that are kept.
+    sizes: Vec<f64>,
+    /// What the priors add to the right-hand side if the numbers are drawn to them.
+    drawn: Vec<f64>,
+    /// Of the normal matrix of columns of norm 1.
+    factor: Cholesky<f64, Dyn>,
+}
+
+impl Determined<'_> {
+    /// Values without what the numbers of the model make of them; `towards` is 1 if the numbers are drawn to their
+    /// priors, 0 if they are only held by them.
+    fn outside(&self, values: &[f64], towards: f64) -> Vec<f64> {
+        let target = chosen(values, self.kept);
+        let columns = || self.model.columns.iter().zip(&self.sizes);
+        let right = columns().zip(&self.drawn);
+        let right = right.map(|((column, size), drawn)| dot(column, &target) / size + towards * drawn);
+        let numbers = self.factor.solve(&DVector::from_iterator(self.sizes.len(), right));
         let mut outside = values.to_vec();
-        for ((column, size), number) in self.columns.iter().zip(&sizes).zip(numbers.iter()) {
-            outside.iter_mut().zip(column).for_each(|(value, slope)| *value -= number / size * slope);
+        for ((column, size), number) in columns().zip(numbers.iter()) {
+            add(&mut outside, -number / size, column);
         }
-        Some(outside)
+        outside
     }
 }
 
 impl Linearised {
     /// The shift of a channel within a window of rows that explains most of the misfit, if that is a sum of squares
     /// of at least `least` \[N^2\] and no chance. `slopes` are the changes of the force by each channel.
-    pub(crate) fn shift(&self, slopes: &[Vec<f64>], sweeps: &[Range<usize>], least: f64) -> Option<Shift> {
+    pub(crate) fn shift(
+        &self,
+        slopes: &[(Channel, Vec<f64>)],
+        sweeps: &[Range<usize>],
+        least: f64,
+    ) -> Option<Shift> {
         let rows = self.residual.len();
         let all = vec![true; rows];
         let left = self.left(&all)?;
-        let sd = robust_sd(&left);
+        let numbers = self.on(&all, robust_sd(&left))?;
         // A channel within a window, beside the numbers of the model.
-        let outside = |channel: usize, window: &Range<usize>| {
+        let tried = |(channel, slopes): &(Channel, Vec<f64>), window: &Range<usize>| {
             let mut column = vec![0.0; rows];
-            column[window.clone()].copy_from_slice(&slopes[channel][window.clone()]);
-            let outside = self.outside(&column, &all, sd, 0.0)?;
-            (dot(&outside, &outside) > SEEN * dot(&column, &column)).then_some(outside)
-        };
-        let gain = |channel: usize, window: &Range<usize>| {
-            let outside = outside(channel, window)?;
+            column[window.clone()].copy_from_slice(&slopes[window.clone()]);
+            let outside = numbers.outside(&column, 0.0);
             let (own, along) = (dot(&outside, &outside), dot(&outside, &left));
-            Some((along * along / own, along / own))
+            let is_seen = own > SEEN * dot(&column, &column);
+            let shift = Shift {
+                channel: *channel,
+                window: window.clone(),
+                by: along / own,
+                more: along * along / own,
+            };
+            is_seen.then_some((shift, outside))
         };
         let best = |windows: Vec<Range<usize>>| {
-            let each =
-                windows.iter().flat_map(|window| (0..slopes.len()).map(move |channel| (channel, window)));
-            let found = each.filter_map(|(channel, window)| {
-                let (gain, by) = gain(channel, window)?;
-                Some((gain, Shift { channel, window: window.clone(), by, more: gain }))
-            });
-            found.max_by(|a, b| a.0.total_cmp(&b.0))
+            let each = windows.iter().flat_map(|window| slopes.iter().map(move |slopes| (slopes, window)));
+            let found = each.filter_map(|(slopes, window)| tried(slopes, window));
+            found.max_by(|(a, _), (b, _)| a.more.total_cmp(&b.more))
         };
         let stride = (rows / WINDOWS).max(1);
-        let (_, rough) = best(windows(rows, stride, sweeps))?;
+        let (rough, _) = best(windows(rows, stride, sweeps))?;
         // Nearer to the row itself.
         let start = rough.window.start;
         let near = start.saturating_sub(stride)..(start + stride).min(rough.window.end);
         let near =
             near.map(|start| start..rough.window.end).filter(|window| (FEWEST..rows).contains(&window.len()));
-        let (gain, shift) = best(near.collect())?;
-        let outside = outside(shift.channel, &shift.window)?;
+        let (shift, outside) = best(near.collect())?;
         let mut rest = left.clone();
         add(&mut rest, -shift.by, &outside);
         let chance = CLEAR * robust_sd(&rest).powi(2) * shared(&rest);
-        (gain > least && gain > chance).then_some(Shift { more: gain - chance, ..shift })
+        (shift.more > least && shift.more > chance).then_some(Shift { more: shift.more - chance, ..shift })
     }
 }
 
@@ -236,8 +264,7 @@ fn windows(rows: usize, stride: usize, sweeps: &[Range<usize>]) -> Vec<Range<usi
 /// A channel that is shifted within a window.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Shift {
-    /// Index of the channel.
-    pub(crate) channel: usize,
+    pub(crate) channel: Channel,
     pub(crate) window: Range<usize>,
     /// Size, in the unit of the channel.
     pub(crate) by: f64,
@@ -288,28 +315,29 @@ mod tests {
     fn a_channel_that_slips_is_found_with_its_row_and_size() {
         let mut line = line(200);
         line.residual[0] = 2.0;
-        let slopes = [vec![1.0; 100], (0..100).map(|row| 4.0 + (0.3 * f64::from(row)).sin()).collect()];
+        let waves = (0..100).map(|row| 4.0 + (0.3 * f64::from(row)).sin()).collect();
+        let slopes = [(Channel::Force, vec![1.0; 100]), (Channel::Motion, waves)];
         let sweeps = [0..50, 50..100];
         assert_eq!(line.shift(&slopes, &sweeps, 0.0), None);
         let whole = line.residual.clone();
         for (channel, window) in [(0, 37..100), (1, 37..100), (1, 20..50), (1, 50..100)] {
             line.residual.clone_from(&whole);
             for row in window.clone() {
-                line.residual[row] += 0.5 * slopes[channel][row];
+                line.residual[row] += 0.5 * slopes[channel].1[row];
             }
             let shift = line.shift(&slopes, &sweeps, 0.0).unwrap();
-            assert_eq!((shift.channel, &shift.window), (channel, &window));
+            assert_eq!((shift.channel, &shift.window), (slopes[channel].0, &window));
             assert!((shift.by - 0.5).abs() < 0.05, "{shift:?}");
         }
         // Without noise its size is exact, and nothing is chance.
         line.residual = (37..100).fold(vec![1.0; 100], |mut residual, row| {
-            residual[row] += 0.5 * slopes[1][row];
+            residual[row] += 0.5 * slopes[1].1[row];
             residual
         });
         let shift = line.shift(&slopes, &sweeps, 0.0).unwrap();
         assert!((shift.by - 0.5).abs() < 1e-6 && shift.window == (37..100), "{shift:?}");
-        let column = (0..100).map(|row| if row < 37 { 0.0 } else { slopes[1][row] }).collect::<Vec<f64>>();
-        let outside = line.outside(&column, &[true; 100], 1.0, 0.0).unwrap();
+        let column = (0..100).map(|row| if row < 37 { 0.0 } else { slopes[1].1[row] }).collect::<Vec<f64>>();
+        let outside = line.on(&[true; 100], 1.0).unwrap().outside(&column, 0.0);
         assert!((shift.more / (0.25 * dot(&outside, &outside)) - 1.0).abs() < 1e-6, "{shift:?}");
     }
 
@@ -362,11 +390,12 @@ mod tests {
             priors: vec![Some([1.0, 0.1])],
             residual: vec![3.0; 100],
         };
-        let left = model.outside(&model.residual, &[true; 100], 2.0, 1.0).unwrap();
+        let numbers = model.on(&[true; 100], 2.0).unwrap();
+        let left = numbers.outside(&model.residual, 1.0);
         let number = (100.0 * 3.0 / 4.0 + 100.0) / (100.0 / 4.0 + 100.0);
         assert!((left[0] - (3.0 - number)).abs() < 1e-6, "{}", left[0]);
         // Held, not drawn: 3 n/s^2 over the same sum.
-        let left = model.outside(&model.residual, &[true; 100], 2.0, 0.0).unwrap();
+        let left = numbers.outside(&model.residual, 0.0);
         assert!((left[0] - (3.0 - 75.0 / 125.0)).abs() < 1e-6, "{}", left[0]);
     }
 }
