@@ -302,9 +302,11 @@ fn an_effect_on_both_sides_of_an_event_is_named() {
 fn specimens(names: [&str; 3]) -> (Muscle, Data) {
     let tables = "\n[specimens.A]\nradius = \"10 mm\"\n[specimens.B]\nradius = \"10.2 mm\"\n[specimens.C]\nradius = \"9.9 mm\"\n";
     let muscle = from_toml(&format!("{BRAID}{tables}"), "braid.toml").unwrap();
+    let loops =
+        Block { path: Path::Triangle, rows: 30, ..Block::loops(vec![2e5, 3.5e5, 5e5], [0.01, 0.18], 40.0) };
     let of = |(seed, name)| {
         let (model, theta) = (Model::new(&muscle.of_specimen(name).unwrap()), []);
-        simulate(&model, &theta, &protocol(2.0, 0.0), seed).unwrap().data.columns().as_ref().clone()
+        simulate(&model, &theta, &noisy(loops.clone(), 2.0), seed).unwrap().data.columns().as_ref().clone()
     };
     let parts: Vec<Columns> = (1..).zip(["A", "B", "C"]).map(of).collect();
     let all = |column: &dyn Fn(&Columns) -> Vec<f64>| parts.iter().flat_map(column).collect::<Vec<f64>>();
