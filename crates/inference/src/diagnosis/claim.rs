@@ -38,6 +38,9 @@ impl Levels {
         let mechanism = part(&|rival| is_same(rival) || is_same_mechanism(&rival.effect, &class.effect));
         let family = part(&|rival| is_same(rival) || rival.effect.card().family == own.family);
         let family = family.min(simulated.named);
+        // No truth that the linearised model leaves possible holds such an effect: its fit lies far outside of it.
+        let is_impossible = simulated.claims == 0 && simulated.class <= 0.0;
+        let mechanism = if is_impossible { 0.0 } else { mechanism };
         // A user's formula without a mechanism represents itself, so a statement about it holds for its form,
         // family and mechanism alike.
         Self { mechanism: mechanism.max(family), family, form: part(&|_| false).min(family) }
@@ -124,6 +127,11 @@ mod tests {
         // At most the simulated confidence, and a tenth less for each further name.
         assert!((Levels::of(&class, &simulated(0.4), 1).family - 0.4).abs() < 1e-12);
         assert!((Levels::of(&class, &simulated(1.0), 3).mechanism / found.mechanism - 0.81).abs() < 1e-12);
+        // Nothing is sure of what no possible truth holds, however much it explains.
+        let impossible = Confidence { named: 0.0, class: 0.0, interval: [0.0, 1.0], claims: 0 };
+        assert!(Levels::of(&class, &impossible, 1).mechanism <= 0.0);
+        let unseen = Confidence { class: 0.2, ..impossible };
+        assert!((Levels::of(&class, &unseen, 1).mechanism - found.mechanism).abs() < 1e-12);
     }
 
     #[test]

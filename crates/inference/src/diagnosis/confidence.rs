@@ -56,7 +56,8 @@ impl Confidence {
             |t: &&Tried| t.hypothesis.effects.iter().any(|i| effects[*i].effect.card().name == effect);
         let all: f64 = tried.iter().map(weight).sum();
         let own: f64 = tried.iter().filter(holds).map(weight).sum();
-        let share = if all > 0.0 { (1.0 - RULE.incomplete) * own / all } else { 0.0 };
+        // An empty sum is -0.
+        let share = if own > 0.0 { (1.0 - RULE.incomplete) * own / all } else { 0.0 };
         Self { named: share, class: share, interval: [0.0, 1.0], claims: 0 }
     }
 }

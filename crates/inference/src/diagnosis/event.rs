@@ -15,6 +15,7 @@ use crate::comparison::rows::lines;
 use crate::diagnosis::document::{Diagnosis, Verdict};
 use crate::diagnosis::late::Late;
 use crate::diagnosis::odd::odd;
+use crate::diagnosis::trimmed::Linearised;
 use crate::diagnosis::write::Findings;
 
 /// Most specimens that are exchanged in pairs.
@@ -41,15 +42,23 @@ pub(crate) fn event(
     if !found.verdict().0.shows_effects() {
         return None;
     }
-    jump(found, data, groups, anew)
-        .or_else(|| late(found, data, groups, anew))
-        .or_else(|| odd(found, data, groups, anew))
-        .or_else(|| exchanged(data, anew))
+    let among_the_rows = || {
+        let base = &found.search.stages.first()?.confirmed;
+        let linear = Linearised::of(&base.prepared, &base.theta, found.context.record).ok()?;
+        late(found, &linear, data, groups, anew).or_else(|| odd(found, &linear, data, groups, anew))
+    };
+    jump(found, data, groups, anew).or_else(among_the_rows).or_else(|| exchanged(data, anew))
 }
 
 /// A column that is late, without which nothing is missing.
-fn late(found: &Findings<'_>, data: &Data, groups: &[Vec<usize>], anew: Anew<'_>) -> Option<String> {
-    let alike = Late::of(found, data, groups);
+fn late(
+    found: &Findings<'_>,
+    linear: &Linearised,
+    data: &Data,
+    groups: &[Vec<usize>],
+    anew: Anew<'_>,
+) -> Option<String> {
+    let alike = Late::of(found, linear, data, groups);
     let is_all = (anew.moved)(*alike.first()?).is_some_and(|found| found.verdict == Verdict::Adequate);
     is_all.then(|| Late::asks(&alike, data))
 }

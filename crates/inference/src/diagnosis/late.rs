@@ -6,9 +6,10 @@ use bulge_model::{Wanted, Warm};
 use bulge_muscles::units::significant;
 use std::ops::Range;
 
+use crate::diagnosis::trimmed::Linearised;
 use crate::diagnosis::write::Findings;
 use crate::median::median;
-use crate::vector::count;
+use crate::vector::{count, minus};
 
 /// Rows by which a column is tried to be late or early; between two of them the error has no other minimum.
 const TRIED: [isize; 12] = [1, 2, 3, 4, 6, 8, 11, 15, 20, 26, 33, 40];
@@ -32,19 +33,24 @@ impl Late {
     /// The columns that leave the base the least error if one of them is moved, if that is much less than as read,
     /// and less than the last model leaves. At constant pressure, a late force is as good as an early motion; late
     /// columns come first.
-    pub(crate) fn of(found: &Findings<'_>, data: &Data, groups: &[Vec<usize>]) -> Vec<Self> {
+    pub(crate) fn of(
+        found: &Findings<'_>,
+        linear: &Linearised,
+        data: &Data,
+        groups: &[Vec<usize>],
+    ) -> Vec<Self> {
         let Some(base) = found.search.stages.first() else { return Vec::new() };
         if !data.is_path() || groups.iter().any(|group| group.len() != 1) {
             return Vec::new();
         }
-        let trial = Trial { found, next: &Next::of(found, groups) };
-        let square = |force: &[f64], kept: &[bool]| Trial::square(&trial.at(Channel::Force, 0), force, kept);
+        let trial = Trial { found, linear, next: &Next::of(found, groups) };
+        let left = |force: &[f64], kept: &[bool]| trial.left(found.context.record.force(), force, kept);
         let best = Channel::ALL.into_iter().filter_map(|channel| trial.best(channel));
         let mut tried: Vec<(Self, f64)> = best
             .filter_map(|late| {
                 let (moved, kept) = trial.moved(late)?;
-                let part = moved / square(&base.linear.force, &kept);
-                let is_better = moved < BETTER * BETTER * square(&found.last().linear.force, &kept);
+                let part = moved / left(&base.linear.force, &kept);
+                let is_better = moved < BETTER * BETTER * left(&found.last().linear.force, &kept);
                 (part < FALLS * FALLS && is_better).then_some((late, part))
             })
             .collect();
@@ -112,6 +118,7 @@ impl Next {
 /// The base, with columns that are moved.
 struct Trial<'a> {
     found: &'a Findings<'a>,
+    linear: &'a Linearised,
     next: &'a Next,
 }
 
@@ -144,13 +151,15 @@ impl Trial<'_> {
         }
         let [pressure, contraction, read] =
             Channel::ALL.map(|channel| self.at(channel, if channel == late.channel { late.rows } else { 0 }));
-        if late.channel == Channel::Force {
-            return Some((Self::square(&read, &base.linear.force, &kept), kept));
-        }
-        let (record, at) = (record.clone().at(&pressure, &contraction), &base.confirmed);
-        let model = &at.prepared.model;
-        let partly = model.evaluate_partly(&record, &at.theta, &Wanted::default(), &Warm::of_rows(&kept));
-        Some((Self::square(&read, &partly.ok()?.prediction.force, &kept), kept))
+        let force = if late.channel == Channel::Force {
+            base.linear.force.clone()
+        } else {
+            let (record, at) = (record.clone().at(&pressure, &contraction), &base.confirmed);
+            let model = &at.prepared.model;
+            let partly = model.evaluate_partly(&record, &at.theta, &Wanted::default(), &Warm::of_rows(&kept));
+            partly.ok()?.prediction.force
+        };
+        Some((self.left(&read, &force, &kept), kept))
     }
 
     /// A column moved by some rows; where there is none its own value stays.
@@ -164,10 +173,17 @@ impl Trial<'_> {
         (0..record.len()).map(|place| value(self.next.after(place, by).unwrap_or(place))).collect()
     }
 
-    /// Sum of squared differences in the rows that are kept; a row without a state counts as infinitely far.
-    fn square(read: &[f64], force: &[f64], kept: &[bool]) -> f64 {
-        let own = read.iter().zip(force).zip(kept).filter(|(_, kept)| **kept);
-        let squares = own.map(|((read, force), _)| (read - force).powi(2));
-        squares.map(|square| if square.is_finite() { square } else { f64::INFINITY }).sum()
+    /// Sum of squares of what a force leaves of the readings in the rows that are kept, once the numbers of the base
+    /// are drawn to it; a row without a state counts as infinitely far.
+    fn left(&self, read: &[f64], force: &[f64], kept: &[bool]) -> f64 {
+        let off = minus(read, force).into_iter().zip(kept).map(|(off, kept)| if *kept { off } else { 0.0 });
+        let off: Vec<f64> = off.collect();
+        if !off.iter().all(|off| off.is_finite()) {
+            return f64::INFINITY;
+        }
+        let left = self.linear.left_of(&off, kept);
+        left.map_or(f64::INFINITY, |left| {
+            left.iter().zip(kept).filter(|(_, kept)| **kept).map(|(left, _)| left * left).sum()
+        })
     }
 }

@@ -6,6 +6,7 @@ use bulge_effects::Moment;
 use bulge_measurements::Data;
 use bulge_model::Record;
 use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Range;
 
 use crate::comparison::rows::lines;
 use crate::diagnosis::document::Verdict;
@@ -32,19 +33,21 @@ const SHOWN: f64 = 0.5;
 const FALLS: f64 = 0.5;
 /// Sum of squares of what was named that they could not show, in variances of the noise.
 const SILENT: f64 = 64.0;
+/// Youden's index from which the odd rows lie at one end of a state, and from which hardly another row does.
+const APART: f64 = 0.75;
+const ALONE: f64 = 0.9;
 /// Fraction of the rows on which alone nothing is named: an effect of the muscle shows in its neighbours too.
 const FEW: f64 = 0.1;
 
 /// What is said of rows without which nothing of what was named is missing, if there are such.
 pub(crate) fn odd(
     found: &Findings<'_>,
+    linear: &Linearised,
     data: &Data,
     groups: &[Vec<usize>],
     Anew { without, .. }: Anew<'_>,
 ) -> Option<String> {
     let base = found.search.stages.first()?;
-    let confirmed = &base.confirmed;
-    let linear = Linearised::of(&confirmed.prepared, &confirmed.theta, found.context.record).ok()?;
     let claimed = minus(&found.last().linear.force, &base.linear.force);
     let claims = found.claims();
     // Why an answer may rest on these rows alone; none if the others bear it out.
@@ -52,7 +55,8 @@ pub(crate) fn odd(
         let kept: Vec<bool> = odd.iter().map(|odd| !odd).collect();
         let falls = || linear.falls_to(&kept).is_some_and(|part| part < FALLS);
         if claims.is_empty() {
-            return falls().then_some(Others::Deny);
+            // What comes back at one state is no event.
+            return (falls() && !comes_back(found.context.record, odd)).then_some(Others::Deny);
         }
         let share = linear.share(&claimed, &kept)?;
         if share.shown < SHOWN && share.expected * (1.0 - share.shown).powi(2) > DENIED {
@@ -70,7 +74,7 @@ pub(crate) fn odd(
         let places = stand_out(found, groups, part)?;
         Some(groups.iter().map(|group| places.contains(&part(first(group)))).collect::<Vec<bool>>())
     });
-    let shifts = shifts(found, &linear);
+    let shifts = shifts(found, linear);
     let mut tried = BTreeSet::new();
     let few = few.chain(linear.odd()).chain(sides(found, data, groups)).map(|odd| (odd, None));
     shifts.into_iter().map(|shifted| (shifted.odd.clone(), Some(shifted))).chain(few).find_map(|(odd, shifted)| {
@@ -94,9 +98,7 @@ pub(crate) fn odd(
         };
         let as_if = shifted.map_or_else(String::new, |shifted| format!(", as if {} there", shifted.says));
         denied.then(|| {
-            let or = beyond(found.context.record, &odd).map_or_else(String::new, |what| {
-                format!("; or an effect that begins there: no other row has {what}; measure between")
-            });
+            let or = or_what(found.context.record, &odd);
             format!(
                 "{asks}{as_if}: without line {} {}. See what happened there: a fitting that slipped, a sensor zeroed anew, reversed or held, another unit, another \
                  specimen{or}",
@@ -107,28 +109,56 @@ pub(crate) fn odd(
     })
 }
 
-/// What only the odd rows have, if all of them lie beyond the range of the others: what shows there alone needn't
-/// be an event.
-fn beyond(record: &Record, odd: &[bool]) -> Option<&'static str> {
+/// What else than an event would show in these rows alone, in words; empty if nothing would.
+fn or_what(record: &Record, odd: &[bool]) -> String {
+    let rest = odd.iter().position(|odd| !odd).unwrap_or(odd.len());
+    if rest > 0 && odd[rest..].iter().all(|odd| !odd) {
+        return "; or the muscle was not run in, which wears off: repeat the first strokes".to_owned();
+    }
+    let (apart, what) = end(record, odd);
+    if apart < ALONE {
+        return String::new();
+    }
+    format!("; or an effect that begins there: hardly another row has {what}; measure between")
+}
+
+/// Whether the odd rows come back at one end of a state in several sweeps that leave it in between.
+fn comes_back(record: &Record, odd: &[bool]) -> bool {
+    let is_mixed = |sweep: &&Range<usize>| {
+        let count = count(&odd[(*sweep).clone()]);
+        count > 0 && count < sweep.len()
+    };
+    record.sweeps().iter().filter(is_mixed).count() > 1 && end(record, odd).0 > APART
+}
+
+/// The end of a state at which the odd rows lie, and how well it sets them apart: the fraction of them beyond a
+/// limit less that of the others (Youden's index of the best limit).
+fn end(record: &Record, odd: &[bool]) -> (f64, &'static str) {
     type State = fn(&Moment) -> f64;
     let of: [(State, [&'static str; 2]); 2] = [
         (|moment| moment.contraction, ["a contraction as small", "a contraction as large"]),
         (|moment| moment.pressure, ["a pressure as low", "a pressure as high"]),
     ];
-    of.into_iter().find_map(|(state, [low, high])| {
-        let range = |is_odd: bool| {
-            let own = record.moments().iter().zip(odd).filter(|(_, odd)| **odd == is_odd);
-            own.map(|(moment, _)| state(moment))
-                .fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], value| {
-                    [least.min(value), most.max(value)]
-                })
-        };
-        let ([least, most], [least_of_others, most_of_others]) = (range(true), range(false));
-        if most < least_of_others {
-            return Some(low);
-        }
-        (least > most_of_others).then_some(high)
-    })
+    let rows = [true, false].map(|is_odd| odd.iter().filter(|odd| **odd == is_odd).count().max(1) as f64);
+    let best = |(state, [low, high]): (State, [&'static str; 2])| {
+        let mut sorted: Vec<(f64, bool)> =
+            record.moments().iter().map(state).zip(odd.iter().copied()).collect();
+        sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
+        // Of the rows up to a limit: odd ones less others.
+        let mut below = 0.0;
+        sorted
+            .chunk_by(|a, b| a.0 >= b.0)
+            .map(|tied| {
+                below += tied
+                    .iter()
+                    .map(|(_, odd)| if *odd { 1.0 / rows[0] } else { -1.0 / rows[1] })
+                    .sum::<f64>();
+                if below > 0.0 { (below, low) } else { (-below, high) }
+            })
+            .fold((0.0, low), |best, next| if next.0 > best.0 { next } else { best })
+    };
+    let [contraction, pressure] = of.map(best);
+    if pressure.0 > contraction.0 { pressure } else { contraction }
 }
 
 /// What the other rows say if a few are left out.
@@ -179,17 +209,43 @@ fn stand_out(
 mod tests {
     use super::*;
 
+    /// Three contractions at each of three pressures, up and down again.
+    fn record() -> Record {
+        let of = |i: u32| {
+            Moment::at_rest(1e5 * f64::from(1 + i / 6), 0.05 * f64::from([0, 1, 2, 2, 1, 0][i as usize % 6]))
+        };
+        let sweeps = vec![0..6, 6..12, 12..18];
+        Record::from_moments((0..18).map(of).collect(), vec![0.0; 18], sweeps).unwrap()
+    }
+
+    fn rows(is_odd: impl Fn(usize) -> bool) -> Vec<bool> {
+        (0..18).map(is_odd).collect()
+    }
+
     #[test]
-    fn rows_beyond_the_others_may_show_an_effect_that_begins_there() {
-        // Three pressures at each of three contractions.
-        let states = (0..9).map(|i| Moment::at_rest(1e5 * f64::from(1 + i % 3), 0.05 * f64::from(i / 3)));
-        let record = Record::from_moments(states.collect(), vec![0.0; 9], vec![0..3, 3..6, 6..9]).unwrap();
-        let of = |is_odd: fn(usize) -> bool| beyond(&record, &(0..9).map(is_odd).collect::<Vec<bool>>());
-        assert_eq!(of(|i| i >= 6), Some("a contraction as large"));
-        assert_eq!(of(|i| i < 3), Some("a contraction as small"));
-        assert_eq!(of(|i| i % 3 == 2), Some("a pressure as high"));
-        assert_eq!(of(|i| i % 3 == 0), Some("a pressure as low"));
-        assert_eq!(of(|i| (3..6).contains(&i)), None);
-        assert_eq!(of(|i| i == 8), None);
+    fn rows_at_one_end_of_a_state_may_show_an_effect_that_begins_there() {
+        let of = |is_odd: fn(usize) -> bool| end(&record(), &rows(is_odd));
+        assert_eq!(of(|i| [2, 3].contains(&(i % 6))), (1.0, "a contraction as large"));
+        assert_eq!(of(|i| [0, 5].contains(&(i % 6))), (1.0, "a contraction as small"));
+        assert_eq!(of(|i| i < 6), (1.0, "a pressure as low"));
+        assert_eq!(of(|i| i >= 12), (1.0, "a pressure as high"));
+        // Half of the six rows of the largest contraction, and none of the twelve others: all of them lie beyond
+        // a limit that 3 of 15 others exceed.
+        let (apart, what) = of(|i| i % 6 == 2);
+        assert!((apart - 0.8).abs() < 1e-12 && what == "a contraction as large", "{apart} {what}");
+        // The middle: half of all rows lie below, two thirds of them with it.
+        assert!((of(|i| (6..12).contains(&i)).0 - 0.5).abs() < 1e-12);
+        let words = or_what(&record(), &rows(|i| i >= 12));
+        assert!(words.contains("hardly another row has a pressure as high"), "{words}");
+        assert_eq!(or_what(&record(), &rows(|i| (6..12).contains(&i))), "");
+        assert!(or_what(&record(), &rows(|i| i < 4)).contains("repeat the first strokes"));
+    }
+
+    #[test]
+    fn what_comes_back_at_one_state_is_no_event_and_a_whole_sweep_may_be() {
+        assert!(comes_back(&record(), &rows(|i| [2, 3].contains(&(i % 6)))));
+        assert!(!comes_back(&record(), &rows(|i| i >= 6)));
+        assert!(!comes_back(&record(), &rows(|i| i == 2 || i == 3)));
+        assert!(!comes_back(&record(), &rows(|i| i % 5 == 1)));
     }
 }

@@ -52,17 +52,18 @@ pub(crate) fn shifts(found: &Findings<'_>, linear: &Linearised) -> Vec<Shifted> 
     let rows = found.context.record.len();
     let is_better = shift.more > named && !is_another_state(found.context.record, shift.window.start);
     let part = |is_window: bool| {
-        // The model's force needs another reading than the one that was taken.
-        let by = if is_window { -shift.by } else { shift.by };
-        let of = |scale: f64, unit: &str| {
+        let says = |(channel, by): &(Channel, f64)| {
+            // The model's force needs another reading than the one that was taken.
+            let by = if is_window { -by } else { *by };
+            let (name, scale, unit) = match channel {
+                Channel::Pressure => ("pressure", 1e5, "bar"),
+                Channel::Motion => ("contraction", 0.01, "points"),
+                Channel::Force => ("force", 1.0, "N"),
+            };
             let side = if by > 0.0 { "much" } else { "little" };
-            format!("{} {unit} too {side}", significant((by / scale).abs(), 2))
+            format!("the {name} read {} {unit} too {side}", significant((by / scale).abs(), 2))
         };
-        let says = match shift.channel {
-            Channel::Pressure => format!("the pressure read {}", of(1e5, "bar")),
-            Channel::Motion => format!("the contraction read {}", of(0.01, "points")),
-            Channel::Force => format!("the force read {}", of(1.0, "N")),
-        };
+        let says = shift.by.iter().map(says).collect::<Vec<String>>().join(" or ");
         let odd = (0..rows).map(|place| shift.window.contains(&place) == is_window).collect();
         Shifted { odd, says, is_better }
     };

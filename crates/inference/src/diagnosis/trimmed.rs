@@ -29,6 +29,8 @@ const FEWEST_BLOCKS: usize = 6;
 /// Starts of windows in which a channel may be shifted, and fewest rows of each.
 const WINDOWS: usize = 60;
 const FEWEST: usize = 5;
+/// A channel explains as much as another if its sum of squares is at least this fraction of the other's.
+const ALIKE: f64 = 0.9;
 /// Fraction of a shift that the numbers of the model must leave.
 const SEEN: f64 = 0.02;
 /// Sum of squares of a shift, in variances of what the model leaves: 6 sigma, of some hundred windows that are
@@ -142,9 +144,14 @@ impl Linearised {
     /// What the model leaves of the readings of all rows if its numbers are those of the rows that are kept
     /// \[N\].
     fn left(&self, kept: &[bool]) -> Option<Vec<f64>> {
+        self.left_of(&self.residual, kept)
+    }
+
+    /// The same of other readings, of which `residual` is what the model leaves at its own numbers \[N\].
+    pub(crate) fn left_of(&self, residual: &[f64], kept: &[bool]) -> Option<Vec<f64>> {
         // The weight of the priors depends on the noise, and the noise on what is left: twice is enough.
-        let first = self.on(kept, robust_sd(&self.residual))?.outside(&self.residual, 1.0);
-        Some(self.on(kept, robust_sd(&first))?.outside(&self.residual, 1.0))
+        let first = self.on(kept, robust_sd(residual))?.outside(residual, 1.0);
+        Some(self.on(kept, robust_sd(&first))?.outside(residual, 1.0))
     }
 
     /// The numbers of the model as the rows that are kept determine them, for noise of `sd`; none if they can't.
@@ -215,38 +222,36 @@ impl Linearised {
         let all = vec![true; rows];
         let left = self.left(&all)?;
         let numbers = self.on(&all, robust_sd(&left))?;
-        // A channel within a window, beside the numbers of the model.
+        // A channel within a window, beside the numbers of the model: what its shift explains, its size, its column.
         let tried = |(channel, slopes): &(Channel, Vec<f64>), window: &Range<usize>| {
             let mut column = vec![0.0; rows];
             column[window.clone()].copy_from_slice(&slopes[window.clone()]);
             let outside = numbers.outside(&column, 0.0);
             let (own, along) = (dot(&outside, &outside), dot(&outside, &left));
             let is_seen = own > SEEN * dot(&column, &column);
-            let shift = Shift {
-                channel: *channel,
-                window: window.clone(),
-                by: along / own,
-                more: along * along / own,
-            };
-            is_seen.then_some((shift, outside))
+            is_seen.then(|| (along * along / own, (*channel, along / own), outside))
         };
         let best = |windows: Vec<Range<usize>>| {
-            let each = windows.iter().flat_map(|window| slopes.iter().map(move |slopes| (slopes, window)));
-            let found = each.filter_map(|(slopes, window)| tried(slopes, window));
-            found.max_by(|(a, _), (b, _)| a.more.total_cmp(&b.more))
+            let each = windows.into_iter().flat_map(|window| {
+                slopes.iter().filter_map(move |slopes| Some((tried(slopes, &window)?.0, window.clone())))
+            });
+            each.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, window)| window)
         };
         let stride = (rows / WINDOWS).max(1);
-        let (rough, _) = best(windows(rows, stride, sweeps))?;
+        let rough = best(windows(rows, stride, sweeps))?;
         // Nearer to the row itself.
-        let start = rough.window.start;
-        let near = start.saturating_sub(stride)..(start + stride).min(rough.window.end);
-        let near =
-            near.map(|start| start..rough.window.end).filter(|window| (FEWEST..rows).contains(&window.len()));
-        let (shift, outside) = best(near.collect())?;
+        let near = rough.start.saturating_sub(stride)..(rough.start + stride).min(rough.end);
+        let near = near.map(|start| start..rough.end).filter(|window| (FEWEST..rows).contains(&window.len()));
+        let window = best(near.collect())?;
+        let mut channels: Vec<_> = slopes.iter().filter_map(|slopes| tried(slopes, &window)).collect();
+        channels.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let (most, (_, by), outside) = channels.first()?;
         let mut rest = left.clone();
-        add(&mut rest, -shift.by, &outside);
+        add(&mut rest, -by, outside);
         let chance = CLEAR * robust_sd(&rest).powi(2) * shared(&rest);
-        (shift.more > least && shift.more > chance).then_some(Shift { more: shift.more - chance, ..shift })
+        let alike = channels.iter().filter(|(gain, _, _)| *gain >= ALIKE * most);
+        let by = alike.map(|(_, by, _)| *by).collect();
+        (*most > least && *most > chance).then(|| Shift { window, by, more: most - chance })
     }
 }
 
@@ -264,10 +269,9 @@ fn windows(rows: usize, stride: usize, sweeps: &[Range<usize>]) -> Vec<Range<usi
 /// A channel that is shifted within a window.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Shift {
-    pub(crate) channel: Channel,
     pub(crate) window: Range<usize>,
-    /// Size, in the unit of the channel.
-    pub(crate) by: f64,
+    /// The channel and by how much, in its unit; others that explain as much follow.
+    pub(crate) by: Vec<(Channel, f64)>,
     /// Sum of squares that it explains beyond chance \[N^2\].
     pub(crate) more: f64,
 }
@@ -326,8 +330,8 @@ mod tests {
                 line.residual[row] += 0.5 * slopes[channel].1[row];
             }
             let shift = line.shift(&slopes, &sweeps, 0.0).unwrap();
-            assert_eq!((shift.channel, &shift.window), (slopes[channel].0, &window));
-            assert!((shift.by - 0.5).abs() < 0.05, "{shift:?}");
+            assert_eq!(shift.window, window);
+            assert!(shift.by[0].0 == slopes[channel].0 && (shift.by[0].1 - 0.5).abs() < 0.05, "{shift:?}");
         }
         // Without noise its size is exact, and nothing is chance.
         line.residual = (37..100).fold(vec![1.0; 100], |mut residual, row| {
@@ -335,7 +339,7 @@ mod tests {
             residual
         });
         let shift = line.shift(&slopes, &sweeps, 0.0).unwrap();
-        assert!((shift.by - 0.5).abs() < 1e-6 && shift.window == (37..100), "{shift:?}");
+        assert!((shift.by[0].1 - 0.5).abs() < 1e-6 && shift.window == (37..100), "{shift:?}");
         let column = (0..100).map(|row| if row < 37 { 0.0 } else { slopes[1].1[row] }).collect::<Vec<f64>>();
         let outside = line.on(&[true; 100], 1.0).unwrap().outside(&column, 0.0);
         assert!((shift.more / (0.25 * dot(&outside, &outside)) - 1.0).abs() < 1e-6, "{shift:?}");

@@ -264,6 +264,46 @@ fn a_column_that_comes_late_is_no_lag_and_a_lag_is_no_late_column() {
     assert_eq!((found.verdict, names(&found)), (Verdict::Missing, vec!["force-lag"]), "{}", found.says);
 }
 
+/// Fillings and ventings at four held lengths, with noise of 2 N and pauses between them.
+fn fillings() -> Data {
+    let states = [0.02, 0.07, 0.12, 0.17].into_iter().zip(0..).flat_map(|(held, sweep)| {
+        (0..84).map(move |i| {
+            let part = f64::from(i) / 42.0;
+            (f64::from(200 * sweep + i), 6e4 + 5.4e5 * (1.0 - (part - 1.0).abs()), held)
+        })
+    });
+    let (time, (pressure, contraction)): (Vec<f64>, (Vec<f64>, Vec<f64>)) =
+        states.map(|(t, p, e)| (t, (p, e))).unzip();
+    let mut columns = Columns::new(pressure, Trace::Contraction(contraction), vec![0.0; time.len()]);
+    columns.time_s = Some(time);
+    let record = Record::new(&Data::from_columns(columns.clone()).unwrap(), muscle().length().si());
+    let exact = Model::new(&muscle()).evaluate(&record, &[], &Wanted::default()).unwrap().force;
+    let mut random = Random::new(12, 0);
+    columns.force_n = exact.iter().map(|force| force + 2.0 * random.normal()).collect();
+    Data::from_columns(columns).unwrap()
+}
+
+#[test]
+fn a_late_column_is_seen_at_held_lengths_although_the_base_was_drawn_to_it() {
+    let found = diagnosed(&fillings());
+    assert_eq!((found.verdict, found.remaining.event), (Verdict::Adequate, None), "{}", found.says);
+    let late = diagnosed(&fillings().moved(Channel::Force, -5));
+    assert_eq!((late.verdict, names(&late)), (Verdict::CannotTell, vec![]), "{}", late.says);
+    assert!(late.says.contains("the force 5 rows (5.0 s) earlier"), "{}", late.says);
+}
+
+#[test]
+fn what_comes_back_at_one_end_of_every_stroke_is_no_event() {
+    // Ends that touch each other: no effect of the catalogue, and no fault of a sensor.
+    let found = spoilt(&measured(&[], &protocol(2.0, 0.0), 10), |columns| {
+        let contraction = columns.motion.values().to_vec();
+        columns.force_n.iter_mut().zip(contraction).for_each(|(force, e)| {
+            *force -= 80.0 * ((e - 0.18) / 0.004).exp();
+        });
+    });
+    assert_eq!((found.verdict, found.remaining.event), (Verdict::Unknown, None), "{}", found.says);
+}
+
 #[test]
 fn a_length_that_slips_for_the_rest_of_the_test_is_no_creep() {
     let data = measured(&[], &protocol(2.0, 0.0), 8);
