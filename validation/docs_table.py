@@ -4,6 +4,7 @@
     python validation/docs_table.py diagnosis [--check]      # from validation/hidden-effects/answers, scored anew
     python validation/docs_table.py forms [--check]          # the same for the forms suite: with the whole catalogue, and with the truth as the only candidate
     python validation/docs_table.py ratios [--check]         # from benches/ratios.json, which benches/ratios.py measures
+    python validation/docs_table.py mutation [--check]       # from validation/mutation.json, which validation/mutation.py measures
 
 A table stands between `<!-- table: NAME ... -->` and `<!-- end of table -->`; all else in the file is kept. `--check` writes nothing: its status is 1 if
 the page differs. Errors of `verification` at the level of rounding differ between machines and aren't compared. The tables of suites need NumPy and SciPy.
@@ -16,7 +17,7 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-PAGES = ("README.md", "docs/diagnose.md", "docs/speed.md", "docs/verification.md")
+PAGES = ("README.md", "docs/diagnose.md", "docs/hardening.md", "docs/speed.md", "docs/verification.md")
 ANSWERS = ROOT / "validation/hidden-effects/answers"
 PEERS = {"AICc": "aicc", "BIC": "bic", "largest drop": "largest-drop", "lasso": "lasso"}
 
@@ -98,7 +99,7 @@ FORMS_FRONT = (
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("what", choices=("verification", "diagnosis", "forms", "ratios"))
+    parser.add_argument("what", choices=("verification", "diagnosis", "forms", "ratios", "mutation"))
     parser.add_argument("--check", action="store_true", help="compare the pages, and write nothing")
     parser.add_argument("--root", type=Path, default=ROOT, help="folder of README.md and docs")
     arguments = parser.parse_args()
@@ -110,6 +111,8 @@ def main():
     elif arguments.what == "ratios":
         measured = json.loads((ROOT / "benches/ratios.json").read_text(encoding="utf-8"))
         tables = {"ratios": ratios(measured), "ratios-front": ratios(measured)}
+    elif arguments.what == "mutation":
+        tables = {"mutation": mutation(json.loads((ROOT / "validation/mutation.json").read_text(encoding="utf-8")))}
     elif arguments.what == "forms":
         scores = scored("forms-79", "forms-79-among-truth")
         tables = {"forms": forms(scores), "forms-front": forms_front(scores[0])}
@@ -147,6 +150,21 @@ def ratios(measured):
     lines = [f"| {measured['machine']}, {measured['date']} | Bulge | peer | times |", "|---|---|---|---|"]
     for row in measured["rows"]:
         cells = [row["question"], _time(row["own_s"]), f"{row['peer_is']}: {_time(row['peer_s'])}", f"{float(format(row['ratio'], '.2g')):g}"]
+        lines.append("| " + " | ".join(cells) + " |")
+    return "\n".join(lines)
+
+
+def mutation(crates):
+    """What share of the mutants of each crate its own tests catch."""
+    sys.path.insert(0, str(ANSWERS.parent))
+    from simulator.wilson import interval
+
+    lines = ["| crate | mutants | sample | not built | survive | caught [Wilson's 95 % interval] |", "|---|---|---|---|---|---|"]
+    for crate, counts in crates.items():
+        built, survive = counts["sample"] - counts["unviable"], len(counts["survived"])
+        low, high = (100 * bound for bound in interval(built - survive, built))
+        share = f"{100 * (built - survive) / built:.1f} % [{low:.0f}, {high:.0f}]"
+        cells = [crate, str(counts["mutants"]), str(counts["sample"]), str(counts["unviable"]), str(survive), share]
         lines.append("| " + " | ".join(cells) + " |")
     return "\n".join(lines)
 

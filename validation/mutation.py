@@ -1,0 +1,110 @@
+"""Mutation tests: what share of small faults in a crate its own tests catch.
+
+    python validation/mutation.py numerics [--sample 200] [--seed 1]     # a new sample
+    python validation/mutation.py numerics --again                       # those that survived before, after tests were written
+    python validation/docs_table.py mutation [--check]                   # the table in docs/hardening.md
+
+A mutant is the crate with one operator exchanged, one result replaced or one match arm removed (cargo-mutants 27, from crates.io: `cargo install cargo-mutants`).
+Of all mutants a seeded sample is built, and the crate's own tests run on each: its unit tests first, on those that survive them all of its tests.
+cargo-nextest, where it is installed, ends a run with the first test that fails. It works in a clone of HEAD below target/mutation, hours for a large crate, and keeps
+what it found in validation/mutation.json: counts, and the names of the mutants that survive.
+"""
+
+import argparse
+import json
+import os
+import random
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+KEPT = ROOT / "validation/mutation.json"
+OUTCOMES = ("caught", "timeout", "missed", "unviable")
+
+UNIT_S, ALL_S = 300, 1200
+"""Seconds that the unit tests and all tests of a mutant may take: a loop without an end counts as caught."""
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("crate", help="without `bulge-`")
+    parser.add_argument("--sample", type=int, default=200, help="how many mutants")
+    parser.add_argument("--seed", type=int, default=1, help="another seed gives another sample")
+    parser.add_argument("--again", action="store_true", help="run only those that survived before")
+    arguments = parser.parse_args()
+    if shutil.which("cargo-mutants") is None:
+        parser.error("cargo-mutants isn't installed: cargo install cargo-mutants --locked")
+    if not (ROOT / "crates" / arguments.crate).is_dir():
+        parser.error(f"there is no crate `{arguments.crate}` below crates/")
+    tree = _clone(ROOT / "target/mutation" / arguments.crate)
+    kept = json.loads(KEPT.read_text(encoding="utf-8")) if KEPT.exists() else {}
+    before = kept.get(arguments.crate)
+    if arguments.again and before is None:
+        parser.error(f"`{arguments.crate}` has not been sampled yet: leave out --again")
+    mutants = _listed(tree, arguments.crate)
+    if arguments.again:
+        # Lines move; what is done to which function stays.
+        survived = {_without_place(name) for name in before["survived"]}
+        chosen = [name for name in mutants if _without_place(name) in survived]
+    else:
+        chosen = random.Random(arguments.seed).sample(mutants, min(arguments.sample, len(mutants)))
+    found = _run(tree, arguments.crate, chosen)
+    survived = sorted(found["missed"])
+    if arguments.again:
+        counts = {**before, "survived": survived}
+    else:
+        counts = {"mutants": len(mutants), "seed": arguments.seed, "sample": len(chosen), "unviable": len(found["unviable"]), "survived": survived}
+    kept[arguments.crate] = counts
+    KEPT.write_text(json.dumps(dict(sorted(kept.items())), indent=1) + "\n", encoding="utf-8")
+    print("\n".join([f"{len(survived)} of {counts['sample'] - counts['unviable']} that can be built survive:", *survived]))
+    return 0
+
+
+def _clone(tree):
+    """A clone with what HEAD has; what it has built stays."""
+    if not tree.exists():
+        subprocess.run(["git", "clone", "--quiet", "--shared", ROOT, tree], check=True)
+    subprocess.run(["git", "-C", tree, "fetch", "--quiet", "origin", "HEAD"], check=True)
+    subprocess.run(["git", "-C", tree, "reset", "--quiet", "--hard", "FETCH_HEAD"], check=True)
+    return tree
+
+
+def _listed(tree, crate):
+    words = ["cargo", "mutants", "--list", "--colors", "never", "--package", f"bulge-{crate}"]
+    return sorted(subprocess.run(words, cwd=tree, check=True, capture_output=True, text=True).stdout.splitlines())
+
+
+def _without_place(name):
+    return re.sub(r":\d+:\d+:", ":", name)
+
+
+def _run(tree, crate, mutants):
+    """Names of the mutants by what became of them: by the unit tests, and by all tests for those that survive."""
+    found = _tested(tree, crate, mutants, ["--lib"], UNIT_S)
+    rest = _tested(tree, crate, found.pop("missed"), ["--lib", "--bins", "--tests"], ALL_S)
+    return {outcome: [*found.get(outcome, []), *rest[outcome]] for outcome in OUTCOMES}
+
+
+def _tested(tree, crate, mutants, which, limit_s):
+    if not mutants:
+        return {outcome: [] for outcome in OUTCOMES}
+    out = tree.parent / f"{crate}-found"
+    shutil.rmtree(out, ignore_errors=True)
+    exactly = "^(" + "|".join(re.escape(name) for name in mutants) + ")$"
+    tool = "nextest" if shutil.which("cargo-nextest") else "cargo"
+    words = ["cargo", "mutants", "--in-place", "--package", f"bulge-{crate}", "--re", exactly, "--baseline", "skip", "--timeout", limit_s]
+    words += ["--output", out, "--test-tool", tool, "--no-shuffle", "--colors", "never", "--", *which]
+    # Its status is 2 or 3 if a mutant survives or takes too long.
+    subprocess.run([str(word) for word in words], cwd=tree, env={**os.environ, "CARGO_INCREMENTAL": "1", "CARGO_PROFILE_DEV_DEBUG": "false"}, check=False)
+    read = {outcome: (out / "mutants.out" / f"{outcome}.txt").read_text(encoding="utf-8").splitlines() for outcome in OUTCOMES}
+    done = sum(len(names) for names in read.values())
+    if done != len(mutants):
+        sys.exit(f"{done} of {len(mutants)} mutants were tested: see {out}")
+    return read
+
+
+if __name__ == "__main__":
+    sys.exit(main())
