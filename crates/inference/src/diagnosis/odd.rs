@@ -224,17 +224,19 @@ mod tests {
 
     #[test]
     fn rows_at_one_end_of_a_state_may_show_an_effect_that_begins_there() {
-        let of = |is_odd: fn(usize) -> bool| end(&record(), &rows(is_odd));
-        assert_eq!(of(|i| [2, 3].contains(&(i % 6))), (1.0, "a contraction as large"));
-        assert_eq!(of(|i| [0, 5].contains(&(i % 6))), (1.0, "a contraction as small"));
-        assert_eq!(of(|i| i < 6), (1.0, "a pressure as low"));
-        assert_eq!(of(|i| i >= 12), (1.0, "a pressure as high"));
-        // Half of the six rows of the largest contraction, and none of the twelve others: all of them lie beyond
-        // a limit that 3 of 15 others exceed.
-        let (apart, what) = of(|i| i % 6 == 2);
-        assert!((apart - 0.8).abs() < 1e-12 && what == "a contraction as large", "{apart} {what}");
-        // The middle: half of all rows lie below, two thirds of them with it.
-        assert!((of(|i| (6..12).contains(&i)).0 - 0.5).abs() < 1e-12);
+        let is = |is_odd: fn(usize) -> bool, apart: f64, what: &str| {
+            let found = end(&record(), &rows(is_odd));
+            assert!((found.0 - apart).abs() < 1e-12 && found.1 == what, "{found:?}");
+        };
+        is(|i| [2, 3].contains(&(i % 6)), 1.0, "a contraction as large");
+        is(|i| [0, 5].contains(&(i % 6)), 1.0, "a contraction as small");
+        is(|i| i < 6, 1.0, "a pressure as low");
+        is(|i| i >= 12, 1.0, "a pressure as high");
+        // All of three rows lie beyond a limit that 3 of 15 others exceed.
+        is(|i| i % 6 == 2, 0.8, "a contraction as large");
+        // All six of the middle pressure, and half of the others.
+        let middle = end(&record(), &rows(|i| (6..12).contains(&i)));
+        assert!((middle.0 - 0.5).abs() < 1e-12, "{middle:?}");
         let words = or_what(&record(), &rows(|i| i >= 12));
         assert!(words.contains("hardly another row has a pressure as high"), "{words}");
         assert_eq!(or_what(&record(), &rows(|i| (6..12).contains(&i))), "");
