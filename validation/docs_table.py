@@ -112,7 +112,10 @@ def main():
         measured = json.loads((ROOT / "benches/ratios.json").read_text(encoding="utf-8"))
         tables = {"ratios": ratios(measured), "ratios-front": ratios(measured)}
     elif arguments.what == "mutation":
-        tables = {"mutation": mutation(json.loads((ROOT / "validation/mutation.json").read_text(encoding="utf-8")))}
+        kept = ROOT / "validation/mutation.json"
+        if not kept.exists():
+            parser.error(f"{kept} is not there: run validation/mutation.py for each crate")
+        tables = {"mutation": mutation(json.loads(kept.read_text(encoding="utf-8")))}
     elif arguments.what == "forms":
         scores = scored("forms-79", "forms-79-among-truth")
         tables = {"forms": forms(scores), "forms-front": forms_front(scores[0])}
