@@ -38,9 +38,8 @@ impl Levels {
         let mechanism = part(&|rival| is_same(rival) || is_same_mechanism(&rival.effect, &class.effect));
         let family = part(&|rival| is_same(rival) || rival.effect.card().family == own.family);
         let family = family.min(simulated.named);
-        // No truth that the linearised model leaves possible holds such an effect: its fit lies far outside of it.
-        let is_impossible = simulated.claims == 0 && simulated.class <= 0.0;
-        let mechanism = if is_impossible { 0.0 } else { mechanism };
+        // If no truth that the linearised model leaves possible is of the class, the fit lies far outside of it.
+        let mechanism = if simulated.class > 0.0 { mechanism } else { 0.0 };
         // A user's formula without a mechanism represents itself, so a statement about it holds for its form,
         // family and mechanism alike.
         Self { mechanism: mechanism.max(family), family, form: part(&|_| false).min(family) }

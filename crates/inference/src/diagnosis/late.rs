@@ -6,7 +6,7 @@ use bulge_model::{Wanted, Warm};
 use bulge_muscles::units::significant;
 use std::ops::Range;
 
-use crate::diagnosis::trimmed::Linearised;
+use crate::diagnosis::trimmed::{Linearised, chosen};
 use crate::diagnosis::write::Findings;
 use crate::median::median;
 use crate::vector::{count, minus};
@@ -176,14 +176,7 @@ impl Trial<'_> {
     /// Sum of squares of what a force leaves of the readings in the rows that are kept, once the numbers of the base
     /// are drawn to it; a row without a state counts as infinitely far.
     fn left(&self, read: &[f64], force: &[f64], kept: &[bool]) -> f64 {
-        let off = minus(read, force).into_iter().zip(kept).map(|(off, kept)| if *kept { off } else { 0.0 });
-        let off: Vec<f64> = off.collect();
-        if !off.iter().all(|off| off.is_finite()) {
-            return f64::INFINITY;
-        }
-        let left = self.linear.left_of(&off, kept);
-        left.map_or(f64::INFINITY, |left| {
-            left.iter().zip(kept).filter(|(_, kept)| **kept).map(|(left, _)| left * left).sum()
-        })
+        let left = self.linear.square_of(&chosen(&minus(read, force), kept), kept);
+        left.filter(|left| left.is_finite()).unwrap_or(f64::INFINITY)
     }
 }

@@ -129,16 +129,21 @@ impl Linearised {
         })
     }
 
-    /// RMS that the model leaves in the rows that are kept, over that in all \[N\].
+    /// RMS that the model leaves in the rows that are kept, over that in all.
     pub(crate) fn falls_to(&self, kept: &[bool]) -> Option<f64> {
-        let size = |left: &[f64], of: &[bool]| {
-            let of = left.iter().zip(of).filter(|(_, of)| **of).map(|(left, _)| left * left);
-            let (square, rows) = of.fold((0.0, 0.0), |(square, rows), one| (square + one, rows + 1.0));
-            (square / f64::max(rows, 1.0)).sqrt()
+        let size = |kept: &[bool]| {
+            let square = self.square_of(&self.residual, kept)?;
+            Some((square / count(kept).max(1) as f64).sqrt())
         };
-        let all = vec![true; kept.len()];
-        let before = size(&self.left(&all)?, &all);
-        (before > 0.0).then_some(size(&self.left(kept)?, kept) / before)
+        let before = size(&vec![true; kept.len()])?;
+        (before > 0.0).then_some(size(kept)? / before)
+    }
+
+    /// Sum of squares that the model leaves of other readings in the rows that are kept, its numbers drawn to them;
+    /// `residual` is what it leaves at its own numbers \[N\].
+    pub(crate) fn square_of(&self, residual: &[f64], kept: &[bool]) -> Option<f64> {
+        let left = self.left_of(residual, kept)?;
+        Some(left.iter().zip(kept).filter(|(_, kept)| **kept).map(|(left, _)| left * left).sum())
     }
 
     /// What the model leaves of the readings of all rows if its numbers are those of the rows that are kept
@@ -147,8 +152,7 @@ impl Linearised {
         self.left_of(&self.residual, kept)
     }
 
-    /// The same of other readings, of which `residual` is what the model leaves at its own numbers \[N\].
-    pub(crate) fn left_of(&self, residual: &[f64], kept: &[bool]) -> Option<Vec<f64>> {
+    fn left_of(&self, residual: &[f64], kept: &[bool]) -> Option<Vec<f64>> {
         // The weight of the priors depends on the noise, and the noise on what is left: twice is enough.
         let first = self.on(kept, robust_sd(residual))?.outside(residual, 1.0);
         Some(self.on(kept, robust_sd(&first))?.outside(residual, 1.0))
@@ -176,7 +180,7 @@ impl Linearised {
 }
 
 /// Values in the rows that are kept, and 0 elsewhere.
-fn chosen(values: &[f64], kept: &[bool]) -> Vec<f64> {
+pub(crate) fn chosen(values: &[f64], kept: &[bool]) -> Vec<f64> {
     values.iter().zip(kept).map(|(value, kept)| if *kept { *value } else { 0.0 }).collect()
 }
 
@@ -333,6 +337,18 @@ mod tests {
             assert_eq!(shift.window, window);
             assert!(shift.by[0].0 == slopes[channel].0 && (shift.by[0].1 - 0.5).abs() < 0.05, "{shift:?}");
         }
+        // A channel that explains as much is named beside it, by its own size.
+        let half = (Channel::Pressure, slopes[0].1.iter().map(|slope| 0.5 * slope).collect());
+        line.residual = (37..100).fold(whole, |mut residual, row| {
+            residual[row] += 0.5;
+            residual
+        });
+        let both = line.shift(&[slopes[0].clone(), half, slopes[1].clone()], &sweeps, 0.0).unwrap();
+        assert_eq!(
+            both.by.iter().map(|by| by.0).collect::<Vec<_>>()[..2],
+            [Channel::Force, Channel::Pressure]
+        );
+        assert!((both.by[1].1 / both.by[0].1 - 2.0).abs() < 1e-9, "{both:?}");
         // Without noise its size is exact, and nothing is chance.
         line.residual = (37..100).fold(vec![1.0; 100], |mut residual, row| {
             residual[row] += 0.5 * slopes[1].1[row];
