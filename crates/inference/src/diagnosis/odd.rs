@@ -76,7 +76,7 @@ pub(crate) fn odd(
     });
     let shifts = shifts(found, linear);
     let mut tried = BTreeSet::new();
-    let few = few.chain(linear.odd()).chain(sides(found, data, groups)).map(|odd| (odd, None));
+    let few = few.chain(linear.odd()).map(|odd| (odd, None));
     shifts.into_iter().map(|shifted| (shifted.odd.clone(), Some(shifted))).chain(few).find_map(|(odd, shifted)| {
         let is_better = shifted.as_ref().is_some_and(|shifted| shifted.is_better);
         let others = if is_better { Some(Others::Deny) } else { doubt(&odd) };
@@ -168,19 +168,6 @@ enum Others {
     Deny,
     /// They could not show it.
     AreSilent,
-}
-
-/// The rows behind the clearest jump in the misfit of the base, and those before it: what stays after an event
-/// may be most of a record.
-fn sides(found: &Findings<'_>, data: &Data, groups: &[Vec<usize>]) -> Vec<Vec<bool>> {
-    let jump = found.search.stages.first().and_then(|base| base.linear.jump(found.context));
-    let Some(row) = jump.and_then(|jump| groups.get(jump.row)?.first().copied()) else { return Vec::new() };
-    let own = |group: &Vec<usize>, is_after: bool| {
-        group
-            .first()
-            .is_some_and(|one| (*one >= row) == is_after && data.specimen_of(*one) == data.specimen_of(row))
-    };
-    [true, false].map(|is_after| groups.iter().map(|group| own(group, is_after)).collect()).to_vec()
 }
 
 /// The few parts of the data whose misfit of the base stands far out.
