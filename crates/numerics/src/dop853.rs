@@ -301,4 +301,58 @@ mod tests {
         };
         assert!(stalled.step < 1e-12 && (time - 1.0).abs() < 1e-12, "{stalled} at {time}");
     }
+
+    /// Hairer's II.10.18: err = h |E5|^2 / sqrt(|E5|^2 + 0.01 |E3|^2), root mean squares over the components.
+    #[test]
+    fn both_estimates_are_weighed() {
+        // Squares: 0.6^2 + 0.2^2 = 0.4 and 1.2^2 + 0.4^2 = 1.6.
+        let error = norm(&[0.3, 0.4], &[0.6, 0.8], &[0.5, 2.0]);
+        assert!((error - 0.4 / (2.0_f64 * (0.4 + 0.016)).sqrt()).abs() < 1e-15, "{error}");
+        assert!(norm(&[0.0, 0.0], &[0.0, 0.0], &[1.0, 1.0]).abs() < 1e-300);
+    }
+
+    #[test]
+    fn a_first_step_too_large_or_too_small_soon_has_the_size_that_the_tolerance_allows() {
+        let mut calls = 0;
+        let mut f = |y: &[f64; 2]| {
+            calls += 1;
+            assert!(calls < 1000, "no step is accepted");
+            pendulum(y)
+        };
+        let (mut evaluations, mut sizes) = (0, vec![]);
+        for first in [1e-3, 0.3, 30.0] {
+            let (mut y, mut run) = ([1.0, 0.5], Dop853::new(first, 1e-10));
+            let mut k1 = pendulum(&y);
+            for _ in 0..6 {
+                run.advance(&mut f, |_, _| [1.0, 1.0], &mut y, &mut k1, 100.0).unwrap();
+            }
+            assert_eq!(run.accepted, 6);
+            // Each rejection divides a step by three at most, and a step after it does not grow.
+            assert!(run.evaluations <= 12 * 12, "{first}: {} evaluations", run.evaluations);
+            evaluations += run.evaluations;
+            sizes.push(run.step);
+        }
+        assert_eq!(calls, evaluations);
+        let [least, most] = [f64::min, f64::max].map(|of| sizes.iter().copied().reduce(of).unwrap());
+        assert!(most < 2.0 * least, "{sizes:?}");
+    }
+
+    #[test]
+    fn a_step_that_the_limit_cuts_leaves_the_size_unless_its_error_asks_for_less() {
+        let mut f = |y: &[f64; 2]| pendulum(y);
+        let after = |f: &mut dyn FnMut(&[f64; 2]) -> [f64; 2], tolerance: f64| {
+            let mut y = [1.0, 0.5];
+            let (mut k1, mut run) = (pendulum(&y), Dop853::new(0.5, tolerance));
+            let h = run.advance(&mut |y: &[f64; 2]| f(y), |_, _| [1.0, 1.0], &mut y, &mut k1, 0.45).unwrap();
+            (h, run.step)
+        };
+        assert_eq!(after(&mut f, 1e-6), (0.45, 0.5));
+        // The least tolerance that lets this step pass: the next one is shorter.
+        let just = (0..200)
+            .map(|n| 1e-6 * 0.9_f64.powi(n))
+            .take_while(|tolerance| after(&mut f, *tolerance).0 >= 0.45)
+            .last();
+        let next = after(&mut f, just.unwrap()).1;
+        assert!(next < 0.43 && next > 0.4, "{next}");
+    }
 }

@@ -162,4 +162,15 @@ mod tests {
             assert!(product.abs() < 40.0, "{product}");
         }
     }
+
+    #[test]
+    fn between_reaches_both_ends_and_nothing_else() {
+        let mut random = Random::new(5, 1);
+        let drawn: Vec<f64> = (0..1000).map(|_| random.between(-3.0, 5.0)).collect();
+        let [least, most] = [
+            drawn.iter().copied().fold(f64::INFINITY, f64::min),
+            drawn.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+        ];
+        assert!((-3.0..-2.9).contains(&least) && (4.9..5.0).contains(&most), "{least} {most}");
+    }
 }
