@@ -45,9 +45,9 @@ SIDE = 10_000
 PROTOCOL = """[noise]
 force = "2 N"
 [[block]]
-path = "triangle"
+shape = "loops"
 pressures = ["2 bar", "3 bar", "4 bar", "5 bar"]
-contraction = ["1 %", "18 %"]
+contraction = "1 %..18 %"
 period = "40 s"
 cycles = {cycles}
 rows = 2500
