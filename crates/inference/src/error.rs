@@ -13,6 +13,12 @@ pub enum InferenceError {
         /// Why the rows were left out.
         left_out: String,
     },
+    /// Most rows have a reading that no muscle has.
+    #[error("most rows can't be those of a muscle: {what}; see that pressure and force are not exchanged")]
+    Unit {
+        /// The readings, and what to check.
+        what: String,
+    },
     /// The rows don't fit into the memory.
     #[error(
         "{files}: what is asked of {rows} rows {shortage}: keep fewer rows per second, take fewer files at once, or allow more memory"
@@ -29,7 +35,9 @@ pub enum InferenceError {
     #[error(transparent)]
     Specimens(Box<FileError>),
     /// There are more free parameters than rows.
-    #[error("{numbers} numbers can't be fitted to {rows} rows; measure more, or fit fewer effects at once")]
+    #[error(
+        "{numbers} numbers (those of effects, and of zeros, gains and widths that the muscle file states) can't be fitted to {rows} rows that count and differ; measure more, or fit fewer at once"
+    )]
     TooFewRows {
         /// Rows that count.
         rows: usize,

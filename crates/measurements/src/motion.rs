@@ -8,8 +8,10 @@ use crate::slot::Slot;
 use crate::sweep;
 use crate::table::place_of;
 
-/// A displacement with all readings between these fractions of the muscle's length is the length itself.
+/// A displacement with nearly all readings between these fractions of the muscle's length is the length itself.
 const LENGTHS: [f64; 2] = [0.4, 1.6];
+/// One reading in this many may be wild.
+const WILD: usize = 10;
 /// Largest difference between a contraction and the one that follows from the length.
 const SAME: f64 = 5e-3;
 
@@ -75,9 +77,10 @@ fn displacement(
         return Err(MeasurementError::of_file(file, what));
     };
     let values = slots[place].numbers();
+    let is_other = |row: &usize| !(LENGTHS[0] * l0..=LENGTHS[1] * l0).contains(&values[*row]);
     let is_length = !heading.is_settled
         && rows(is_good).next().is_some()
-        && rows(is_good).all(|row| (LENGTHS[0] * l0..=LENGTHS[1] * l0).contains(&values[row]));
+        && WILD * rows(is_good).filter(is_other).count() <= rows(is_good).count();
     if is_length {
         slots[place].become_column(Field::Length, |value| value);
         let says = "taken for the length itself: its readings are about as long as the muscle";
@@ -110,22 +113,23 @@ struct Sign {
 }
 
 /// The sign of c in force = a + b pressure + c displacement, since the force falls as a muscle shortens at
-/// constant pressure. Under a weight a muscle shortens as the pressure rises.
+/// constant pressure. Under a weight a muscle shortens as the pressure rises. Ranks take the place of readings, because one
+/// that is wild would decide. A load cell that reads most forces as negative is turned over.
 fn sign(slots: &[Slot], place: usize, is_good: &[bool]) -> Sign {
     let numbers = |field| place_of(slots, field).map_or(&[][..], |place| slots[place].numbers());
-    let (pressure, force, way) = (numbers(Field::Pressure), numbers(Field::Force), slots[place].numbers());
-    let count = rows(is_good).count().max(1) as f64;
-    let mean = |values: &[f64]| rows(is_good).map(|row| values[row]).sum::<f64>() / count;
-    let means = [pressure, force, way].map(mean);
-    let covariance = |a: (&[f64], f64), b: (&[f64], f64)| {
-        rows(is_good).map(|row| (a.0[row] - a.1) * (b.0[row] - b.1)).sum::<f64>() / count
-    };
-    let (p, f, d) = ((pressure, means[0]), (force, means[1]), (way, means[2]));
-    let (pp, dd, pd) = (covariance(p, p), covariance(d, d), covariance(p, d));
-    if sweep::is_weight(rows(is_good).map(|row| force[row])) && pd != 0.0 {
+    let of = |values: &[f64]| rows(is_good).map(|row| values[row]).collect::<Vec<f64>>();
+    let mut force = of(numbers(Field::Force));
+    if 2 * force.iter().filter(|force| **force < 0.0).count() > force.len() {
+        force.iter_mut().for_each(|force| *force = -*force);
+    }
+    let [p, f, d] =
+        [&of(numbers(Field::Pressure)), &force, &of(slots[place].numbers())].map(|values| ranks(values));
+    let covariance = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let (pp, dd, pd) = (covariance(&p, &p), covariance(&d, &d), covariance(&p, &d));
+    if sweep::is_weight(force.iter().copied()) && pd != 0.0 {
         return Sign { shortens: pd > 0.0, why: "at a held force it goes with the pressure" };
     }
-    let (pf, df) = (covariance(p, f), covariance(d, f));
+    let (pf, df) = (covariance(&p, &f), covariance(&d, &f));
     // c = (df pp - pf pd) / (pp dd - pd^2); at a single pressure pp and pd vanish.
     let slope = if pp > 0.0 && pp * dd > 1.0001 * pd * pd { df * pp - pf * pd } else { df };
     match slope {
@@ -133,6 +137,22 @@ fn sign(slots: &[Slot], place: usize, is_good: &[bool]) -> Sign {
         slope if slope > 0.0 => Sign { shortens: false, why: "the force rises as it grows" },
         _ => Sign { shortens: true, why: "nothing shows which way it counts" },
     }
+}
+
+/// The rank of each value less the mean of all ranks, over their number: from -1/2 to 1/2. Equal values share the mean of theirs.
+fn ranks(values: &[f64]) -> Vec<f64> {
+    let mut order: Vec<usize> = (0..values.len()).collect();
+    order.sort_by(|a, b| values[*a].total_cmp(&values[*b]));
+    let mut ranks = vec![0.0; values.len()];
+    let mut below = 0;
+    for tied in order.chunk_by(|a, b| values[*a] >= values[*b]) {
+        let mean = below as f64 + 0.5 * (tied.len() as f64 - 1.0);
+        for row in tied {
+            ranks[*row] = (mean - 0.5 * (values.len() as f64 - 1.0)) / values.len() as f64;
+        }
+        below += tied.len();
+    }
+    ranks
 }
 
 /// Reports how a column was used.
@@ -143,5 +163,16 @@ fn note(reading: &mut Reading, column: &str, quantity: Option<&str>, says: &str)
         used.quantity = quantity.map(str::to_owned);
         used.guessed |= quantity.is_some();
         used.add(says);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ranks_share_what_is_equal_and_sum_to_nothing() {
+        assert_eq!(ranks(&[30.0, 10.0, 1e9, 10.0]), [0.125, -0.25, 0.375, -0.25]);
+        assert!(ranks(&[]).is_empty());
     }
 }

@@ -131,17 +131,22 @@ impl Data {
     ///
     /// No reading is used twice in a comparison. The mean of d is the offset between the runs; the remainder
     /// is noise. In a static map, rows of equal pressure, contraction, stated direction and specimen are
-    /// repeats. Isometric runs aren't compared.
+    /// repeats. Isometric runs aren't compared; disturbed rows are left out.
     #[must_use]
     pub fn repeats(&self, l0: f64) -> Repeats {
         let s = self.shortening();
+        let mut is_sound = vec![true; self.len()];
+        self.disturbed()
+            .iter()
+            .flat_map(|disturbance| &disturbance.rows)
+            .for_each(|row| is_sound[*row] = false);
         let mut groups = Vec::new();
         // Sum of squares, its terms, effective degrees of freedom; offsets.
         let (mut squares, mut terms, mut freedom) = (0.0, 0.0, 0.0);
         let mut offsets: Vec<f64> = Vec::new();
-        for members in self.grouped(&s) {
+        for members in self.grouped(&s, &is_sound) {
             let comparisons: Vec<Comparison> =
-                members.windows(2).map(|pair| self.compared(&s, &pair[0], &pair[1])).collect();
+                members.windows(2).map(|pair| self.compared(&s, &is_sound, &pair[0], &pair[1])).collect();
             // Neighbouring comparisons share a run: they have the correlation -1/2 at equal readings, so that
             // n - 1 of them have fewer degrees of freedom.
             let (pairs, shared) = (comparisons.len() as f64, comparisons.len() as f64 - 1.0);
@@ -156,7 +161,7 @@ impl Data {
             groups.push((members, comparisons));
         }
         if !self.is_path() {
-            let (sum, count) = self.static_repeats();
+            let (sum, count) = self.static_repeats(&is_sound);
             squares += sum;
             terms += count;
             freedom += count;
@@ -186,13 +191,12 @@ impl Data {
     }
 
     /// The runs that repeat each other, in groups of at least two.
-    fn grouped(&self, s: &[f64]) -> Vec<Vec<Candidate>> {
-        let largest = self.pressure().iter().fold(0.0_f64, |m, p| m.max(p.abs()));
-        let tolerance = LEVEL * largest;
+    fn grouped(&self, s: &[f64], is_sound: &[bool]) -> Vec<Vec<Candidate>> {
+        let tolerance = self.level(is_sound);
         let mut groups: Vec<Vec<Candidate>> = Vec::new();
         // Groups by a key for fast lookup; a pressure near the edge of a level is looked up on both sides.
         let mut places: HashMap<(u32, bool, usize, i8, i64), Vec<usize>> = HashMap::new();
-        for candidate in self.candidates() {
+        for candidate in self.candidates(is_sound) {
             #[expect(clippy::cast_possible_truncation, reason = "at most 1/LEVEL levels")]
             let level = if tolerance > 0.0 { (candidate.pressure / tolerance).round() as i64 } else { 0 };
             let direction = candidate.legs.first().map_or(0, |leg| leg.direction);
@@ -218,8 +222,14 @@ impl Data {
         groups
     }
 
+    /// Pressures that differ by less form one level \[Pa\].
+    fn level(&self, is_sound: &[bool]) -> f64 {
+        let sound = self.pressure().iter().zip(is_sound).filter(|(_, is_sound)| **is_sound);
+        LEVEL * sound.fold(0.0_f64, |most, (pressure, _)| most.max(pressure.abs()))
+    }
+
     /// Every run with motion.
-    fn candidates(&self) -> Vec<Candidate> {
+    fn candidates(&self, is_sound: &[bool]) -> Vec<Candidate> {
         let mut found = Vec::new();
         for (i, (sweep, stretches)) in self.paths().enumerate() {
             let moving: Vec<&Stretch> = stretches.iter().filter(|stretch| stretch.direction != 0).collect();
@@ -236,7 +246,9 @@ impl Data {
                     .collect();
                 let (Some(first), Some(last)) = (legs.first(), legs.last()) else { continue };
                 let rows = first.from..last.rows.end;
-                let pressure = self.pressure()[rows.clone()].iter().sum::<f64>() / rows.len() as f64;
+                let sound = || rows.clone().filter(|row| is_sound[*row]);
+                let pressure =
+                    sound().map(|row| self.pressure()[row]).sum::<f64>() / sound().count().max(1) as f64;
                 let run = Run { sweep: i, rows };
                 found.push(Candidate { run, specimen: sweep.specimen, is_first: n == 0, pressure, legs });
             }
@@ -260,9 +272,9 @@ impl Data {
     }
 
     /// Compares the forces of two runs at the contractions of the first.
-    fn compared(&self, s: &[f64], a: &Candidate, b: &Candidate) -> Comparison {
+    fn compared(&self, s: &[f64], is_sound: &[bool], a: &Candidate, b: &Candidate) -> Comparison {
         let (force, pressure) = (self.force(), self.pressure());
-        let level = LEVEL * pressure.iter().fold(0.0_f64, |m, p| m.max(p.abs()));
+        let level = self.level(is_sound);
         let mut found = Comparison::default();
         for (a, b) in a.legs.iter().zip(&b.legs) {
             let along = |row: usize| s[row] * f64::from(a.direction);
@@ -280,7 +292,9 @@ impl Data {
                 }
                 let w = if part > 0.0 { part / gap } else { 0.0 };
                 let above = if w > 0.0 { below + 1 } else { below };
-                if (pressure[row] - (1.0 - w) * pressure[below] - w * pressure[above]).abs() > level {
+                let differs =
+                    (pressure[row] - (1.0 - w) * pressure[below] - w * pressure[above]).abs() > level;
+                if differs || [row, below, above].iter().any(|row| !is_sound[*row]) {
                     continue;
                 }
                 let difference = (1.0 - w) * force[below] + w * force[above] - force[row];
@@ -292,10 +306,10 @@ impl Data {
     }
 
     /// Sum of squares and degrees of freedom of the rows of a static map with the same state.
-    fn static_repeats(&self) -> (f64, f64) {
+    fn static_repeats(&self, is_sound: &[bool]) -> (f64, f64) {
         let motion = self.columns().motion.values();
         let mut states: HashMap<(u32, u64, u64, i8), Comparison> = HashMap::new();
-        for (row, force) in self.force().iter().enumerate() {
+        for (row, force) in self.force().iter().enumerate().filter(|(row, _)| is_sound[*row]) {
             let direction = self.columns().direction.as_deref().map_or(0, |stated| stated[row]);
             let key =
                 (self.specimen_of(row), self.pressure()[row].to_bits(), motion[row].to_bits(), direction);
@@ -384,6 +398,16 @@ mod tests {
 
     #[test]
     fn noise_of_interpolated_repeats() {
+        // A reading that is impossible or a spike is no scatter.
+        let plain = loops(3, 300, 2.0, 0.0, 1);
+        let mut columns = Columns::clone(plain.columns());
+        columns.pressure_pa[16] = 160e5;
+        columns.force_n[450] += 500.0;
+        columns.force_n[0] = 9000.0;
+        let disturbed = Data::from_columns(columns).unwrap().repeats(1.0).pure_error().unwrap();
+        let of_plain = plain.repeats(1.0).pure_error().unwrap();
+        assert!((disturbed.sd_n / of_plain.sd_n - 1.0).abs() < 0.02, "{disturbed:?} {of_plain:?}");
+        assert!(disturbed.degrees_of_freedom < of_plain.degrees_of_freedom);
         let mut outside = 0;
         for seed in 0..40 {
             let repeats = loops(2 + (seed % 3) as u32, 300, 2.0, 0.0, seed).repeats(1.0);

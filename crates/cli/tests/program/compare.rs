@@ -240,7 +240,7 @@ fn bad_input_gets_one_clear_message() {
     refused(
         &["compare", &one, "--muscle", &muscle, "--with", "fibre-stretch"],
         1,
-        &["1 numbers can't be fitted to 1 rows"],
+        &["1 numbers (those of effects", "can't be fitted to 1 rows"],
     );
     let same = folder.write("data.csv", &(good.to_owned() + &"1,5,900\n".repeat(9)));
     refused(

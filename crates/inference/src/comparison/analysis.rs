@@ -13,7 +13,7 @@ use crate::comparison::document::{DataSummary, LeftOut, Mismatch, NoiseFloor, Ru
 use crate::comparison::doubt::doubtful_sd;
 use crate::comparison::levels::{Folds, Levels};
 use crate::comparison::loops::branches;
-use crate::comparison::mismatch::questions;
+use crate::comparison::mismatch::{questions, unread};
 use crate::comparison::options::Options;
 use crate::comparison::other_units::in_other_units;
 use crate::comparison::requirements::{COMPARED, check_memory, check_needs, check_size, of_no_muscle};
@@ -93,8 +93,13 @@ impl<'a> Analysis<'a> {
         let mut used = used(&data);
         used.leave_out(&data, options.excluded.iter().copied(), BY_HAND.to_owned());
         if !used.mask.contains(&true) {
-            let left_out =
-                if data.is_empty() { "the file has none" } else { "all are slack or without pressure" };
+            let left_out = if data.is_empty() {
+                "the file has none"
+            } else if data.pressure().iter().all(|pressure| *pressure <= 0.0) {
+                "the gauge pressure is 0 or less in all of them; check its sign and its zero, and write `abs` behind the unit of a pressure that counts from a vacuum"
+            } else {
+                "all are slack or without pressure; check sign and zero of force and pressure"
+            };
             return Err(InferenceError::NoRows { left_out: left_out.to_owned() });
         }
         for effect in &options.effects {
@@ -105,6 +110,11 @@ impl<'a> Analysis<'a> {
         }
         check_size(&data, muscle, &record, &used.mask)?;
         let full_scale = full_scale(data.force(), used.rows());
+        if full_scale == 0.0 {
+            let left_out =
+                "the force is 0 in all of them; was the load cell connected, and is this its column?";
+            return Err(InferenceError::NoRows { left_out: left_out.to_owned() });
+        }
         let levels = Levels::of(&record, &used.mask);
         let folds = Folds::of(&record, &levels, &used.mask);
         // Before it is estimated: a hundredth of full scale.
@@ -316,6 +326,12 @@ impl<'a> Analysis<'a> {
             self.noise = Noise::of(self.muscle, (0.01 * self.full_scale).max(f64::MIN_POSITIVE));
         }
         self.findings = questions(&self.data, self.muscle, &prepared.model, &self.record, &self.used.mask);
+        self.findings.extend(unread(&self.data, &prepared.model, &self.record, &self.used, self.full_scale));
+        if let Some(what) =
+            self.data.impossible().filter(|_| !self.findings.iter().any(|finding| finding.decided))
+        {
+            return Err(InferenceError::Unit { what });
+        }
         let is_law = self.options.law.is_some();
         let slack = if is_law { Vec::new() } else { buckled(&prepared.model, &self.record, &self.used.mask) };
         self.leave_out_slack(slack);

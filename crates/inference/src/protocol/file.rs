@@ -12,7 +12,7 @@ const USUAL_ROWS: u32 = 50;
 
 /// A protocol file with every key.
 pub const PROTOCOL_EXAMPLE: &str = "\
-rig = \"drawn\"                  # zero and gain errors within the muscle's [instruments]; default \"none\"
+rig = \"none\"                   # or \"drawn\": zero and gain errors within the [instruments] that the muscle file states
 pause = \"10 s\"                 # between sweeps
 # warming = \"5 K\"              # rise of the temperature over the whole test
 

@@ -588,6 +588,39 @@ fn units_that_cannot_be_true_are_asked_about() {
     assert!(!diagnosis.ladder.is_empty());
 }
 
+#[test]
+fn a_load_cell_that_read_nothing_all_along_a_sweep_is_asked_about() {
+    let mut dead = recorded(|_, _| 0.0, false, 8);
+    dead.force_n[301..602].iter_mut().for_each(|force| *force = 0.0);
+    let diagnosis = found(dead);
+    assert_eq!(diagnosis.verdict, Verdict::Adequate, "{}", diagnosis.says);
+    let [question] = &diagnosis.data.findings[..] else { panic!("{:?}", diagnosis.data.findings) };
+    assert_eq!((question.kind, question.decided), ("no-force", false));
+    let lines =
+        diagnosis.data.left_out.iter().find(|left| left.why.starts_with("slack")).map(|left| &left.lines);
+    assert!(
+        lines.is_some_and(|lines| question.says.starts_with(&format!("line {lines} read no force"))),
+        "{question}"
+    );
+    // At pressures at which the muscle hardly pulls it may have hung slack.
+    let mut low = recorded(|_, _| 0.0, false, 8);
+    low.pressure_pa[..301].iter_mut().for_each(|pressure| *pressure *= 0.1);
+    low.force_n[..301].iter_mut().for_each(|force| *force = 0.0);
+    assert!(found(low).data.findings.is_empty());
+}
+
+#[test]
+fn pressure_and_force_that_were_exchanged_are_refused() {
+    let mut columns = recorded(|_, _| 0.0, false, 9);
+    let forces = columns.force_n.iter().map(|force| 1e5 * force).collect();
+    columns.force_n =
+        std::mem::replace(&mut columns.pressure_pa, forces).iter().map(|pressure| 1e-5 * pressure).collect();
+    let muscle = from_toml(CYLINDER, "c.toml").unwrap();
+    let error =
+        diagnose(&Data::from_columns(columns).unwrap(), &muscle, &diagnosing(&[])).unwrap_err().to_string();
+    assert!(error.contains("a pressure above 150 bar") && error.ends_with("are not exchanged"), "{error}");
+}
+
 /// The estimated noise of a reading is within 20 % of the truth, whether something is hidden or not, in short
 /// tests and in long ones of many cycles.
 #[test]

@@ -1,6 +1,6 @@
-//! Spikes: one to three readings off the path on which their neighbours on both sides agree.
+//! Spikes: one to three readings off the path on which their neighbours on both sides agree; at the ends of a path, off
+//! what follows or came before by far more than any reading moves.
 
-use super::column::Column;
 use super::{Finding, FindingKind, Gate, Severity, rows_in_words};
 use crate::data::Data;
 use crate::resolution::Resolution;
@@ -28,12 +28,18 @@ const MOST_SHOWN: usize = 3;
 const PASSES: usize = 3;
 /// If more than one turning point in this many has a spike, it is the shape of the curve.
 const COMES_BACK: usize = 5;
+/// Where one side is missing: times the largest step between other neighbours of the path. What settles with a time constant of
+/// two rows has steps that fall by 1.6 from row to row; one of half a row would be needed for ten.
+const END_STEPS: f64 = 10.0;
+/// And fraction of the range of the other readings of the path: a reversal of friction is a step of less.
+const END_RANGE: f64 = 0.2;
 /// If more than one row in this many is a spike, the quantity scatters in this way.
 const MOST: usize = 20;
 
 /// Spikes of the force.
 pub(super) fn of_force(gate: &Gate) -> Vec<usize> {
-    along(gate.data, gate.data.force(), &gate.force, RANGE, &paths(gate.data))
+    let [(_, rows), ..] = in_columns(gate);
+    rows
 }
 
 fn paths(data: &Data) -> Vec<Range<usize>> {
@@ -41,12 +47,34 @@ fn paths(data: &Data) -> Vec<Range<usize>> {
 }
 
 /// Spikes of each column.
-pub(super) fn in_columns<'a>(gate: &Gate<'a>) -> Vec<(&'static str, Vec<usize>)> {
+pub(super) fn in_columns(gate: &Gate) -> [(&'static str, Vec<usize>); 3] {
     let paths = paths(gate.data);
-    let spikes = |column: Column<'a>| {
-        (column.name, along(gate.data, column.values, &column.resolution, RANGE, &paths))
+    let found = gate.columns.map(|column| {
+        let inner = along(gate.data, column.values, &column.resolution, RANGE, &paths);
+        let mut bridged = column.values.to_vec();
+        inner.iter().for_each(|row| bridged[*row] = bridged[row - 1]);
+        let least = least(&column.resolution, RANGE);
+        let of_path = |path: &Range<usize>| {
+            let [first, last] = at_ends(&bridged[path.clone()], least);
+            [first, last].map(|rows| path.start + rows.start..path.start + rows.end)
+        };
+        let ends: Vec<Range<usize>> =
+            paths.iter().flat_map(of_path).filter(|rows| !rows.is_empty()).collect();
+        (column.name, inner, ends)
+    });
+    // A row that stands out in several columns was recorded before, or after, all of them moved on.
+    let is_alone = |row: &usize| {
+        found.iter().filter(|(_, _, ends)| ends.iter().any(|rows| rows.contains(row))).count() == 1
     };
-    gate.columns.map(spikes).to_vec()
+    found.each_ref().map(|(name, inner, ends)| {
+        // What comes back at the ends is the shape of the curve.
+        let is_rare = ends.len() == 1 || COMES_BACK * ends.len() <= 2 * paths.len();
+        let alone = ends.iter().cloned().flatten().filter(|row| is_rare && is_alone(row));
+        let mut rows: Vec<usize> = inner.iter().copied().chain(alone).collect();
+        rows.sort_unstable();
+        rows.dedup();
+        (*name, rows)
+    })
 }
 
 pub(super) fn find(gate: &Gate) -> Vec<Finding> {
@@ -127,7 +155,7 @@ fn along(
     share: f64,
     runs: &[Range<usize>],
 ) -> Vec<usize> {
-    let least = (NOISE * resolution.noise).max(STEPS * resolution.step).max(share * resolution.range);
+    let least = least(resolution, share);
     let mut found = Vec::new();
     if least > 0.0 {
         for run in runs {
@@ -136,6 +164,11 @@ fn along(
     }
     leave_tips(data, &mut found);
     if MOST * found.len() > values.len() { Vec::new() } else { found }
+}
+
+/// Least deviation of a spike from what its neighbours lead to.
+fn least(resolution: &Resolution, share: f64) -> f64 {
+    (NOISE * resolution.noise).max(STEPS * resolution.step).max(share * resolution.range)
 }
 
 /// A spike that recurs at the turning points is a tip of the curve, both sides of which are seen in few rows
@@ -202,6 +235,37 @@ fn is_spike(x: &[f64], first: usize, length: usize, least: f64) -> bool {
         [x[row] - high, low - x[row]]
     };
     (first..end).all(|row| excess(row).into_iter().any(|beyond| beyond > needed))
+}
+
+/// Spikes within the first and last rows of a path, where one side is too short to lead anywhere.
+fn at_ends(values: &[f64], least: f64) -> [Range<usize>; 2] {
+    let backwards: Vec<f64> = values.iter().rev().copied().collect();
+    let last = at_start(&backwards, least);
+    [at_start(values, least), values.len() - last.end..values.len() - last.start]
+}
+
+/// Spikes among the first rows of a path: one to three readings next to each other, the last of which has fewer than three before it.
+fn at_start(values: &[f64], least: f64) -> Range<usize> {
+    let is_spike = |spike: &Range<usize>| {
+        let Some(after) = values.get(spike.end..).filter(|after| after.len() >= 2 * SIDE) else {
+            return false;
+        };
+        let others = || values[..spike.start].iter().chain(after);
+        let [low, high] =
+            others().fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], v| [l.min(*v), h.max(*v)]);
+        let step = others().zip(others().skip(1)).map(|(a, b)| (b - a).abs()).fold(0.0, f64::max);
+        let needed = least.max(END_STEPS * step).max(END_RANGE * (high - low));
+        spike.clone().all(|row| {
+            let next = after[0] + (spike.end - row) as f64 * (after[0] - after[1]);
+            let before = spike.start.checked_sub(1).map(|row| values[row]);
+            [Some(next), Some(after[0]), before]
+                .into_iter()
+                .flatten()
+                .all(|lead| (values[row] - lead).abs() > needed)
+        })
+    };
+    let mut starts = (0..SIDE).flat_map(|first| (first + 1..=first + LONGEST).map(move |end| first..end));
+    starts.find(is_spike).unwrap_or_default()
 }
 
 /// Replaces spiked readings by linear interpolation between their neighbours.

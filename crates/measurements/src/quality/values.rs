@@ -1,7 +1,9 @@
 //! Impossible values, most often from a wrong unit or sign.
 
-use super::{Finding, FindingKind, Gate, Severity, rows_in_words};
+use super::quantisation::four;
+use super::{Finding, FindingKind, Gate, QualityOptions, Severity, rows_in_words};
 use crate::Trace;
+use crate::data::Data;
 use crate::resolution::bounds;
 use std::f64::consts::PI;
 
@@ -35,15 +37,33 @@ pub(super) fn find(gate: &Gate) -> Vec<Finding> {
     found.map(finding).collect()
 }
 
-/// Rows with an impossible pressure, motion or force, and what is. Where half of all rows have one it is the unit
-/// that is wrong, not the rows.
+/// Rows with an impossible pressure, motion or force, and what is.
 pub(super) fn rows(gate: &Gate) -> impl Iterator<Item = (Vec<usize>, String)> {
-    let is_few = |found: &Impossible| 2 * found.rows.len() < gate.data.len();
     let told = |found: Impossible| {
         let why = format!("impossible: {}; {}", found.says, found.instead);
         (found.rows, why)
     };
-    readings(gate).into_iter().filter(is_few).map(told)
+    readings(gate).into_iter().filter(|found| !is_unit(gate, found)).map(told)
+}
+
+/// Where half of all rows have an impossible reading it is the unit that is wrong, not the rows.
+fn is_unit(gate: &Gate, found: &Impossible) -> bool {
+    2 * found.rows.len() >= gate.data.len()
+}
+
+impl Data {
+    /// The pressure or force that half of the rows have or more although no muscle has it, and what to check; none if
+    /// there is no such reading.
+    #[must_use]
+    pub fn impossible(&self) -> Option<String> {
+        let options = QualityOptions::default();
+        if self.is_empty() {
+            return None;
+        }
+        let gate = Gate::new(self, &options);
+        let found = pressures(&gate).into_iter().chain(forces(&gate)).find(|found| is_unit(&gate, found))?;
+        Some(format!("{}; {}", found.says, found.instead))
+    }
 }
 
 fn readings(gate: &Gate) -> Vec<Impossible> {
@@ -63,7 +83,8 @@ fn impossible(
     let rows: Vec<usize> =
         values.iter().enumerate().filter(|(row, v)| is_wrong(*row, **v)).map(|(row, _)| row).collect();
     let worst = rows.iter().map(|row| values[*row]).max_by(|a, b| a.abs().total_cmp(&b.abs()))?;
-    let says = format!("{} with {what}, such as {worst:.6} {unit}", rows_in_words(rows.len()));
+    let worst = four(if unit == "bar" { 1e-5 * worst } else { worst });
+    let says = format!("{} with {what}, such as {worst} {unit}", rows_in_words(rows.len()));
     Some(Impossible { rows, says: says.trim_end().to_owned(), instead })
 }
 
@@ -71,13 +92,13 @@ fn pressures(gate: &Gate) -> Vec<Impossible> {
     let values = gate.data.pressure();
     let below = impossible(
         values,
-        ["a gauge pressure below a vacuum", "Pa"],
+        ["a gauge pressure below a vacuum", "bar"],
         |_, p| p < VACUUM,
         "check the unit, and that the pressure is gauge pressure",
     );
     let above = impossible(
         values,
-        ["a pressure above 150 bar", "Pa"],
+        ["a pressure above 150 bar", "bar"],
         |_, p| p > BURST,
         "check the unit of the pressure in the header",
     );

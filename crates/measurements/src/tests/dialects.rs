@@ -356,6 +356,24 @@ fn displacements() {
     }
     let says = reads("weg", table("Weg (mm)", lengthening).as_bytes(), "").reading().columns[2].says.clone();
     assert_eq!(says.as_deref(), Some("lengthening from 300 mm (the force rises as it grows)"));
+    // Neither a wild reading nor a load cell that reads a pull as negative turns it over.
+    let as_read = |text: &str| reads("weg", text.as_bytes(), "").reading().columns[2].says.clone();
+    let good = table("Weg (mm)", shortening);
+    let falls = as_read(&good);
+    assert_eq!(falls.as_deref(), Some("shortening from 300 mm (the force falls as it grows)"));
+    let negative: String = good
+        .lines()
+        .map(|line| {
+            let (rest, force) = line.rsplit_once(',').unwrap();
+            let sign = if force.parse::<f64>().is_ok() { "-" } else { "" };
+            format!("{rest},{sign}{force}\n")
+        })
+        .collect();
+    assert_eq!(as_read(&negative), falls);
+    let wild: String = (0..4)
+        .map(|n| good.lines().skip(usize::from(n > 0)).fold(String::new(), |text, line| text + line + "\n"))
+        .collect();
+    assert_eq!(as_read(&(wild + "9,3,5000,9000\n")), falls);
     let unknown = ReadOptions::default();
     let error = Data::from_bytes(table("Weg (mm)", shortening).as_bytes(), "d.csv", &unknown).unwrap_err();
     assert!(error.to_string().contains("name the muscle"), "{error}");

@@ -197,7 +197,7 @@ fn copied_blocks() {
     plants(FindingKind::DuplicateRow, &both, |columns| columns.force_n.copy_within(200..260, 700));
     plants(FindingKind::DuplicateRow, &both, |columns| motion(columns).copy_within(200..260, 700));
     // A simulated loop repeats itself, and so does a drive that is told where to go.
-    let mut columns = clean_loops(4, 1);
+    let mut columns = clean_loops(2, 1);
     for (row, contraction) in motion(&mut columns).iter_mut().enumerate() {
         let phase = (row % (4 * LOOP + 1) % LOOP) as f64 / LOOP as f64;
         *contraction = 0.12 - 0.10 * (std::f64::consts::TAU * phase).cos();
@@ -233,6 +233,35 @@ fn spikes_in_each_column() {
     });
     plants(FindingKind::Spike, &[250], |columns| columns.pressure_pa[250] += 2e4);
     plants(FindingKind::Spike, &[350], |columns| motion(columns)[350] += 0.02);
+}
+
+#[test]
+fn spikes_at_the_ends_of_a_sweep() {
+    let last = clean_loops(2, 1).force_n.len() - 1;
+    for rows in [vec![0], vec![1], vec![0, 1], vec![2], vec![last - 1, last], vec![SWEEP], vec![SWEEP - 1]] {
+        plants(FindingKind::Spike, &rows, |columns| {
+            rows.iter().for_each(|row| columns.force_n[*row] = 9000.0)
+        });
+    }
+    plants(FindingKind::Spike, &[0], |columns| columns.force_n[0] *= 0.5);
+    plants(FindingKind::Spike, &[last], |columns| motion(columns)[last] = 0.5);
+    plants(FindingKind::Spike, &[SWEEP], |columns| columns.pressure_pa[SWEEP] = -5e4);
+    // Beside one that is found from both sides.
+    plants(FindingKind::Spike, &[0, 40], |columns| {
+        [0, 40].iter().for_each(|row| columns.force_n[*row] = 9000.0)
+    });
+    // A row from before all of them moved on, what every sweep begins with, and a reversal of friction.
+    let none = |change: &dyn Fn(&mut Columns)| {
+        let mut columns = clean_loops(2, 1);
+        change(&mut columns);
+        assert_eq!(quality(columns).of(FindingKind::Spike).count(), 0);
+    };
+    none(&|columns| {
+        columns.force_n[0] = 0.0;
+        columns.pressure_pa[0] = 0.0;
+    });
+    none(&|columns| (0..3).for_each(|sweep| columns.force_n[sweep * SWEEP] = 0.0));
+    none(&|columns| columns.force_n[0] += 20.0);
 }
 
 #[test]
