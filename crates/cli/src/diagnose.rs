@@ -39,7 +39,7 @@ pub(crate) struct DiagnoseCommand {
     #[arg(long, value_name = "FILE")]
     effects: Option<PathBuf>,
     /// RMS misfit that doesn't matter: `--tolerance "5 N"` [default: whatever stands out of the noise and of what the data sheets allow]
-    #[arg(long, value_name = "FORCE")]
+    #[arg(long, allow_hyphen_values = true, value_name = "FORCE")]
     tolerance: Option<String>,
     /// Seed of the random numbers: the same seed gives the same answer
     #[arg(long, default_value_t = 1)]
