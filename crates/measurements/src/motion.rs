@@ -12,6 +12,10 @@ use crate::table::place_of;
 const LENGTHS: [f64; 2] = [0.4, 1.6];
 /// One reading in this many may be wild.
 const WILD: usize = 10;
+/// Forces above this fraction of the largest show the sign of the load cell.
+const PULLS: f64 = 0.1;
+/// Correlation from which the motion under a weight goes with the pressure, and not with its noise.
+const GOES_WITH: f64 = 0.5;
 /// Largest difference between a contraction and the one that follows from the length.
 const SAME: f64 = 5e-3;
 
@@ -113,20 +117,27 @@ struct Sign {
 }
 
 /// The sign of c in force = a + b pressure + c displacement, since the force falls as a muscle shortens at
-/// constant pressure. Under a weight a muscle shortens as the pressure rises. Ranks take the place of readings, because one
-/// that is wild would decide. A load cell that reads most forces as negative is turned over.
+/// constant pressure. Under a weight a muscle shortens as the pressure rises. A wild reading counts as the last but a tenth of
+/// its column; a load cell that reads most pulls as negative is turned over.
 fn sign(slots: &[Slot], place: usize, is_good: &[bool]) -> Sign {
     let numbers = |field| place_of(slots, field).map_or(&[][..], |place| slots[place].numbers());
-    let of = |values: &[f64]| rows(is_good).map(|row| values[row]).collect::<Vec<f64>>();
-    let mut force = of(numbers(Field::Force));
-    if 2 * force.iter().filter(|force| **force < 0.0).count() > force.len() {
-        force.iter_mut().for_each(|force| *force = -*force);
+    let of = |values: &[f64]| clamped(rows(is_good).map(|row| values[row]).collect());
+    let [pressure, mut force, way] =
+        [of(numbers(Field::Pressure)), of(numbers(Field::Force)), of(slots[place].numbers())];
+    let large = PULLS * force.iter().fold(0.0_f64, |most, force| most.max(force.abs()));
+    let pulls = force.iter().filter(|force| force.abs() > large);
+    if 2 * pulls.clone().filter(|force| **force < 0.0).count() > pulls.count() {
+        for force in &mut force {
+            *force = -*force;
+        }
     }
-    let [p, f, d] =
-        [&of(numbers(Field::Pressure)), &force, &of(slots[place].numbers())].map(|values| ranks(values));
+    let [p, f, d] = [&pressure, &force, &way].map(|values| {
+        let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
+        values.iter().map(|value| value - mean).collect::<Vec<f64>>()
+    });
     let covariance = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     let (pp, dd, pd) = (covariance(&p, &p), covariance(&d, &d), covariance(&p, &d));
-    if sweep::is_weight(force.iter().copied()) && pd != 0.0 {
+    if sweep::is_weight(force.iter().copied()) && pd.abs() > GOES_WITH * (pp * dd).sqrt() {
         return Sign { shortens: pd > 0.0, why: "at a held force it goes with the pressure" };
     }
     let (pf, df) = (covariance(&p, &f), covariance(&d, &f));
@@ -139,20 +150,17 @@ fn sign(slots: &[Slot], place: usize, is_good: &[bool]) -> Sign {
     }
 }
 
-/// The rank of each value less the mean of all ranks, over their number: from -1/2 to 1/2. Equal values share the mean of theirs.
-fn ranks(values: &[f64]) -> Vec<f64> {
-    let mut order: Vec<usize> = (0..values.len()).collect();
-    order.sort_by(|a, b| values[*a].total_cmp(&values[*b]));
-    let mut ranks = vec![0.0; values.len()];
-    let mut below = 0;
-    for tied in order.chunk_by(|a, b| values[*a] >= values[*b]) {
-        let mean = below as f64 + 0.5 * (tied.len() as f64 - 1.0);
-        for row in tied {
-            ranks[*row] = (mean - 0.5 * (values.len() as f64 - 1.0)) / values.len() as f64;
+/// The values, those of the outer tenth on either side moved to where it begins.
+fn clamped(mut values: Vec<f64>) -> Vec<f64> {
+    let mut sorted = values.clone();
+    sorted.sort_unstable_by(f64::total_cmp);
+    let outer = values.len() / WILD;
+    if let (Some(low), Some(high)) = (sorted.get(outer), sorted.iter().nth_back(outer)) {
+        for value in &mut values {
+            *value = value.clamp(*low, *high);
         }
-        below += tied.len();
     }
-    ranks
+    values
 }
 
 /// Reports how a column was used.
@@ -171,8 +179,52 @@ mod tests {
     use super::*;
 
     #[test]
-    fn ranks_share_what_is_equal_and_sum_to_nothing() {
-        assert_eq!(ranks(&[30.0, 10.0, 1e9, 10.0]), [0.125, -0.25, 0.375, -0.25]);
-        assert!(ranks(&[]).is_empty());
+    fn the_outer_tenth_is_moved_in() {
+        let values: Vec<f64> = (0..20).map(f64::from).chain([1e9]).collect();
+        let moved = clamped(values.clone());
+        assert_eq!(
+            (moved[0], moved[1], moved[2], moved[18], moved[19], moved[20]),
+            (2.0, 2.0, 2.0, 18.0, 18.0, 18.0)
+        );
+        assert_eq!(clamped(values[..9].to_vec()), values[..9]);
+        assert!(clamped(Vec::new()).is_empty());
+    }
+
+    /// Which way a displacement counts, of rows of pressure, displacement and force.
+    fn says(rows: &[[f64; 3]]) -> String {
+        let mut text = "p [bar],Weg (mm),F [N]\n".to_owned();
+        for [p, d, f] in rows {
+            text.extend([p.to_string(), format!(",{d},{f}\n")]);
+        }
+        let options = ReadOptions { l0_m: Some(0.3), ..ReadOptions::default() };
+        let data = crate::Data::from_bytes(text.as_bytes(), "d.csv", &options).unwrap();
+        data.reading().columns[1].says.clone().unwrap()
+    }
+
+    #[test]
+    fn noise_of_a_held_pressure_does_not_decide() {
+        let [low, high] = [[1.001, 1.003, 1.0, 1.002], [3.002, 3.0, 3.003, 3.001]];
+        let rows: Vec<[f64; 3]> = [108.0, 109.0, 101.0, 103.0]
+            .into_iter()
+            .enumerate()
+            .flat_map(|(i, f)| {
+                let d = i as f64 + 1.0;
+                [[low[i], d, f], [high[i], 20.0 + d, 100.0 + f]]
+            })
+            .collect();
+        assert!(says(&rows).starts_with("shortening"), "{}", says(&rows));
+        // Under a weight at one pressure, whose noise says nothing.
+        let hung: Vec<[f64; 3]> = (0..40)
+            .map(|i| [2.5 + 1e-3 * f64::from(i * 7 % 5), f64::from(i % 8), 100.0 - 0.1 * f64::from(i % 8)])
+            .collect();
+        assert!(says(&hung).contains("the force falls"), "{}", says(&hung));
+    }
+
+    #[test]
+    fn a_slack_muscle_with_an_offset_is_no_load_cell_turned_over() {
+        let pulls = (0..8).map(|i| [3.0, 20.0 / 7.0 * f64::from(i), 500.0 - 70.0 * f64::from(i)]);
+        let slack = (0..10).map(|i| [3.0, 21.0 + 2.0 * f64::from(i), -0.4]);
+        let rows: Vec<[f64; 3]> = pulls.chain(slack).collect();
+        assert!(says(&rows).contains("the force falls"), "{}", says(&rows));
     }
 }

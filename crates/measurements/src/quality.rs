@@ -209,7 +209,8 @@ impl Data {
             found.extend(clipping::in_columns(&gate).into_iter().map(named("clipped")));
         }
         found.push(all);
-        found.extend(alone);
+        // Equal set points of a static map are its repeats.
+        found.extend(alone.filter(|_| self.is_path()));
         let copied = copied::rows(&gate);
         found.push(Disturbance { rows: copied.all, why: format!("copied: {}", copied::ALL) });
         found.extend(

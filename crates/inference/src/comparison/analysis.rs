@@ -95,10 +95,8 @@ impl<'a> Analysis<'a> {
         if !used.mask.contains(&true) {
             let left_out = if data.is_empty() {
                 "the file has none"
-            } else if data.pressure().iter().all(|pressure| *pressure <= 0.0) {
-                "the gauge pressure is 0 or less in all of them; check its sign and its zero, and write `abs` behind the unit of a pressure that counts from a vacuum"
             } else {
-                "all are slack or without pressure; check sign and zero of force and pressure"
+                "the gauge pressure is 0 or less in all of them; check its sign and its zero, and write `abs` behind the unit of a pressure that counts from a vacuum"
             };
             return Err(InferenceError::NoRows { left_out: left_out.to_owned() });
         }
@@ -325,11 +323,15 @@ impl<'a> Analysis<'a> {
             self.full_scale = full_scale(self.data.force(), self.used.rows());
             self.noise = Noise::of(self.muscle, (0.01 * self.full_scale).max(f64::MIN_POSITIVE));
         }
+        let unread = unread(&self.data, &prepared.model, &self.record, self.full_scale);
+        if let Some((_, rows)) = &unread {
+            let why = "no force, all along a sweep in which the muscle as stated pulls";
+            self.used.leave_out(&self.data, rows.iter().copied(), why.to_owned());
+        }
         self.findings = questions(&self.data, self.muscle, &prepared.model, &self.record, &self.used.mask);
-        self.findings.extend(unread(&self.data, &prepared.model, &self.record, &self.used, self.full_scale));
-        if let Some(what) =
-            self.data.impossible().filter(|_| !self.findings.iter().any(|finding| finding.decided))
-        {
+        self.findings.extend(unread.map(|(question, _)| question));
+        let is_decided = self.findings.iter().any(|finding| finding.decided);
+        if let Some(what) = self.data.impossible(|row| self.used.mask[row]).filter(|_| !is_decided) {
             return Err(InferenceError::Unit { what });
         }
         let is_law = self.options.law.is_some();

@@ -8,7 +8,7 @@ use bulge_muscles::{Muscle, Quantity};
 
 use crate::comparison::clock;
 use crate::comparison::document::Mismatch;
-use crate::comparison::rows::{SLACK, Used, full_scale, lines};
+use crate::comparison::rows::{full_scale, lines};
 use crate::median::median;
 
 /// An error below this fraction of full scale raises no question about units.
@@ -39,6 +39,8 @@ const OTHER_OFFSET: f64 = 0.25e5;
 /// A muscle doesn't match if a measured force is above this fraction of full scale where the model would
 /// push.
 const CLEARLY_PULLS: f64 = 0.1;
+/// Readings below this fraction of full scale are no force.
+const NO_FORCE: f64 = 0.01;
 /// Sweeps without a force are asked about if the muscle as stated pulls with more than this fraction of full scale there.
 const SURELY_PULLS: f64 = 0.25;
 /// Factors between units of force, with the name of the unit and the heading to write.
@@ -170,28 +172,24 @@ pub(crate) fn questions(
     found
 }
 
-/// Sweeps that read no force from end to end where the muscle as stated pulls.
+/// Sweeps that read no force from end to end where the muscle as stated pulls, and their rows.
 pub(crate) fn unread(
     data: &Data,
     model: &Model,
     record: &Record,
-    used: &Used,
     full: f64,
-) -> Option<Mismatch> {
-    let is_silent = |row: usize| used.reason_of(row).is_some_and(|why| why.starts_with(SLACK));
+) -> Option<(Mismatch, Vec<usize>)> {
+    let is_silent = |row: usize| data.pressure()[row] <= 0.0 || data.force()[row].abs() <= NO_FORCE * full;
     let sweeps = data.sweeps().iter().map(|sweep| sweep.rows.clone());
     let silent: Vec<usize> = sweeps.filter(|rows| rows.clone().all(is_silent)).flatten().collect();
     let (thin, kept) = record.thinned(ROWS);
     let asked: Vec<bool> = kept.iter().map(|row| silent.binary_search(row).is_ok()).collect();
     let trial = Trial { model, record: &thin, used: &asked, answered: ANSWERED };
     let (rmse_n, force) = trial.error(&|read| read)?;
-    let mut pulls: Vec<f64> = force
-        .iter()
-        .zip(&asked)
-        .filter(|(force, asked)| **asked && force.is_finite())
-        .map(|(force, _)| *force)
-        .collect();
-    (median(&mut pulls) > SURELY_PULLS * full).then(|| Mismatch {
+    let computed = force.iter().zip(&asked).filter(|(force, asked)| **asked && force.is_finite());
+    let mut pulls: Vec<f64> = computed.map(|(force, _)| *force).collect();
+    let most = pulls.iter().copied().fold(0.0, f64::max);
+    let question = (median(&mut pulls) > SURELY_PULLS * full).then(|| Mismatch {
         kind: "no-force",
         decided: false,
         rmse_n,
@@ -199,10 +197,11 @@ pub(crate) fn unread(
         says: format!(
             "line {} read no force all along, where the muscle as stated pulls with up to {} N: was the load cell connected?",
             lines(data, &silent),
-            significant(pulls.iter().copied().fold(0.0, f64::max), 3)
+            significant(most, 3)
         ),
         instead: "these rows don't count; connect it and measure them again, or remove them".to_owned(),
-    })
+    })?;
+    Some((question, silent))
 }
 
 /// Ratio of the forces as meant to the forces as read.

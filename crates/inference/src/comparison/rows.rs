@@ -26,9 +26,6 @@ pub(crate) struct Used {
 /// They are among the rows left out.
 pub const UNPRESSURISED: &str = "a gauge pressure of";
 
-/// Start of the reasons for rows in which the muscle didn't pull.
-pub(crate) const SLACK: &str = "slack";
-
 /// Reason for rows that a user left out.
 pub(crate) const BY_HAND: &str = "excluded by hand";
 
@@ -49,11 +46,6 @@ impl Used {
             self.reason[*row] = reason;
         }
         self.left_out.push(LeftOut { why, lines: lines(data, rows), rows: rows.len() });
-    }
-
-    /// Why a row doesn't count; none if it does.
-    pub(crate) fn reason_of(&self, row: usize) -> Option<&str> {
-        Some(self.left_out.get(self.reason[row]? as usize)?.why.as_str())
     }
 
     /// The rows that count.
@@ -118,7 +110,7 @@ pub(crate) fn used(data: &Data) -> Used {
     let lowest = sound().map(|row| force[row]).fold(f64::INFINITY, f64::min);
     let cut: Vec<usize> = sound().filter(|row| force[*row].total_cmp(&lowest).is_eq()).collect();
     if cut.len() >= 2 && lowest.abs() <= 0.01 * full {
-        let why = format!("{SLACK}: {lowest} N, the lowest reading, says only that the muscle didn't pull");
+        let why = format!("slack: {lowest} N, the lowest reading, says only that the muscle didn't pull");
         used.leave_out(data, cut, why);
     }
     for disturbance in disturbed {
@@ -132,8 +124,8 @@ pub(crate) fn used(data: &Data) -> Used {
     // If nearly all rows push, the load cell has the other sign, which is left to a question.
     let idle = data.not_pulling();
     if idle.len() as f64 <= MOST_IDLE * force.len() as f64 {
-        let why = format!("{SLACK} or pushing: the muscle didn't pull, and says nothing about its force");
-        used.leave_out(data, idle, why);
+        let why = "slack or pushing: the muscle didn't pull, and says nothing about its force";
+        used.leave_out(data, idle, why.to_owned());
     }
     used
 }

@@ -1,5 +1,5 @@
-//! Spikes: one to three readings off the path on which their neighbours on both sides agree; at the ends of a path, off
-//! what follows or came before by far more than any reading moves.
+//! Spikes: one to three readings off the path on which their neighbours on both sides agree; at the ends of a path, beyond
+//! zero and all other readings by far more than any reading moves.
 
 use super::{Finding, FindingKind, Gate, Severity, rows_in_words};
 use crate::data::Data;
@@ -31,7 +31,7 @@ const COMES_BACK: usize = 5;
 /// Where one side is missing: times the largest step between other neighbours of the path. What settles with a time constant of
 /// two rows has steps that fall by 1.6 from row to row; one of half a row would be needed for ten.
 const END_STEPS: f64 = 10.0;
-/// And fraction of the range of the other readings of the path: a reversal of friction is a step of less.
+/// And fraction of the range of all other readings, by which it lies beyond them.
 const END_RANGE: f64 = 0.2;
 /// If more than one row in this many is a spike, the quantity scatters in this way.
 const MOST: usize = 20;
@@ -52,29 +52,49 @@ pub(super) fn in_columns(gate: &Gate) -> [(&'static str, Vec<usize>); 3] {
     let found = gate.columns.map(|column| {
         let inner = along(gate.data, column.values, &column.resolution, RANGE, &paths);
         let mut bridged = column.values.to_vec();
-        inner.iter().for_each(|row| bridged[*row] = bridged[row - 1]);
+        for row in &inner {
+            bridged[*row] = bridged[row - 1];
+        }
         let least = least(&column.resolution, RANGE);
-        let of_path = |path: &Range<usize>| {
-            let [first, last] = at_ends(&bridged[path.clone()], least);
-            [first, last].map(|rows| path.start + rows.start..path.start + rows.end)
+        let at_ends = |path: &Range<usize>| {
+            let backwards: Vec<f64> = bridged[path.clone()].iter().rev().copied().collect();
+            let [first, last] = [at_start(&bridged[path.clone()], least), at_start(&backwards, least)];
+            [path.start + first.start..path.start + first.end, path.end - last.end..path.end - last.start]
         };
-        let ends: Vec<Range<usize>> =
-            paths.iter().flat_map(of_path).filter(|rows| !rows.is_empty()).collect();
-        (column.name, inner, ends)
+        let ends: Vec<[Range<usize>; 2]> = paths.iter().map(at_ends).collect();
+        // What comes back at the starts, or at the ends, is the shape of the curve.
+        let rare = [0, 1].map(|side| {
+            let count = ends.iter().filter(|sides| !sides[side].is_empty()).count();
+            count == 1 || COMES_BACK * count <= paths.len()
+        });
+        let candidates = ends.into_iter().flat_map(|sides| sides.into_iter().zip(rare));
+        let rows: Vec<usize> =
+            candidates.filter(|(_, is_rare)| *is_rare).flat_map(|(rows, _)| rows).collect();
+        (column.name, inner, beyond_others(gate, &bridged, column.name, rows))
     });
     // A row that stands out in several columns was recorded before, or after, all of them moved on.
-    let is_alone = |row: &usize| {
-        found.iter().filter(|(_, _, ends)| ends.iter().any(|rows| rows.contains(row))).count() == 1
-    };
+    let is_alone =
+        |row: &usize| found.iter().filter(|(_, _, ends)| ends.binary_search(row).is_ok()).count() == 1;
     found.each_ref().map(|(name, inner, ends)| {
-        // What comes back at the ends is the shape of the curve.
-        let is_rare = ends.len() == 1 || COMES_BACK * ends.len() <= 2 * paths.len();
-        let alone = ends.iter().cloned().flatten().filter(|row| is_rare && is_alone(row));
-        let mut rows: Vec<usize> = inner.iter().copied().chain(alone).collect();
+        let mut rows: Vec<usize> =
+            inner.iter().chain(ends.iter().filter(|row| is_alone(row))).copied().collect();
         rows.sort_unstable();
         rows.dedup();
         (*name, rows)
     })
+}
+
+/// Those of the rows, in ascending order, whose values lie beyond zero and all others. No muscle has a length of zero: there, beyond
+/// all others.
+fn beyond_others(gate: &Gate, values: &[f64], name: &str, mut rows: Vec<usize>) -> Vec<usize> {
+    rows.sort_unstable();
+    let is_length = name == gate.motion_name() && matches!(gate.data.motion(), crate::Trace::Length(_));
+    let start = if is_length { [f64::INFINITY, f64::NEG_INFINITY] } else { [0.0, 0.0] };
+    let others = values.iter().enumerate().filter(|(row, _)| rows.binary_search(row).is_err());
+    let [low, high] = others.fold(start, |[low, high], (_, value)| [low.min(*value), high.max(*value)]);
+    let far = END_RANGE * (high - low);
+    rows.retain(|row| values[*row] > high + far || values[*row] < low - far);
+    rows
 }
 
 pub(super) fn find(gate: &Gate) -> Vec<Finding> {
@@ -237,32 +257,23 @@ fn is_spike(x: &[f64], first: usize, length: usize, least: f64) -> bool {
     (first..end).all(|row| excess(row).into_iter().any(|beyond| beyond > needed))
 }
 
-/// Spikes within the first and last rows of a path, where one side is too short to lead anywhere.
-fn at_ends(values: &[f64], least: f64) -> [Range<usize>; 2] {
-    let backwards: Vec<f64> = values.iter().rev().copied().collect();
-    let last = at_start(&backwards, least);
-    [at_start(values, least), values.len() - last.end..values.len() - last.start]
-}
-
-/// Spikes among the first rows of a path: one to three readings next to each other, the last of which has fewer than three before it.
+/// A spike among the first rows of a path: one to three readings next to each other, the first of which has fewer than three before it.
 fn at_start(values: &[f64], least: f64) -> Range<usize> {
     let is_spike = |spike: &Range<usize>| {
         let Some(after) = values.get(spike.end..).filter(|after| after.len() >= 2 * SIDE) else {
             return false;
         };
-        let others = || values[..spike.start].iter().chain(after);
-        let [low, high] =
-            others().fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], v| [l.min(*v), h.max(*v)]);
-        let step = others().zip(others().skip(1)).map(|(a, b)| (b - a).abs()).fold(0.0, f64::max);
-        let needed = least.max(END_STEPS * step).max(END_RANGE * (high - low));
-        spike.clone().all(|row| {
+        let before = spike.start.checked_sub(1).map(|row| values[row]);
+        let leaves = |row: usize, needed: f64| {
             let next = after[0] + (spike.end - row) as f64 * (after[0] - after[1]);
-            let before = spike.start.checked_sub(1).map(|row| values[row]);
-            [Some(next), Some(after[0]), before]
-                .into_iter()
-                .flatten()
-                .all(|lead| (values[row] - lead).abs() > needed)
-        })
+            let leads = [Some(next), Some(after[0]), before];
+            leads.into_iter().flatten().all(|lead| (values[row] - lead).abs() > needed)
+        };
+        let all_leave = |needed: f64| spike.clone().all(|row| leaves(row, needed));
+        // The last rows may have a spike of their own. The largest step is only looked for where there is something.
+        let others = || values[..spike.start].iter().chain(&after[..after.len() - LONGEST]);
+        let step = || others().zip(others().skip(1)).map(|(a, b)| (b - a).abs()).fold(0.0, f64::max);
+        all_leave(least) && all_leave(END_STEPS * step())
     };
     let mut starts = (0..SIDE).flat_map(|first| (first + 1..=first + LONGEST).map(move |end| first..end));
     starts.find(is_spike).unwrap_or_default()

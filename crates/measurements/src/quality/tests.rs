@@ -276,7 +276,7 @@ fn values_of_no_muscle() {
     assert!(
         says(|columns| motion(columns).iter_mut().for_each(|c| *c *= 100.0)).contains("outside -1 to 0.6")
     );
-    assert!(says(|columns| columns.force_n[3] = 2e6).contains("2000000.0"));
+    assert!(says(|columns| columns.force_n[3] = 2e6).contains("such as 2000000 N"));
     assert!(says(|columns| columns.volume_m3 = Some(vec![0.0; columns.force_n.len()])).contains("1203 rows"));
     let lengths = Columns::new(vec![1e5; 3], Trace::Length(vec![0.3, -0.3, 0.3]), vec![1.0, 2.0, 20_000.0]);
     let options = QualityOptions { l0_m: Some(0.3), radius_m: Some(0.01) };

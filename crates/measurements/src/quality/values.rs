@@ -52,16 +52,21 @@ fn is_unit(gate: &Gate, found: &Impossible) -> bool {
 }
 
 impl Data {
-    /// The pressure or force that half of the rows have or more although no muscle has it, and what to check; none if
-    /// there is no such reading.
+    /// The pressure or force that no muscle has and half of the rows that count or more have, and what to check; none if there is no
+    /// such reading.
     #[must_use]
-    pub fn impossible(&self) -> Option<String> {
-        let options = QualityOptions::default();
+    pub fn impossible(&self, counts: impl Fn(usize) -> bool) -> Option<String> {
         if self.is_empty() {
             return None;
         }
+        let options = QualityOptions::default();
         let gate = Gate::new(self, &options);
-        let found = pressures(&gate).into_iter().chain(forces(&gate)).find(|found| is_unit(&gate, found))?;
+        let all = (0..self.len()).filter(|row| counts(*row)).count();
+        let is_most = |found: &Impossible| {
+            let wrong = found.rows.iter().filter(|row| counts(**row)).count();
+            wrong > 0 && 2 * wrong >= all
+        };
+        let found = pressures(&gate).into_iter().chain(forces(&gate)).find(is_most)?;
         Some(format!("{}; {}", found.says, found.instead))
     }
 }

@@ -238,18 +238,22 @@ fn spikes_in_each_column() {
 #[test]
 fn spikes_at_the_ends_of_a_sweep() {
     let last = clean_loops(2, 1).force_n.len() - 1;
+    let wild = |columns: &mut Columns, rows: &[usize]| {
+        for row in rows {
+            columns.force_n[*row] = 9000.0;
+        }
+    };
     for rows in [vec![0], vec![1], vec![0, 1], vec![2], vec![last - 1, last], vec![SWEEP], vec![SWEEP - 1]] {
-        plants(FindingKind::Spike, &rows, |columns| {
-            rows.iter().for_each(|row| columns.force_n[*row] = 9000.0)
-        });
+        plants(FindingKind::Spike, &rows, |columns| wild(columns, &rows));
     }
-    plants(FindingKind::Spike, &[0], |columns| columns.force_n[0] *= 0.5);
+    // Beyond all others, which reach 580 N, by more than a fifth of them.
+    plants(FindingKind::Spike, &[0], |columns| columns.force_n[0] = 720.0);
+    // At both ends of one sweep.
+    plants(FindingKind::Spike, &[0, SWEEP - 1], |columns| wild(columns, &[0, SWEEP - 1]));
     plants(FindingKind::Spike, &[last], |columns| motion(columns)[last] = 0.5);
-    plants(FindingKind::Spike, &[SWEEP], |columns| columns.pressure_pa[SWEEP] = -5e4);
+    plants(FindingKind::Spike, &[SWEEP], |columns| columns.pressure_pa[SWEEP] = -8e4);
     // Beside one that is found from both sides.
-    plants(FindingKind::Spike, &[0, 40], |columns| {
-        [0, 40].iter().for_each(|row| columns.force_n[*row] = 9000.0)
-    });
+    plants(FindingKind::Spike, &[0, 40], |columns| wild(columns, &[0, 40]));
     // A row from before all of them moved on, what every sweep begins with, and a reversal of friction.
     let none = |change: &dyn Fn(&mut Columns)| {
         let mut columns = clean_loops(2, 1);
@@ -262,6 +266,10 @@ fn spikes_at_the_ends_of_a_sweep() {
     });
     none(&|columns| (0..3).for_each(|sweep| columns.force_n[sweep * SWEEP] = 0.0));
     none(&|columns| columns.force_n[0] += 20.0);
+    // What has filled only half, or lies less far beyond.
+    none(&|columns| columns.force_n[0] *= 0.5);
+    none(&|columns| columns.pressure_pa[0] *= 0.5);
+    none(&|columns| columns.force_n[0] = 650.0);
 }
 
 #[test]
