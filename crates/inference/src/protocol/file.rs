@@ -320,6 +320,7 @@ mod tests {
     #[test]
     fn every_key_is_read() {
         let text = PROTOCOL_EXAMPLE.replace("# warming", "warming").replace("# interval", "interval");
+        let text = text.replace("rig = \"none\" ", "rig = \"drawn\" ");
         let found = read(&text.replace("force = \"2 N\"", "tails = 4\nforce = \"2 N\""));
         assert_eq!((found.rig, found.pause_s, found.warming_k), (RigErrors::Drawn, 10.0, 5.0));
         let block = &found.blocks[0];
