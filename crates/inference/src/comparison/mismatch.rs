@@ -1,6 +1,8 @@
 //! Contradictions between data and muscle. A wrong unit, sign or zero is not physics, so the user is asked
 //! about it, with the evidence.
 
+use std::ops::Range;
+
 use bulge_measurements::{Data, Trace};
 use bulge_model::{Model, Record, Wanted, Warm};
 use bulge_muscles::units::significant;
@@ -172,7 +174,7 @@ pub(crate) fn questions(
     found
 }
 
-/// Sweeps that read no force from end to end where the muscle as stated pulls, and their rows.
+/// Sweeps that read no force from end to end, each where the muscle as stated pulls, and their rows.
 pub(crate) fn unread(
     data: &Data,
     model: &Model,
@@ -181,27 +183,39 @@ pub(crate) fn unread(
 ) -> Option<(Mismatch, Vec<usize>)> {
     let is_silent = |row: usize| data.pressure()[row] <= 0.0 || data.force()[row].abs() <= NO_FORCE * full;
     let sweeps = data.sweeps().iter().map(|sweep| sweep.rows.clone());
-    let silent: Vec<usize> = sweeps.filter(|rows| rows.clone().all(is_silent)).flatten().collect();
+    let silent: Vec<Range<usize>> = sweeps.filter(|rows| rows.clone().all(is_silent)).collect();
     let (thin, kept) = record.thinned(ROWS);
-    let asked: Vec<bool> = kept.iter().map(|row| silent.binary_search(row).is_ok()).collect();
-    let trial = Trial { model, record: &thin, used: &asked, answered: ANSWERED };
-    let (rmse_n, force) = trial.error(&|read| read)?;
-    let computed = force.iter().zip(&asked).filter(|(force, asked)| **asked && force.is_finite());
-    let mut pulls: Vec<f64> = computed.map(|(force, _)| *force).collect();
-    let most = pulls.iter().copied().fold(0.0, f64::max);
-    let question = (median(&mut pulls) > SURELY_PULLS * full).then(|| Mismatch {
+    let asked: Vec<bool> = kept.iter().map(|row| silent.iter().any(|rows| rows.contains(row))).collect();
+    // A muscle that hung slack in one sweep, and has no state there, says nothing of the others.
+    let trial = Trial { model, record: &thin, used: &asked, answered: 0.0 };
+    let (_, force) = trial.error(&|read| read)?;
+    let pulls = |rows: &Range<usize>| -> Vec<f64> {
+        let under_pressure = |at: &usize| rows.contains(&kept[*at]) && data.pressure()[kept[*at]] > 0.0;
+        (0..kept.len()).filter(under_pressure).map(|at| force[at]).collect()
+    };
+    let is_pulling = |rows: &Range<usize>| {
+        let mut pulls = pulls(rows);
+        let all = pulls.len() as f64;
+        pulls.retain(|force| force.is_finite());
+        pulls.len() as f64 >= ANSWERED * all && median(&mut pulls) > SURELY_PULLS * full
+    };
+    let dead: Vec<Range<usize>> = silent.into_iter().filter(is_pulling).collect();
+    let pulls: Vec<f64> = dead.iter().flat_map(pulls).filter(|force| force.is_finite()).collect();
+    let rows: Vec<usize> = dead.into_iter().flatten().collect();
+    let most = pulls.iter().copied().reduce(f64::max)?;
+    let question = Mismatch {
         kind: "no-force",
         decided: false,
-        rmse_n,
+        rmse_n: (pulls.iter().map(|force| force * force).sum::<f64>() / pulls.len() as f64).sqrt(),
         meant_rmse_n: None,
         says: format!(
             "line {} read no force all along, where the muscle as stated pulls with up to {} N: was the load cell connected?",
-            lines(data, &silent),
+            lines(data, &rows),
             significant(most, 3)
         ),
         instead: "these rows don't count; connect it and measure them again, or remove them".to_owned(),
-    })?;
-    Some((question, silent))
+    };
+    Some((question, rows))
 }
 
 /// Ratio of the forces as meant to the forces as read.

@@ -4,7 +4,7 @@ use bulge_effects::{Effect, Needs};
 use bulge_measurements::Data;
 use bulge_model::Record;
 use bulge_muscles::units::significant;
-use bulge_muscles::{Muscle, Quantity, memory};
+use bulge_muscles::{Construction, Muscle, Quantity, memory};
 use std::ops::RangeInclusive;
 use std::sync::Arc;
 
@@ -12,9 +12,11 @@ use crate::comparison::mismatch::possible_motion;
 use crate::comparison::rows::{Used, lines};
 use crate::error::InferenceError;
 
-/// Contractions that a muscle can have. A braid with fibres at less than 60 deg is straight before it reaches
-/// twice its rest length, and no pleated muscle shortens by more than 54.3 %.
-const POSSIBLE: RangeInclusive<f64> = -1.0..=0.6;
+/// No muscle shortens by more: a pleated one ends at 54.3 %, and a braid at less.
+const SHORTEST: f64 = 0.6;
+
+/// Fraction of the rest length by which fibres that are soft and a wrong zero lengthen a muscle beyond straight fibres.
+const STRETCH: f64 = 0.2;
 
 /// Fraction of the rows that may have others: a lost comma, one file in another unit.
 const FEW: f64 = 0.25;
@@ -34,7 +36,9 @@ pub(crate) fn check_memory(data: &Data, bytes_per_row: u64) -> Result<(), Infere
 
 /// Contractions that no muscle can have, if few rows have them, and why they don't count.
 pub(crate) fn of_no_muscle(muscle: &Muscle, record: &Record, used: &Used) -> Option<(Vec<usize>, String)> {
-    let rows: Vec<usize> = used.rows().filter(|row| !is_possible(record, *row)).collect();
+    let possible = possible(muscle);
+    let is_other = |row: &usize| !possible.contains(&record.moments()[*row].contraction);
+    let rows: Vec<usize> = used.rows().filter(is_other).collect();
     let contraction = record.moments()[*rows.first()?].contraction;
     (rows.len() as f64 <= FEW * used.rows().count() as f64).then(|| {
         let why = format!(
@@ -46,8 +50,13 @@ pub(crate) fn of_no_muscle(muscle: &Muscle, record: &Record, used: &Used) -> Opt
     })
 }
 
-fn is_possible(record: &Record, row: usize) -> bool {
-    POSSIBLE.contains(&record.moments()[row].contraction)
+/// Contractions that a muscle can have: with straight fibres it doesn't lengthen but for their stretch.
+fn possible(muscle: &Muscle) -> RangeInclusive<f64> {
+    let straight = match muscle.construction() {
+        Construction::Braided(braided) => braided.fibre_length(muscle.length()).si() / muscle.length().si(),
+        Construction::Pleated(_) => 1.0,
+    };
+    1.0 - straight - STRETCH..=SHORTEST
 }
 
 /// Refuses contractions that no muscle can have: the data are those of another one.
@@ -57,7 +66,11 @@ pub(crate) fn check_size(
     record: &Record,
     mask: &[bool],
 ) -> Result<(), InferenceError> {
-    let rows: Vec<usize> = (0..record.len()).filter(|row| mask[*row] && !is_possible(record, *row)).collect();
+    let possible = possible(muscle);
+    let is_possible = |contraction: f64| possible.contains(&contraction);
+    let moments = record.moments();
+    let rows: Vec<usize> =
+        (0..record.len()).filter(|row| mask[*row] && !is_possible(moments[*row].contraction)).collect();
     let Some(&row) = rows.first() else { return Ok(()) };
     let specimen = record.specimens().get(record.moments()[row].specimen as usize);
     let own = specimen.and_then(|name| Some((name, muscle.of_specimen(name).ok()?)));
@@ -66,7 +79,6 @@ pub(crate) fn check_size(
         || (muscle.name().to_owned(), muscle.length()),
         |(name, own)| (format!("the specimen `{name}` of {}", muscle.name()), own.length()),
     );
-    let is_possible = |contraction: f64| POSSIBLE.contains(&contraction);
     Err(InferenceError::OtherSize {
         muscle: name,
         lines: format!("line {}", lines(data, &rows)),

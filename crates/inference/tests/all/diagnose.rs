@@ -605,7 +605,13 @@ fn a_load_cell_that_read_nothing_all_along_a_sweep_is_asked_about() {
     let mut low = recorded(|_, _| 0.0, false, 8);
     low.pressure_pa[..301].iter_mut().for_each(|pressure| *pressure *= 0.1);
     low.force_n[..301].iter_mut().for_each(|force| *force = 0.0);
-    assert!(found(low).data.findings.is_empty());
+    assert!(found(low.clone()).data.findings.is_empty());
+    // One that hung slack hides no other that is told from it.
+    low.sweep = Some((0..low.force_n.len()).map(|row| ["low", "dead", "third", "last"][row / 301]).collect());
+    low.force_n[301..602].iter_mut().for_each(|force| *force = 0.0);
+    let findings = found(low).data.findings;
+    let [question] = &findings[..] else { panic!("{findings:?}") };
+    assert!(question.says.contains("line 302-602 read no force") && question.kind == "no-force", "{question}");
 }
 
 #[test]
@@ -618,6 +624,22 @@ fn pressure_and_force_that_were_exchanged_are_refused() {
     let error =
         diagnose(&Data::from_columns(columns).unwrap(), &muscle, &diagnosing(&[])).unwrap_err().to_string();
     assert!(error.contains("a pressure above 150 bar") && error.ends_with("are not exchanged"), "{error}");
+}
+
+/// With straight fibres a braid is 10 % longer than at rest, so that lengths which are a third above that of the file are those of another muscle.
+#[test]
+fn a_length_of_the_file_that_is_far_too_short_is_told() {
+    let mut columns = recorded(|_, _| 0.0, false, 9);
+    let Trace::Contraction(contraction) = &columns.motion else { panic!("a contraction") };
+    columns.motion = Trace::Length(contraction.iter().map(|c| 0.25 * (1.0 - c)).collect());
+    let data = Data::from_columns(columns).unwrap();
+    let of = |length: &str| {
+        let muscle = from_toml(&CYLINDER.replace("250 mm", length), "c.toml").unwrap();
+        diagnose(&data, &muscle, &diagnosing(&[]))
+    };
+    assert!(of("250 mm").is_ok());
+    let error = of("150 mm").unwrap_err().to_string();
+    assert!(error.contains("% of the 150.0 mm of c; check `length` in the muscle file"), "{error}");
 }
 
 /// The estimated noise of a reading is within 20 % of the truth, whether something is hidden or not, in short

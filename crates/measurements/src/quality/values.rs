@@ -43,12 +43,15 @@ pub(super) fn rows(gate: &Gate) -> impl Iterator<Item = (Vec<usize>, String)> {
         let why = format!("impossible: {}; {}", found.says, found.instead);
         (found.rows, why)
     };
-    readings(gate).into_iter().filter(|found| !is_unit(gate, found)).map(told)
+    readings(gate).into_iter().filter(|found| !found.is_unit(gate.data.len(), |_| true)).map(told)
 }
 
-/// Where half of all rows have an impossible reading it is the unit that is wrong, not the rows.
-fn is_unit(gate: &Gate, found: &Impossible) -> bool {
-    2 * found.rows.len() >= gate.data.len()
+impl Impossible {
+    /// Where half of `all` rows that count have an impossible reading it is the unit that is wrong, not the rows.
+    fn is_unit(&self, all: usize, counts: impl Fn(usize) -> bool) -> bool {
+        let wrong = self.rows.iter().filter(|row| counts(**row)).count();
+        wrong > 0 && 2 * wrong >= all
+    }
 }
 
 impl Data {
@@ -62,11 +65,8 @@ impl Data {
         let options = QualityOptions::default();
         let gate = Gate::new(self, &options);
         let all = (0..self.len()).filter(|row| counts(*row)).count();
-        let is_most = |found: &Impossible| {
-            let wrong = found.rows.iter().filter(|row| counts(**row)).count();
-            wrong > 0 && 2 * wrong >= all
-        };
-        let found = pressures(&gate).into_iter().chain(forces(&gate)).find(is_most)?;
+        let mut found = pressures(&gate).into_iter().chain(forces(&gate));
+        let found = found.find(|found| found.is_unit(all, &counts))?;
         Some(format!("{}; {}", found.says, found.instead))
     }
 }
