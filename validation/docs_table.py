@@ -5,6 +5,7 @@
     python validation/docs_table.py forms [--check]          # the same for the forms suite: with the whole catalogue, and with the truth as the only candidate
     python validation/docs_table.py ratios [--check]         # from benches/ratios.json, which benches/ratios.py measures
     python validation/docs_table.py mutation [--check]       # from validation/mutation.json, which validation/mutation.py measures
+    python validation/docs_table.py fuzz [--check]           # from fuzz/counts.tsv, to which fuzz/run adds
 
 A table stands between `<!-- table: NAME ... -->` and `<!-- end of table -->`; all else in the file is kept. `--check` writes nothing: its status is 1 if
 the page differs. Errors of `verification` at the level of rounding differ between machines and aren't compared. The tables of suites need NumPy and SciPy.
@@ -99,7 +100,7 @@ FORMS_FRONT = (
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("what", choices=("verification", "diagnosis", "forms", "ratios", "mutation"))
+    parser.add_argument("what", choices=("verification", "diagnosis", "forms", "ratios", "mutation", "fuzz"))
     parser.add_argument("--check", action="store_true", help="compare the pages, and write nothing")
     parser.add_argument("--root", type=Path, default=ROOT, help="folder of README.md and docs")
     arguments = parser.parse_args()
@@ -116,6 +117,8 @@ def main():
         if not kept.exists():
             parser.error(f"{kept} is not there: run validation/mutation.py for each crate")
         tables = {"mutation": mutation(json.loads(kept.read_text(encoding="utf-8")))}
+    elif arguments.what == "fuzz":
+        tables = {"fuzz": fuzz((ROOT / "fuzz/counts.tsv").read_text(encoding="utf-8"))}
     elif arguments.what == "forms":
         scores = scored("forms-79", "forms-79-among-truth")
         tables = {"forms": forms(scores), "forms-front": forms_front(scores[0])}
@@ -170,6 +173,17 @@ def mutation(crates):
         cells = [crate, str(counts["mutants"]), str(counts["sample"]), str(counts["unviable"]), str(survive), share]
         lines.append("| " + " | ".join(cells) + " |")
     return "\n".join(lines)
+
+
+def fuzz(counts):
+    """How many inputs each reader was given."""
+    inputs = {}
+    for line in counts.splitlines():
+        _, target, count = line.split("\t")
+        inputs[target] = inputs.get(target, 0) + int(count)
+    lines = ["| reader | inputs |", "|---|---|"]
+    lines += [f"| {target} | {count:,} |".replace(",", " ") for target, count in sorted(inputs.items(), key=lambda entry: -entry[1])]
+    return "\n".join([*lines, f"| **all** | {sum(inputs.values()):,} |".replace(",", " ")])
 
 
 def _time(seconds):
