@@ -73,7 +73,7 @@ struct Shut {
     #[arg(long, allow_hyphen_values = true)]
     force: Option<String>,
     /// Draw the force with the valve shut and open
-    #[arg(long, value_name = "FILE.svg")]
+    #[arg(long, value_name = "FILE.svg", value_parser = files::picture)]
     plot: Option<PathBuf>,
 }
 
@@ -118,7 +118,7 @@ struct Fill {
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
     /// Draw pressure and contraction against time
-    #[arg(long, value_name = "FILE.svg")]
+    #[arg(long, value_name = "FILE.svg", value_parser = files::picture)]
     plot: Option<PathBuf>,
 }
 
@@ -139,7 +139,7 @@ struct Cycle {
     #[arg(long, allow_hyphen_values = true)]
     pressure: Option<String>,
     /// Draw the pressure on the way up
-    #[arg(long, value_name = "FILE.svg")]
+    #[arg(long, value_name = "FILE.svg", value_parser = files::picture)]
     plot: Option<PathBuf>,
 }
 

@@ -45,7 +45,7 @@ pub(crate) struct CurveCommand {
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
     /// Draw force and volume against contraction
-    #[arg(long, value_name = "FILE.svg")]
+    #[arg(long, value_name = "FILE.svg", value_parser = files::picture)]
     plot: Option<PathBuf>,
     /// Write the bulging as a time series for ParaView (bulge.pvd), one folder per pressure
     #[arg(long, value_name = "DIR")]

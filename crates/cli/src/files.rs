@@ -48,6 +48,19 @@ pub(crate) fn stdout_is_taken() -> bool {
     IS_TAKEN.load(Ordering::Relaxed)
 }
 
+/// The name of a picture; one that promises another format than SVG is refused.
+pub(crate) fn picture(name: &str) -> Result<PathBuf, String> {
+    let path = PathBuf::from(name);
+    let format = path.extension().map(|extension| extension.to_string_lossy().to_lowercase());
+    match format.as_deref() {
+        Some("png" | "jpg" | "jpeg" | "gif" | "tif" | "tiff" | "pdf" | "eps" | "ps") => {
+            let named = path.with_extension("svg");
+            Err(format!("pictures are written as SVG: write `{}`, and convert it", named.display()))
+        }
+        _ => Ok(path),
+    }
+}
+
 /// Writes a file if requested; returns the line that reports it.
 pub(crate) fn wrote(
     path: Option<&Path>,
@@ -86,11 +99,12 @@ pub(crate) fn write_all(into: &Path, contents: &[(PathBuf, &str)]) -> Result<(),
 
 /// Creates a folder with its parents if it doesn't exist.
 pub(crate) fn folder(path: &Path) -> Result<(), Failure> {
-    if path.exists() && !path.is_dir() {
-        let source = io::Error::new(io::ErrorKind::NotADirectory, "it is a file; give the name of a folder");
-        return Err(Failure::Output { path: path.to_path_buf(), source });
+    let failed = |source| Failure::Output { path: path.to_path_buf(), source };
+    if let Some(file) = path.ancestors().find(|above| above.exists()).filter(|above| !above.is_dir()) {
+        let what = format!("{} is a file; give the name of a folder", file.display());
+        return Err(failed(io::Error::new(io::ErrorKind::NotADirectory, what)));
     }
-    output::create_folder(path).map_err(|source| Failure::Output { path: path.to_path_buf(), source })
+    output::create_folder(path).map_err(failed)
 }
 
 /// A file that a command reads or writes, with its name on the command line.

@@ -46,7 +46,7 @@ pub(crate) struct FitCommand {
     #[arg(long, value_name = "FILE")]
     form_error: Option<PathBuf>,
     /// Draw how sure the numbers are: draws of the posterior, alone and in pairs, and profile likelihoods
-    #[arg(long, value_name = "FILE.svg")]
+    #[arg(long, value_name = "FILE.svg", value_parser = files::picture)]
     posterior: Option<PathBuf>,
     /// Write the draws of the posterior, a column for each number
     #[arg(long, value_name = "FILE.csv")]

@@ -55,7 +55,7 @@ pub(crate) struct HeatCommand {
     #[arg(long, default_value_t = 40)]
     cells: usize,
     /// Draw the mean temperature of the wall along the muscle
-    #[arg(long, value_name = "FILE.svg")]
+    #[arg(long, value_name = "FILE.svg", value_parser = files::picture)]
     plot: Option<PathBuf>,
     #[command(flatten)]
     json: Json,

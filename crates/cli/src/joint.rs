@@ -64,7 +64,7 @@ pub(crate) struct JointCommand {
     #[arg(long, default_value = "0 N", requires_all = ["angle", "pressure"], allow_hyphen_values = true)]
     force_sd: String,
     /// Draw the torque against the angle at several pairs of pressures
-    #[arg(long, value_name = "FILE.svg")]
+    #[arg(long, value_name = "FILE.svg", value_parser = files::picture)]
     plot: Option<PathBuf>,
     #[command(flatten)]
     json: Json,

@@ -59,7 +59,7 @@ pub(crate) struct SenseCommand {
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
     /// Draw the resistance against the contraction
-    #[arg(long, value_name = "FILE.svg")]
+    #[arg(long, value_name = "FILE.svg", value_parser = files::picture)]
     plot: Option<PathBuf>,
     /// Your own effects, where the muscle file states them
     #[arg(long, value_name = "FILE")]

@@ -75,7 +75,7 @@ pub(crate) struct SizeCommand {
     #[arg(long, default_value_t = 12)]
     top: usize,
     /// Draw the best choice: isobars with the way of the load
-    #[arg(long, value_name = "FILE.svg")]
+    #[arg(long, value_name = "FILE.svg", value_parser = files::picture)]
     plot: Option<PathBuf>,
     /// Your own effects, where a muscle file states them
     #[arg(long, value_name = "FILE")]

@@ -173,6 +173,8 @@ fn what_no_muscle_can_have_is_refused_by_every_way_in() {
 fn usage_is_status_2() {
     assert_eq!(failure(&["shape", "ppam-2-r16"]).0, 2);
     assert_eq!(failure(&["shapes"]).0, 2);
+    let (status, message) = failure(&["curve", "ppam-2-r16", "--pressure", "1 bar", "--plot", "a.PNG"]);
+    assert!(status == 2 && message.contains("as SVG: write `a.svg`"), "{message}");
     assert_eq!(
         failure(&["shape", "ppam-2-r16", "--pressure", "1 bar", "--force", "1 N", "--length", "1 m"]).0,
         2
@@ -417,7 +419,10 @@ fn every_writer_writes_into_what_a_name_stands_for() {
     let compare = ["compare", &data, "--muscle", "dmsp-20-250", "--out"];
     stdout(&[&compare[..], &[&folder.path("behind")]].concat());
     assert!(Path::new(&folder.path("reports/report.html")).is_file());
-    refused(&[&compare[..], &[&data]].concat(), 1, &["it is a file; give the name of a folder"]);
+    for below in ["", "/report", "/a/report"] {
+        let says = format!("{data} is a file; give the name of a folder");
+        refused(&[&compare[..], &[&format!("{data}{below}")]].concat(), 1, &[&says]);
+    }
     assert!(!folder.names().iter().any(|name| name.starts_with(".unfinished")), "{:?}", folder.names());
 }
 

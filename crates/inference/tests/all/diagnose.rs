@@ -611,7 +611,10 @@ fn a_load_cell_that_read_nothing_all_along_a_sweep_is_asked_about() {
     low.force_n[301..602].iter_mut().for_each(|force| *force = 0.0);
     let findings = found(low).data.findings;
     let [question] = &findings[..] else { panic!("{findings:?}") };
-    assert!(question.says.contains("line 302-602 read no force") && question.kind == "no-force", "{question}");
+    assert!(
+        question.says.contains("line 302-602 read no force") && question.kind == "no-force",
+        "{question}"
+    );
 }
 
 #[test]
