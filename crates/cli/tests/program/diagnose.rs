@@ -142,7 +142,11 @@ fn a_report_that_has_no_place_is_refused_and_nothing_is_written() {
     let folder = Folder::new("diagnose-place");
     let [data, muscle] = with(&folder, "bladder-elasticity=0.31 MPa");
     let file = folder.write("taken", "");
-    refused(&["diagnose", &data, "--muscle", &muscle, "--out", &file], 1, &["it is a file"]);
+    refused(
+        &["diagnose", &data, "--muscle", &muscle, "--out", &file],
+        1,
+        &["is a file; give the name of a folder"],
+    );
     fs::create_dir_all(folder.0.join("out/where.svg")).unwrap();
     refused(
         &["diagnose", &data, "--muscle", &muscle, "--out", &folder.path("out")],
