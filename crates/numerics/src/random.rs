@@ -151,6 +151,16 @@ mod tests {
     }
 
     #[test]
+    fn students_t_is_baileys_formula_of_two_uniforms() {
+        let (mut draws, mut uniforms) = (Random::new(5, 0), Random::new(5, 0));
+        for _ in 0..100 {
+            let [u, v] = [uniforms.uniform(), uniforms.uniform()];
+            let expected = (4.0 * (u.powf(-0.5) - 1.0)).sqrt() * (TAU * v).cos();
+            assert!((draws.student(4.0) / expected - 1.0).abs() < 1e-9);
+        }
+    }
+
+    #[test]
     fn streams_and_seeds_differ_and_repeat() {
         let draw = |seed, stream| {
             let mut random = Random::new(seed, stream);

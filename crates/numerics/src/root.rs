@@ -117,6 +117,25 @@ mod tests {
         assert_eq!(newton_bracketed(failing, 0.0, 1.0, 0.5, [1e-9, 0.0]), Err(RootError::Function("no")));
     }
 
+    /// A straight line takes one step; an end that stays where it is costs no more than that its value is halved.
+    #[test]
+    fn illinois_takes_few_steps() {
+        let steps = |f: fn(f64) -> f64, tolerance: f64| {
+            let mut count = 0;
+            let mut counted = |x| {
+                count += 1;
+                f(x)
+            };
+            let root = illinois(&mut counted, 0.0, 2.0, tolerance);
+            (root, count)
+        };
+        assert_eq!(steps(|x| 4.0 * x - 2.0, 1e-12), (0.5, 3));
+        // Where it is zero at both ends nothing is known.
+        assert_eq!(steps(|_| 0.0, 1e-12), (1.0, 2));
+        let (root, count) = steps(|x| x * x * x - 0.5, 1e-12);
+        assert!((root.powi(3) - 0.5).abs() < 1e-14 && count <= 17, "{root}: {count}");
+    }
+
     #[test]
     fn illinois_finds_a_flat_root() {
         let root = illinois(|x| x.powi(5) - 1e-5, 0.0, 2.0, 1e-10);

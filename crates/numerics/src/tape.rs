@@ -414,6 +414,19 @@ mod tests {
     use super::*;
     use crate::Dual;
 
+    /// What needs no step has none: a product with 1, a first power.
+    #[test]
+    fn a_tape_is_as_short_as_it_can_be() {
+        let mut tape = Builder::default();
+        assert!(tape.is_empty());
+        let x = tape.input(0);
+        let one = tape.constant(1.0);
+        let steps = tape.len();
+        assert!(!tape.is_empty());
+        assert_eq!([tape.whole_power(x, 1), tape.operate(Operator::Multiply, one, x)], [x, x]);
+        assert_eq!([tape.operate(Operator::Divide, x, one), tape.len()], [x, steps]);
+    }
+
     /// Every function and operator at a point where it is smooth: its symbolic derivative, twice, against that of dual numbers.
     #[test]
     fn symbolic_derivatives_are_those_of_dual_numbers() {
