@@ -425,6 +425,13 @@ mod tests {
         assert!(!tape.is_empty());
         assert_eq!([tape.whole_power(x, 1), tape.operate(Operator::Multiply, one, x)], [x, x]);
         assert_eq!([tape.operate(Operator::Divide, x, one), tape.len()], [x, steps]);
+        // x^3 + x needs x and its power; the constant is left out.
+        let power = tape.whole_power(x, 3);
+        let sum = tape.operate(Operator::Add, power, x);
+        let found = tape.finish(&[sum]).unwrap();
+        assert_eq!((found.len(), found.registers(), found.is_empty()), (3, 2, false));
+        assert_eq!(found.run(&[2.0]), [10.0]);
+        assert!(tape.finish(&[]).unwrap().is_empty());
     }
 
     /// Every function and operator at a point where it is smooth: its symbolic derivative, twice, against that of dual numbers.
