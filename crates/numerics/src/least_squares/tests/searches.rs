@@ -298,6 +298,30 @@ fn stationary_points_that_are_no_minima_are_left() {
     assert_close(&least(&saddle, &[0.0], &bounds).theta, &[-0.875_f64.sqrt()], 1e-9);
 }
 
+/// Its differences are taken over steps that suit the parameter, whatever its scale, and inwards at a bound.
+#[test]
+fn the_curvature_has_no_scale() {
+    for scale in [1e-3, 1.0, 1e3] {
+        // The saddle of the test above in x = scale p, at its minimum.
+        let saddle = model(2, 1, |p, i| {
+            let x = scale * p[0];
+            Some(if i == 0 { (x, vec![scale]) } else { (2.0 * (1.0 - x * x), vec![-4.0 * x * scale]) })
+        });
+        let minimum = free(&saddle, &[0.8 / scale]);
+        assert_close(&[minimum.certificate.least_curvature.unwrap()], &[14.0 / 15.0], 1e-4);
+        // x^2 + (1 + x^2)^2 at 0: half its second derivative is 3, and the square of the column is 1.
+        let valley = model(2, 1, |p, i| {
+            let x = scale * p[0];
+            Some(if i == 0 { (x, vec![scale]) } else { (1.0 + x * x, vec![2.0 * x * scale]) })
+        });
+        for [lower, upper] in [[-1.0, 1.0], [0.0, 1.0], [-1.0, 0.0]] {
+            let bounds = Bounds { lower: vec![lower / scale], upper: vec![upper / scale] };
+            let minimum = least(&valley, &[0.0], &bounds);
+            assert_close(&[minimum.certificate.least_curvature.unwrap()], &[3.0], 1e-4);
+        }
+    }
+}
+
 #[test]
 fn ends_that_are_no_minima_are_not_called_converged() {
     let backwards = model(3, 1, |p, i| Some((p[0] - i as f64, vec![-1.0])));
