@@ -5,7 +5,6 @@
     python validation/docs_table.py forms [--check]          # the same for the forms suite: with the whole catalogue, and with the truth as the only candidate
     python validation/docs_table.py ratios [--check]         # from benches/ratios.json, which benches/ratios.py measures
     python validation/docs_table.py mutation [--check]       # from validation/mutation.json, which validation/mutation.py measures
-    python validation/docs_table.py coverage [--check]       # from validation/coverage.json, which validation/coverage.py counts
     python validation/docs_table.py fuzz [--check]           # from fuzz/counts.tsv, to which fuzz/run adds
 
 A table stands between `<!-- table: NAME ... -->` and `<!-- end of table -->`; all else in the file is kept. `--check` writes nothing: its status is 1 if
@@ -101,7 +100,7 @@ FORMS_FRONT = (
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("what", choices=("verification", "diagnosis", "forms", "ratios", "mutation", "coverage", "fuzz"))
+    parser.add_argument("what", choices=("verification", "diagnosis", "forms", "ratios", "mutation", "fuzz"))
     parser.add_argument("--check", action="store_true", help="compare the pages, and write nothing")
     parser.add_argument("--root", type=Path, default=ROOT, help="folder of README.md and docs")
     arguments = parser.parse_args()
@@ -113,12 +112,11 @@ def main():
     elif arguments.what == "ratios":
         measured = json.loads((ROOT / "benches/ratios.json").read_text(encoding="utf-8"))
         tables = {"ratios": ratios(measured), "ratios-front": ratios(measured)}
-    elif arguments.what in ("mutation", "coverage"):
-        kept = ROOT / f"validation/{arguments.what}.json"
+    elif arguments.what == "mutation":
+        kept = ROOT / "validation/mutation.json"
         if not kept.exists():
-            parser.error(f"{kept} is not there: run validation/{arguments.what}.py for each crate")
-        table = {"mutation": mutation, "coverage": coverage}[arguments.what]
-        tables = {arguments.what: table(json.loads(kept.read_text(encoding="utf-8")))}
+            parser.error(f"{kept} is not there: run validation/mutation.py for each crate")
+        tables = {"mutation": mutation(json.loads(kept.read_text(encoding="utf-8")))}
     elif arguments.what == "fuzz":
         tables = {"fuzz": fuzz((ROOT / "fuzz/counts.tsv").read_text(encoding="utf-8"))}
     elif arguments.what == "forms":
@@ -173,16 +171,6 @@ def mutation(crates):
         low, high = (100 * bound for bound in interval(built - survive, built))
         share = f"{100 * (built - survive) / built:.1f} % [{low:.0f}, {high:.0f}]"
         cells = [crate, str(counts["mutants"]), str(counts["sample"]), str(counts["unviable"]), str(survive), share]
-        lines.append("| " + " | ".join(cells) + " |")
-    return "\n".join(lines)
-
-
-def coverage(crates):
-    """What share of the lines and regions of each crate its own tests run, and the module with the fewest."""
-    lines = ["| crate | modules | lines | regions | fewest lines |", "|---|---|---|---|---|"]
-    for crate, shares in crates.items():
-        module, fewest = min(shares["modules"].items(), key=lambda entry: entry[1]["lines"])
-        cells = [crate, str(len(shares["modules"])), f"{shares['lines']} %", f"{shares['regions']} %", f"`{module}`: {fewest['lines']} %"]
         lines.append("| " + " | ".join(cells) + " |")
     return "\n".join(lines)
 
