@@ -24,6 +24,9 @@ ROOT = Path(__file__).resolve().parent.parent
 KEPT = ROOT / "validation/mutation.json"
 OUTCOMES = ("caught", "timeout", "missed", "unviable")
 
+PROFILE = {"CARGO_INCREMENTAL": "1", "CARGO_PROFILE_DEV_DEBUG": "false", "CARGO_PROFILE_DEV_OPT_LEVEL": "1"}
+"""Compiling a mutant takes longer than its tests."""
+
 UNIT_S, ALL_S = 300, 1200
 """Seconds that the unit tests and all tests of a mutant may take: a loop without an end counts as caught."""
 
@@ -98,7 +101,7 @@ def _tested(tree, crate, mutants, which, limit_s):
     words = ["cargo", "mutants", "--in-place", "--package", f"bulge-{crate}", "--re", exactly, "--baseline", "skip", "--timeout", limit_s]
     words += ["--output", out, "--test-tool", tool, "--no-shuffle", "--colors", "never", "--", *which]
     # Its status is 2 or 3 if a mutant survives or takes too long.
-    subprocess.run([str(word) for word in words], cwd=tree, env={**os.environ, "CARGO_INCREMENTAL": "1", "CARGO_PROFILE_DEV_DEBUG": "false"}, check=False)
+    subprocess.run([str(word) for word in words], cwd=tree, env={**os.environ, **PROFILE}, check=False)
     chosen = set(mutants)
     # `--re` lets mutants that leave out a field of a struct through, whatever their names.
     read = {outcome: [name for name in (out / "mutants.out" / f"{outcome}.txt").read_text(encoding="utf-8").splitlines() if name in chosen] for outcome in OUTCOMES}

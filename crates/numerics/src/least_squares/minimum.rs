@@ -7,11 +7,11 @@ use super::singular::right_singular;
 use super::step::Step;
 use super::triangle::norm;
 
-/// A parameter isn't determined by the residuals if its component of a flat direction (a unit vector) exceeds
-/// this.
 /// Directions in which the residuals change by less than this fraction of the largest change are flat, with
 /// parameters scaled by the norms of their columns. No step is made along them, and they are reported.
 pub(super) const RANK_TOLERANCE: f64 = 1e-10;
+/// A parameter isn't determined by the residuals if its component of a flat direction (a unit vector) exceeds
+/// this.
 const PART_OF_FLAT: f64 = 1e-6;
 
 /// Why a search ended.
@@ -28,6 +28,9 @@ pub enum Reason {
     DecreaseTooSmall,
     /// All residuals are zero.
     ExactFit,
+    /// The gradient is zero as exactly as sums of squares tell, but the Jacobian is nearly singular, so that
+    /// the linearised residuals promise a decrease that isn't there.
+    GradientVanishes,
     /// Nothing to vary: no parameters, or all of them fixed.
     NothingFree,
     /// [`super::Options::max_evaluations`] was reached. Not converged.
@@ -185,6 +188,13 @@ pub(super) fn held_at(bounds: &Bounds, theta: &[f64], newton: &Step) -> Vec<Opti
         .collect()
 }
 
+/// Largest `|cos|` of the angle between the residuals and a column of the Jacobian, over some parameters.
+pub(super) fn gradient_cosine(linear: &Linear, of: impl Iterator<Item = usize>) -> f64 {
+    let (gradient, length) = (linear.gradient(), linear.cost.sqrt());
+    let cosine = |j: usize| part(gradient[j].abs(), linear.norms[j] * length);
+    of.map(cosine).fold(0.0, f64::max)
+}
+
 /// Ratio of two nonnegative numbers, 0 for 0/0.
 fn part(x: f64, of: f64) -> f64 {
     if x == 0.0 { 0.0 } else { x / of }
@@ -197,14 +207,12 @@ impl End<'_> {
         let at_bound = held_at(self.bounds, &theta, self.newton);
         let free: Vec<usize> = (0..k).filter(|j| at_bound[*j].is_none()).collect();
         let gradient = linear.gradient();
-        let length = linear.cost.sqrt();
-        let cosine = |j: usize| part(gradient[j].abs(), linear.norms[j] * length);
         let scaled: Vec<f64> = theta.iter().zip(&linear.norms).map(|(t, n)| t * n).collect();
         let spectrum = Spectrum::new(linear, &free);
         let mut certificate = Certificate {
             converged: self.reason.is_converged(),
             reason: self.reason,
-            gradient_cosine: free.iter().map(|j| cosine(*j)).fold(0.0, f64::max),
+            gradient_cosine: gradient_cosine(linear, free.iter().copied()),
             relative_step: part(norm(&self.newton.z), norm(&scaled)),
             relative_decrease: part(self.newton.predicted, linear.cost).min(1.0),
             rank: spectrum.rank,

@@ -6,7 +6,7 @@
 
 use super::curvature::{self, Probe};
 use super::linear::{Linear, decrease, linearise, values};
-use super::minimum::{End, Minimum, RANK_TOLERANCE, Reason};
+use super::minimum::{End, Minimum, RANK_TOLERANCE, Reason, gradient_cosine, held_at};
 use super::residuals::{Bounds, Residuals, Side};
 use super::step::{Step, StepBox, damped, of_length};
 use super::triangle::{Triangle, norm};
@@ -21,6 +21,9 @@ const POLISH: f64 = 1e-4;
 const TRIALS: usize = 100;
 /// A damping that keeps the triangle regular if norms are zero, but is too small to have an effect.
 pub(super) const LEAST_DAMPING: f64 = (1e-2 * RANK_TOLERANCE) * (1e-2 * RANK_TOLERANCE);
+/// A gradient of this cosine is none: with curvatures as large as the squares of the columns, it would lower the sum of squares by
+/// less than its rounding error.
+const NO_GRADIENT: f64 = 2e-8;
 /// Most times that the search leaves a saddle.
 const ESCAPES: usize = 10;
 
@@ -238,6 +241,9 @@ impl<'a, P: Residuals> Search<'a, P> {
                 {
                     return Reason::DecreaseTooSmall;
                 }
+                Progress::Stuck | Progress::Kink if self.has_no_gradient(&newton) => {
+                    return Reason::GradientVanishes;
+                }
                 Progress::Stuck => return Reason::Stagnated,
                 Progress::Kink => return Reason::Kink,
             }
@@ -261,6 +267,11 @@ impl<'a, P: Residuals> Search<'a, P> {
             return Some(Reason::Orthogonal);
         }
         (newton.predicted.sqrt() <= self.rounding_of_parameters()).then_some(Reason::StepBelowRounding)
+    }
+
+    fn has_no_gradient(&self, newton: &Step) -> bool {
+        let held = held_at(self.bounds, &self.theta, newton);
+        gradient_cosine(&self.linear, (0..held.len()).filter(|j| held[*j].is_none())) <= NO_GRADIENT
     }
 
     /// Change of the residuals from rounding the parameters.

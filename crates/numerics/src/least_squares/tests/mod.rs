@@ -1,5 +1,6 @@
 //! Problems with known solutions, for the tests of searches and profiles.
 
+mod classical;
 mod profiles;
 mod searches;
 

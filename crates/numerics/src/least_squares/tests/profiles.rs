@@ -51,6 +51,25 @@ fn profile_of_a_decay_agrees_with_its_closed_form() {
     assert!((upper - best) > 1.2 * (best - lower));
 }
 
+/// The others are predicted along the profile: in a linear problem each point is a minimum at once, so that it takes a linearisation
+/// and the check that it is one. The rise is quadratic, so that two points bracket the root of its root.
+#[test]
+fn a_profile_of_a_linear_problem_is_as_cheap_as_it_can_be() {
+    use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+    let asked = AtomicUsize::new(0);
+    let problem = model(9, 3, |p, i| {
+        if i == 0 {
+            asked.fetch_add(1, Relaxed);
+        }
+        let x = i as f64;
+        Some((p[0] + p[1] * x + p[2] * x * x - (x * x * 7.0 + 2.0 * x) % 11.0, vec![1.0, x, x * x]))
+    });
+    let minimum = free(&problem, &[0.0; 3]);
+    asked.store(0, Relaxed);
+    profile(&problem, &minimum, &Bounds::none(3), &Options::default(), 1, 4.0).unwrap();
+    assert_eq!(asked.load(Relaxed), 5);
+}
+
 #[test]
 fn open_profiles_say_why() {
     let (problem, usual) = (decay(12, [1.0, 1.0], in_order), Options::default());
@@ -90,4 +109,6 @@ fn profiles_refuse_what_is_no_minimum() {
     assert!(error.to_string().starts_with("parameter 1 cannot be profiled: the problem has 1"), "{error}");
     let error = profile(&problem, &minimum, &none, &usual, 0, -1.0).unwrap_err();
     assert_eq!(error.to_string(), "the option rise is -1; it must be positive and finite");
+    let error = profile(&problem, &minimum, &none, &usual, 0, f64::INFINITY).unwrap_err();
+    assert_eq!(error.to_string(), "the option rise is inf; it must be positive and finite");
 }

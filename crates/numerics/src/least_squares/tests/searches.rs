@@ -419,6 +419,8 @@ fn unusable_calls_say_what_is_wrong() {
         text(&[0.5, 2.0], &none, &options),
         "the option tolerance is 0; it must be above 0 and below 1"
     );
+    let options = Options { tolerance: 1.0, ..usual };
+    assert!(text(&[0.5, 2.0], &none, &options).starts_with("the option tolerance is 1;"));
     assert!(text(&[1e200, 2.0], &none, &usual).contains("residual 0 is -inf"));
     assert!(text(&[1e80, 2.0], &none, &usual).contains("overflows"));
     let undefined = model(1, 1, |_, _| None);
@@ -430,4 +432,22 @@ fn unusable_calls_say_what_is_wrong() {
     let infinite = model(2, 1, |_, i| Some((1.0, vec![1.0 / (1.0 - i as f64)])));
     let error = minimise(&infinite, &[1.0], &Bounds::none(1), &usual).unwrap_err();
     assert!(error.to_string().starts_with("the derivative of residual 1 by parameter 0 is inf"), "{error}");
+}
+
+/// Where a search had to end, its certificate says how far it still was: r = (10 x - 30, 15) at x = 1.
+#[test]
+fn a_certificate_measures_what_was_left() {
+    let line =
+        model(2, 1, |p, i| Some(if i == 0 { (10.0 * p[0] - 30.0, vec![10.0]) } else { (15.0, vec![0.0]) }));
+    let options = Options { max_evaluations: 1, ..Options::default() };
+    let end = minimise(&line, &[1.0], &Bounds::none(1), &options).unwrap();
+    let found = [
+        end.cost,
+        end.certificate.relative_decrease,
+        end.certificate.gradient_cosine,
+        end.certificate.relative_step,
+    ];
+    // 400 of 625; 200 by 10 times 25; a step of 2 from 1.
+    assert_eq!(end.certificate.reason, Reason::Budget);
+    assert_close(&found, &[625.0, 0.64, 0.8, 2.0], 1e-14);
 }
