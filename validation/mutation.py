@@ -36,6 +36,7 @@ def main():
     parser.add_argument("crate", help="without `bulge-`")
     parser.add_argument("--sample", type=int, default=200, help="how many mutants")
     parser.add_argument("--seed", type=int, default=1, help="another seed gives another sample")
+    parser.add_argument("--together", action="store_true", help="all tests at once, for a crate with few unit tests")
     parser.add_argument("--again", action="store_true", help="run only those that survived before")
     arguments = parser.parse_args()
     if shutil.which("cargo-mutants") is None:
@@ -54,7 +55,7 @@ def main():
         chosen = [name for name in mutants if _without_place(name) in survived]
     else:
         chosen = random.Random(arguments.seed).sample(mutants, min(arguments.sample, len(mutants)))
-    found = _run(tree, arguments.crate, chosen)
+    found = _run(tree, arguments.crate, chosen, arguments.together)
     survived = sorted(found["missed"])
     if arguments.again:
         counts = {**before, "survived": survived}
@@ -84,9 +85,9 @@ def _without_place(name):
     return re.sub(r":\d+:\d+:", ":", name)
 
 
-def _run(tree, crate, mutants):
+def _run(tree, crate, mutants, together):
     """Names of the mutants by what became of them: by the unit tests, and by all tests for those that survive."""
-    found = _tested(tree, crate, mutants, ["--lib"], UNIT_S)
+    found = {"missed": mutants} if together else _tested(tree, crate, mutants, ["--lib"], UNIT_S)
     rest = _tested(tree, crate, found.pop("missed"), ["--lib", "--bins", "--tests"], ALL_S)
     return {outcome: [*found.get(outcome, []), *rest[outcome]] for outcome in OUTCOMES}
 

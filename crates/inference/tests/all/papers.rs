@@ -25,7 +25,7 @@ fn second_generation() -> String {
     const F: [f64; 5] = [146_099.0, 128_611.6, -7178.93, 171.623, -2.0413];
     let mut csv = "pressure [bar],contraction [%],force [N]\n".to_owned();
     for p in [1.0, 3.0] {
-        for e in (2..36).map(f64::from) {
+        for e in (2..36).step_by(2).map(f64::from) {
             let force = p * 0.11 * 0.11 * (F[0] / e + F[1] + e * (F[2] + e * (F[3] + e * F[4])));
             if (100.0..3000.0).contains(&force) {
                 writeln!(csv, "{p},{e},{force:.1}").unwrap();
@@ -44,8 +44,8 @@ fn hysteresis_loops() -> String {
         let p = f64::from(sweep);
         let branch =
             |law: [f64; 5], e: f64| (p + law[0]) * (law[1] * e).exp() + law[2] * p * e + law[3] * p + law[4];
-        let up = (0..=50).map(|i| (SHORTENS, 0.5 * f64::from(i)));
-        let down = (0..=50).rev().map(|i| (LENGTHENS, 0.5 * f64::from(i)));
+        let up = (0..=25).map(|i| (SHORTENS, f64::from(i)));
+        let down = (0..=25).rev().map(|i| (LENGTHENS, f64::from(i)));
         for (law, e) in up.chain(down) {
             let force = branch(law, e);
             if force > 20.0 {

@@ -9,16 +9,17 @@ use std::ops::Range;
 
 type Row = Option<(f64, Vec<f64>)>;
 
-/// A problem from a function of the parameters and the row; `None` where it has no value.
-struct Model<F> {
+/// A problem from a function of the parameters and the row; `None` where it has no value. A boxed function, so that the searches are
+/// compiled once for all problems.
+struct Model<'a> {
     rows: usize,
     parameters: usize,
     block: usize,
     joint: bool,
-    row: F,
+    row: Box<dyn Fn(&[f64], usize) -> Row + Sync + 'a>,
 }
 
-impl<F: Fn(&[f64], usize) -> Row + Sync> Residuals for Model<F> {
+impl Residuals for Model<'_> {
     type Error = String;
 
     fn rows(&self) -> usize {
@@ -57,12 +58,12 @@ impl<F: Fn(&[f64], usize) -> Row + Sync> Residuals for Model<F> {
     }
 }
 
-fn model<F: Fn(&[f64], usize) -> Row + Sync>(rows: usize, parameters: usize, row: F) -> Model<F> {
-    Model { rows, parameters, block: 4096, joint: false, row }
+fn model<'a>(rows: usize, parameters: usize, row: impl Fn(&[f64], usize) -> Row + Sync + 'a) -> Model<'a> {
+    Model { rows, parameters, block: 4096, joint: false, row: Box::new(row) }
 }
 
 /// `r = (10 (y - x^2), 1 - x)`.
-fn rosenbrock() -> Model<impl Fn(&[f64], usize) -> Row + Sync> {
+fn rosenbrock() -> Model<'static> {
     model(2, 2, |p, row| {
         Some(match row {
             0 => (10.0 * (p[1] - p[0] * p[0]), vec![-20.0 * p[0], 10.0]),
@@ -72,11 +73,7 @@ fn rosenbrock() -> Model<impl Fn(&[f64], usize) -> Row + Sync> {
 }
 
 /// A decay `a exp(-b t)` at `t = 0, 0.5, ...` with errors of some per cent; parameters in units of `scale`, rows in the order `order`.
-fn decay(
-    rows: usize,
-    scale: [f64; 2],
-    order: fn(usize, usize) -> usize,
-) -> Model<impl Fn(&[f64], usize) -> Row + Sync> {
+fn decay(rows: usize, scale: [f64; 2], order: fn(usize, usize) -> usize) -> Model<'static> {
     model(rows, 2, move |p, row| {
         let (i, a, b) = (order(row, rows), p[0] * scale[0], p[1] * scale[1]);
         let e = (-b * time(i)).exp();
@@ -116,7 +113,7 @@ fn bits(x: &[f64]) -> Vec<u64> {
 }
 
 /// `((x^2 - 1), (x - 1)/10)`: the least minimum 0 at 1, and another near -1.
-fn two_minima() -> Model<impl Fn(&[f64], usize) -> Row + Sync> {
+fn two_minima() -> Model<'static> {
     model(2, 1, |p, i| {
         Some(if i == 0 { (p[0] * p[0] - 1.0, vec![2.0 * p[0]]) } else { (0.1 * (p[0] - 1.0), vec![0.1]) })
     })
