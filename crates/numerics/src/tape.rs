@@ -433,6 +433,15 @@ mod tests {
         let [value] = found.run(&[2.0]);
         assert!((value - 10.0_f64).abs() < 1e-15);
         assert!(tape.finish(&[]).unwrap().is_empty());
+        // Constants are gathered, whichever side they are on: x 2 3 is 6 x.
+        let [two, three, six] = [2.0, 3.0, 6.0].map(|value| tape.constant(value));
+        let twice = tape.operate(Operator::Multiply, x, two);
+        let gathered = tape.operate(Operator::Multiply, twice, three);
+        assert_eq!(gathered, tape.operate(Operator::Multiply, six, x));
+        // A power is that of its operand.
+        let root = tape.real_power(gathered, 1.5);
+        let [value] = tape.finish(&[root]).unwrap().run(&[6.0]);
+        assert!((value - 216.0_f64).abs() < 1e-12, "{value}");
     }
 
     /// Every function and operator at a point where it is smooth: its symbolic derivative, twice, against that of dual numbers.

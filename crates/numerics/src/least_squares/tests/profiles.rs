@@ -109,6 +109,8 @@ fn profiles_refuse_what_is_no_minimum() {
     assert!(error.to_string().starts_with("parameter 1 cannot be profiled: the problem has 1"), "{error}");
     let error = profile(&problem, &minimum, &none, &usual, 0, -1.0).unwrap_err();
     assert_eq!(error.to_string(), "the option rise is -1; it must be positive and finite");
-    let error = profile(&problem, &minimum, &none, &usual, 0, f64::INFINITY).unwrap_err();
-    assert_eq!(error.to_string(), "the option rise is inf; it must be positive and finite");
+    for wrong in [0.0, f64::INFINITY] {
+        let error = profile(&problem, &minimum, &none, &usual, 0, wrong).unwrap_err();
+        assert_eq!(error.to_string(), format!("the option rise is {wrong}; it must be positive and finite"));
+    }
 }

@@ -160,6 +160,13 @@ fn straight_line_has_the_textbook_covariance() {
     let deviation = minimum.standard_deviations(4.0)[1].unwrap();
     assert_close(&[deviation], &[2.0 / 82.5_f64.sqrt()], 1e-13);
     assert!(minimum.certificate.least_curvature.unwrap() > 0.0);
+    // R^T R = J^T J with an upper triangle: 10, sum x = 45, sum x^2 = 285.
+    let [a, b, zero, c] = minimum.r[..] else { panic!("{:?}", minimum.r) };
+    assert_close(&[a * a, a * b, b * b + c * c, zero], &[10.0, 45.0, 285.0, 0.0], 1e-13);
+    // Columns of unit length at an angle of cosine c have the singular values sqrt(1 + c) and sqrt(1 - c).
+    let cosine = 45.0 / 2850.0_f64.sqrt();
+    let condition = ((1.0 + cosine) / (1.0 - cosine)).sqrt();
+    assert_close(&[minimum.certificate.condition], &[condition], 1e-12);
 }
 
 #[test]
@@ -276,10 +283,12 @@ fn a_million_rows_pass_through_in_blocks() {
 
 #[test]
 fn stationary_points_that_are_no_minima_are_left() {
-    // Maximum of (x^2 - 1)^2 with a zero Jacobian.
-    let hill = model(1, 1, |p, _| Some((p[0] * p[0] - 1.0, vec![2.0 * p[0]])));
-    let minimum = free(&hill, &[0.0]);
-    assert_close(&[minimum.theta[0].abs()], &[1.0], 1e-12);
+    // Maximum of (x^2 - 1)^2 with a zero Jacobian, in any unit.
+    for unit in [1e-4, 1.0, 1e4] {
+        let hill = model(1, 1, |p, _| Some((unit * (p[0] * p[0] - 1.0), vec![2.0 * unit * p[0]])));
+        let minimum = free(&hill, &[0.0]);
+        assert_close(&[minimum.theta[0].abs()], &[1.0], 1e-12);
+    }
     // x^2 + 4 (1 - x^2)^2 at 0: full rank, J^T r = 0, second derivative of the half: 1 - 8. The minima: x^2 = 1 - 1/8.
     let saddle = model(2, 1, |p, i| {
         Some(if i == 0 { (p[0], vec![1.0]) } else { (2.0 * (1.0 - p[0] * p[0]), vec![-4.0 * p[0]]) })
