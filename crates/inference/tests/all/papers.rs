@@ -25,7 +25,7 @@ fn second_generation() -> String {
     const F: [f64; 5] = [146_099.0, 128_611.6, -7178.93, 171.623, -2.0413];
     let mut csv = "pressure [bar],contraction [%],force [N]\n".to_owned();
     for p in [1.0, 3.0] {
-        for e in (2..36).step_by(2).map(f64::from) {
+        for e in (2..36).map(f64::from) {
             let force = p * 0.11 * 0.11 * (F[0] / e + F[1] + e * (F[2] + e * (F[3] + e * F[4])));
             if (100.0..3000.0).contains(&force) {
                 writeln!(csv, "{p},{e},{force:.1}").unwrap();
