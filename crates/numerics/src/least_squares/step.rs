@@ -127,20 +127,17 @@ impl ActiveSet<'_> {
                     continue;
                 }
             }
-            // Fraction of the way to its target at which a variable reaches its bound.
+            // Fraction of the way to its target at which a variable reaches its bound; infinite if it doesn't.
             let part = |j: usize, target: f64| {
-                let limit = if target < self.z[j] { self.limits.lower[j] } else { self.limits.upper[j] };
-                if target >= self.limits.lower[j] && target <= self.limits.upper[j] {
-                    1.0
-                } else {
-                    ((limit - self.z[j]) / (target - self.z[j])).clamp(0.0, 1.0)
+                let [lower, upper] = [self.limits.lower[j], self.limits.upper[j]];
+                if (lower..=upper).contains(&target) {
+                    return f64::INFINITY;
                 }
+                ((target.clamp(lower, upper) - self.z[j]) / (target - self.z[j])).clamp(0.0, 1.0)
             };
             let parts: Vec<f64> = free.iter().zip(&target).map(|(j, t)| part(*j, *t)).collect();
-            let outside = |j: usize, t: f64| t < self.limits.lower[j] || t > self.limits.upper[j];
-            let blocked: Vec<bool> = free.iter().zip(&target).map(|(j, t)| outside(*j, *t)).collect();
-            let least = parts.iter().zip(&blocked).filter(|(_, b)| **b).map(|(p, _)| *p).fold(1.0, f64::min);
-            if !blocked.contains(&true) {
+            let least = parts.iter().copied().fold(f64::INFINITY, f64::min);
+            if least.is_infinite() {
                 for (j, t) in free.iter().zip(&target) {
                     self.z[*j] = *t;
                 }
@@ -148,7 +145,7 @@ impl ActiveSet<'_> {
             }
             // All variables stop at the first bound on the way; those that reach it are held there.
             for (i, j) in free.iter().enumerate() {
-                if blocked[i] && parts[i] <= least {
+                if parts[i] <= least {
                     let side = if target[i] < self.z[*j] { Side::Lower } else { Side::Upper };
                     self.z[*j] = match side {
                         Side::Lower => self.limits.lower[*j],
