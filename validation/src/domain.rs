@@ -141,7 +141,7 @@ impl Count {
 }
 
 /// Number of questions of the check, and the fraction of them that may fail to converge.
-const SAMPLE: (usize, f64) = (2000, 3e-3);
+const SAMPLE: (usize, f64) = (1000, 3e-3);
 
 /// A sample of the map: no wrong answer, no panic, a bounded number of evaluations, and almost no failure to
 /// converge.
@@ -168,7 +168,7 @@ pub(crate) fn sample() -> Check {
 }
 
 /// Number of questions whose solutions are also searched for by the first integrals.
-const SEARCHED: usize = 30;
+const SEARCHED: usize = 15;
 
 /// The equilibria of random muscles, searched for by their two first integrals.
 pub(crate) fn by_integrals() -> Check {

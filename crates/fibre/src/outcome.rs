@@ -177,8 +177,8 @@ impl Problem {
                 match groups.count() {
                     0..=2 => by_groups::<N, 4>(plain, net, &groups, contraction, (from, ending)),
                     3..=4 => by_groups::<N, 6>(plain, net, &groups, contraction, (from, ending)),
-                    5..=6 => by_groups::<N, 8>(plain, net, &groups, contraction, (from, ending)),
-                    _ => by_groups::<N, 12>(plain, net, &groups, contraction, (from, ending)),
+                    // More take further integrations, and are rare: each size is compiled by itself.
+                    _ => by_groups::<N, 8>(plain, net, &groups, contraction, (from, ending)),
                 }
             }
         })
