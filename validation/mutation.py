@@ -51,8 +51,9 @@ def main():
     empty = {"mutants": len(mutants), "sample": 0, "unviable": 0, "survived": []}
     if arguments.again:
         # Lines move; what is done to which function stays.
-        survived = {_without_place(name) for name in before["survived"]}
-        found = _run(tree, arguments.crate, [name for name in mutants if _without_place(name) in survived], arguments.together)
+        moved = {_without_place(name) for name in before["survived"] if name not in mutants}
+        chosen = [name for name in mutants if name in before["survived"] or _without_place(name) in moved]
+        found = _run(tree, arguments.crate, chosen, arguments.together)
         counts = {**before, "survived": sorted(found["missed"])}
         _keep(arguments.crate, counts)
     else:

@@ -47,5 +47,7 @@ mod tests {
         }
         // The least at an end is kept.
         assert_eq!(golden((0.0, 0.0), [0.0, 1.0], 1e-6, |place| *place, |x| (x, x)), (0.0, 0.0));
+        // So is the first place where all others cost as much.
+        assert_eq!(golden((0.4, 2.0), [0.0, 1.0], 1e-6, |place| *place, |x| (x, 2.0)), (0.4, 2.0));
     }
 }

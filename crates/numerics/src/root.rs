@@ -111,6 +111,14 @@ mod tests {
         assert!(seen.iter().all(|x| *x > 0.0 && *x < 1.0) && seen.len() < 30);
     }
 
+    /// A jump has no zero: what is returned is a number next to it.
+    #[test]
+    fn newton_ends_at_a_jump() {
+        let jump = |x: f64| Ok::<_, Infallible>((if x < 0.3 { 1.0 } else { -1.0 }, 0.0));
+        let found = newton_bracketed(jump, 0.0, 1.0, 0.5, [0.0, 0.0]).unwrap();
+        assert!((found - 0.3).abs() < 1e-15, "{found}");
+    }
+
     #[test]
     fn newton_passes_errors_on() {
         let failing = |_: f64| Err::<(f64, f64), _>("no");

@@ -392,7 +392,7 @@ impl<'a, P: Residuals> Search<'a, P> {
         if ratio <= 0.25 {
             // Minimum of the parabola through both sums of squares with the slope at the first point.
             let part = slope / (2.0 * (slope + actual));
-            let part = if actual < 0.0 && part.is_finite() { part.clamp(0.1, 0.5) } else { 0.5 };
+            let part = if part.is_finite() { part.clamp(0.1, 0.5) } else { 0.5 };
             self.radius = part * length;
         } else if full || ratio >= 0.75 {
             self.radius = 2.0 * length;

@@ -33,6 +33,7 @@ fn boxes_agree_with_trying_every_active_set() {
         seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
         f64::from(seed >> 8) / f64::from(1_u32 << 23) - 1.0
     };
+    let mut steps = 0;
     for _ in 0..200 {
         let (a, b): (Vec<f64>, Vec<f64>) =
             ((0..15).map(|_| random()).collect(), (0..5).map(|_| random()).collect());
@@ -68,7 +69,10 @@ fn boxes_agree_with_trying_every_active_set() {
             }
         }
         assert!((found.cost - best).abs() < 1e-10, "{} {best}", found.cost);
+        steps += found.iterations;
     }
+    // A step that ends on a wrong face would be found out, but cost another.
+    assert_eq!(steps, 200);
 }
 
 #[test]
@@ -112,6 +116,12 @@ fn rosenbrock_free_and_bounded() {
     let x = minimum.theta[0];
     assert!((200.0 * x * (x * x - 3.0) + x - 1.0).abs() < 1e-9 && x > 1.7);
     assert_eq!(minimum.theta[1].to_bits(), 3.0_f64.to_bits());
+    // A fixed parameter is held even where nothing pulls at it.
+    let apart =
+        model(2, 2, |p, i| Some(if i == 0 { (p[0] - 1.0, vec![1.0, 0.0]) } else { (p[1], vec![0.0, 1.0]) }));
+    let minimum = least(&apart, &[0.0, 0.0], &Bounds::none(2).with_fixed(1, 0.0));
+    assert_eq!(minimum.certificate.at_bound, [None, Some(Side::Lower)]);
+    assert_eq!(minimum.covariance(1.0), [1.0, 0.0, 0.0, 0.0]);
     let all = minimise(
         &rosenbrock(),
         &[0.0, 3.0],
@@ -389,9 +399,16 @@ fn trial_points_without_value_shorten_the_step() {
         assert!(minimum.certificate.converged);
         assert_close(&minimum.theta, &[1e-3], 1e-12);
     }
-    // Derivatives that fail at points where the residuals don't.
-    let problem = model(1, 1, |p, _| Some((p[0] - 4.0, vec![if p[0] > 8.0 { f64::NAN } else { 0.1 }])));
-    assert!(minimise(&problem, &[1.0], &Bounds::none(1), &Options::default()).is_ok());
+    // Beyond 4.5 the residual, or only its derivative, has no value. The derivative is too small, so that the first step goes to 4.67.
+    for (fails, work) in [(true, [85, 86, 87]), (false, [85, 86, 88])] {
+        let problem = model(1, 1, move |p, _| {
+            let beyond = p[0] > 4.5;
+            (!(beyond && fails)).then(|| (p[0] - 4.0, vec![if beyond { f64::NAN } else { 0.6 }]))
+        });
+        let end = minimise(&problem, &[3.0], &Bounds::none(1), &Options::default()).unwrap();
+        assert!((end.theta[0] - 4.0).abs() < 1e-9, "{end:?}");
+        assert_eq!([end.iterations, end.evaluations, end.linearisations], work);
+    }
 }
 
 #[test]
