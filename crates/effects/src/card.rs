@@ -343,3 +343,31 @@ impl<'a> ParameterCard<'a> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bulge_muscles::preset;
+
+    /// Multiples of the rest length become metres; absolute numbers are kept in the unit in which they are stated.
+    #[test]
+    fn cards_are_in_si_for_a_muscle() {
+        let muscle = preset("dmsp-20-250").unwrap();
+        let multiple = ParameterCard::multiple("l", ("mm", 1e-3), Parameter::Length, (0.5, 2.0), "a length")
+            .prior(1.0, 0.1);
+        let multiple = multiple.plausible(0.8, 1.2).off_at(0.96);
+        let of = multiple.of(&muscle);
+        let close = |found: f64, of_length: f64| (found - 0.25 * of_length).abs() < 1e-15;
+        assert!(close(of.low, 0.5) && close(of.high, 2.0) && close(of.typical, 1.0) && close(of.off, 0.96));
+        let (mean, sd) = of.prior.unwrap();
+        let (low, high) = of.plausible.unwrap();
+        assert!(close(mean, 1.0) && close(sd, 0.1) && close(low, 0.8) && close(high, 1.2));
+        assert!(of.relative_to.is_none() && multiple.relative_to.is_some());
+        let force =
+            ParameterCard::new("f", ("kN", 1e3), (0.0, 2.0), 1.0, "a force").prior(1.0, 0.5).off_at(0.1);
+        let force = force.plausible(0.5, 1.5).key("force").reciprocal("g", "1/kN", 1e-3).of(&muscle);
+        assert_eq!((force.low, force.high, force.typical, force.off), (0.0, 2e3, 1e3, 100.0));
+        assert_eq!((force.prior, force.plausible), (Some((1e3, 500.0)), Some((500.0, 1.5e3))));
+        assert_eq!((force.key, force.reciprocal), ("force", Some(("g", "1/kN", 1e-3))));
+    }
+}

@@ -390,3 +390,29 @@ impl Page {
         self.line("");
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Catalogue;
+
+    #[test]
+    fn a_page_says_what_an_effect_belongs_to() {
+        let page = |name: &str| describe(Catalogue::builtin().find(name).unwrap().as_ref());
+        assert!(page("coulomb-friction").starts_with(
+            "coulomb-friction: Constant friction\nload; pleated and braided muscles; adds a force to that of the \
+             equilibrium\n"
+        ));
+        let of_braids = "geometry; braided muscles; changes the muscle whose equilibrium is solved\n";
+        assert!(page("braid-angle-error").contains(of_braids));
+    }
+
+    /// An equation is cut at a blank outside parentheses, if what fits says anything.
+    #[test]
+    fn an_equation_is_cut_where_it_makes_sense() {
+        assert_eq!(shortened("F = a (b + c) d,", 15), "F = a (b + c) d");
+        assert_eq!(shortened("F = a (b + c) + d", LEAST_EQUATION), "F = a ...");
+        assert_eq!(shortened("F = a (b + c) + d", LEAST_EQUATION - 1), "");
+        assert_eq!(shortened("(F - a*b*c*d*e)", LEAST_EQUATION), "");
+    }
+}

@@ -333,7 +333,6 @@ fn sentences_of_a_diagnosis_agree_with_each_other_and_a_tolerance_only_weakens_t
     let three = with(&folder, "bladder-elasticity=0.31 MPa,coulomb-friction=14 N,force-lag=0.3 s");
     let cases = [
         ("adequate", case("null-005")),
-        ("missing", case("confusable-011")),
         ("missing", case("pair-010")),
         ("unknown", case("unknown-one-way-2")),
         ("cannot-tell", [off, muscle.clone()]),

@@ -74,3 +74,21 @@ pub(crate) fn nearest<'n>(word: &str, names: impl IntoIterator<Item = &'n str>) 
     let closest = names.into_iter().map(|name| (slips(name), name)).min_by_key(|(slips, _)| *slips);
     closest.filter(|(slips, _)| *slips <= (length / 3).max(usize::from(length == 2))).map(|(_, name)| name)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// One slip in three letters, none in a single one.
+    #[test]
+    fn what_was_meant_is_near() {
+        let names = ["eps", "pressure", "p"];
+        assert_eq!(nearest("esp", names), Some("eps"));
+        assert_eq!(nearest("Pressure ", names), Some("pressure"));
+        assert_eq!(nearest("pleasure", names), Some("pressure"));
+        assert_eq!(nearest("pleasant", names), None);
+        assert_eq!(nearest("xyz", names), None);
+        assert_eq!(nearest("q", names), None);
+        assert_eq!(nearest(&"p".repeat(65), names), None);
+    }
+}
