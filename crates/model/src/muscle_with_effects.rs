@@ -405,6 +405,40 @@ mod tests {
         assert!(muscle.solve(bar3(), Given::Force(1e6), Approach::Auto).is_err());
     }
 
+    /// Friction of 14 N is pulled against while the muscle lengthens, and lost while it shortens.
+    #[test]
+    fn friction_acts_against_the_motion() {
+        for (tables, friction) in
+            [("[effects.coulomb-friction]\nforce = \"14 N\"", 14.0), (HOOP, 0.0), ("", 0.0)]
+        {
+            let muscle = braid(tables);
+            let rest = muscle.solve(bar3(), Given::Contraction(0.1), Approach::Auto).unwrap();
+            for direction in [1.0, 0.0, -1.0] {
+                let moving = muscle.force_while(&rest, direction).unwrap();
+                assert!((moving - rest.force_n + direction * friction).abs() < 1e-9, "{tables} {moving}");
+            }
+        }
+    }
+
+    /// Characteristics are asked for by the contraction of the stated length, as a single equilibrium is.
+    #[test]
+    fn isobars_are_made_of_single_equilibria() {
+        for tables in ["[effects.fibre-length]\nexcess = \"1 %\"", HOOP] {
+            let muscle = braid(tables);
+            let found = muscle.isobars(&[bar3()], &[0.01, 0.03], Approach::Auto).unwrap();
+            for (point, contraction) in found[0].points.iter().zip([0.01, 0.03]) {
+                let alone = muscle.solve(bar3(), Given::Contraction(contraction), Approach::Auto).unwrap();
+                assert!(
+                    (point.force_n / alone.force_n - 1.0).abs() < 1e-9,
+                    "{} {}",
+                    point.force_n,
+                    alone.force_n
+                );
+            }
+            assert_eq!(found[0].points.len(), 2, "{tables}: {found:?}");
+        }
+    }
+
     #[test]
     fn other_fibres_are_asked_for_by_the_stated_length() {
         let muscle = braid("[effects.fibre-length]\nexcess = \"1 %\"");

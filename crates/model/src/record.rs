@@ -406,6 +406,52 @@ mod tests {
     }
 
     #[test]
+    fn groups_are_their_means() {
+        let at = |i: u32| {
+            let x = f64::from(i * i);
+            Moment {
+                direction: 1.0,
+                pressure_direction: 1.0,
+                rate: 2.0 * x,
+                pressure_rate: 3.0 * x,
+                time: 4.0 * x,
+                clock: 5.0 * x,
+                temperature: 6.0 * x,
+                cycle: 7.0 * x,
+                largest: 8.0 * x,
+                begins: i == 0,
+                ..Moment::at_rest(1e5 + x, 0.01 * x)
+            }
+        };
+        let force = vec![0.0, 1.0, 4.0, 9.0];
+        let record =
+            Record::from_moments((0..4).map(at).collect(), force, std::iter::once(0..4).collect()).unwrap();
+        let record = record.with_force_sd(vec![1.0, 2.0, 3.0, 4.0]);
+        let sweeps: Vec<Range<usize>> = std::iter::once(0..2).collect();
+        let groups = [vec![0], vec![1, 2, 3]];
+        let found = record.averaged(&groups, vec![10.0, 20.0], sweeps.clone()).unwrap();
+        // The mean of 1, 4 and 9, and the last row for the largest so far.
+        let (x, moment) = (14.0 / 3.0, found.moments()[1]);
+        let close =
+            |found: f64, expected: f64| assert!((found - expected).abs() < 1e-12 * expected, "{found}");
+        close(moment.pressure, 1e5 + x);
+        close(moment.contraction, 0.01 * x);
+        for (number, times) in
+            [moment.rate, moment.pressure_rate, moment.time, moment.clock, moment.temperature, moment.cycle]
+                .into_iter()
+                .zip([2.0, 3.0, 4.0, 5.0, 6.0, 7.0])
+        {
+            close(number, times * x);
+        }
+        close(moment.largest, 72.0);
+        assert!(found.moments()[0].begins && !moment.begins);
+        assert_eq!((found.force(), found.force_sd()), (&[10.0, 20.0][..], Some(&[1.0, 3.0][..])));
+        let lost = [vec![0], vec![]];
+        assert!(record.averaged(&lost, vec![10.0, 20.0], sweeps.clone()).is_none());
+        assert!(record.averaged(&groups, vec![10.0], sweeps).is_none());
+    }
+
+    #[test]
     fn copies_with_other_forces_share_what_was_moved() {
         let moments: Vec<Moment> = (0..5).map(|i| Moment::at_rest(1e5, 0.01 * f64::from(i))).collect();
         let record = Record::from_moments(moments, vec![1.0; 5], std::iter::once(0..5).collect());
