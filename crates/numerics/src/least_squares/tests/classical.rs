@@ -159,9 +159,9 @@ const PROBLEMS: [Problem; 9] = [
             let t = (i as f64 + 1.0) / 29.0;
             let (mut sum, mut slope, mut power) = (x[0], X::from(0.0), 1.0);
             for (j, x) in x.iter().enumerate().take(6).skip(1) {
-                slope = slope + *x * (j as f64 * power);
+                slope += *x * (j as f64 * power);
                 power *= t;
-                sum = sum + *x * power;
+                sum += *x * power;
             }
             slope - sum * sum - 1.0
         },

@@ -8,6 +8,7 @@ use super::*;
 use std::ops::Range;
 
 type Row = Option<(f64, Vec<f64>)>;
+type RowOf<'a> = dyn Fn(&[f64], usize) -> Row + Sync + 'a;
 
 /// A problem from a function of the parameters and the row; `None` where it has no value. A boxed function, so that the searches are
 /// compiled once for all problems.
@@ -16,7 +17,7 @@ struct Model<'a> {
     parameters: usize,
     block: usize,
     joint: bool,
-    row: Box<dyn Fn(&[f64], usize) -> Row + Sync + 'a>,
+    row: Box<RowOf<'a>>,
 }
 
 impl Residuals for Model<'_> {
