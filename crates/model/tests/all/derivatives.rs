@@ -9,7 +9,7 @@
 use bulge_effects::law::{LAWS, LawGeometry};
 use bulge_effects::{Catalogue, Group, Moment};
 use bulge_model::{Model, Record, Wanted};
-use bulge_muscles::{Kind, Muscle, Parameter, preset};
+use bulge_muscles::{Kind, Muscle, Parameter, Quantity, preset};
 use bulge_numerics::Random;
 
 /// Loops with inner reversals at two random pressures, with time, temperature and two cycles.
@@ -286,4 +286,56 @@ fn a_specimen_like_the_muscle_changes_nothing() {
             assert_eq!(bits(&found[0]), bits(&found[1]), "{}", effect.card().name);
         }
     }
+}
+
+fn one_effect(muscle: &Muscle, name: &str) -> Model {
+    Model::new(muscle).with(Catalogue::builtin().find(name).unwrap(), None).unwrap()
+}
+
+fn at_contractions(pressure: f64, contractions: &[f64]) -> Record {
+    let moments: Vec<Moment> = contractions.iter().map(|e| Moment::at_rest(pressure, *e)).collect();
+    let rows = moments.len();
+    Record::from_moments(moments, vec![0.0; rows], std::iter::once(0..rows).collect()).unwrap()
+}
+
+/// A frame that gives shortens the muscle by F/k: the force is that of the muscle alone at e + F/(k l0).
+#[test]
+fn a_soft_frame_is_a_shorter_muscle() {
+    for muscle in muscles() {
+        let model = one_effect(&muscle, "frame-compliance");
+        let readings = [0.04, 0.08, 0.12];
+        // 2 um/N, proportional to the force.
+        let force =
+            model.evaluate(&at_contractions(2e5, &readings), &[2e-6, 1.0], &Wanted::default()).unwrap().force;
+        let length = muscle.length().si();
+        let shorter: Vec<f64> = readings.iter().zip(&force).map(|(e, f)| e + 2e-6 * f / length).collect();
+        let alone = Model::new(&muscle).evaluate(&at_contractions(2e5, &shorter), &[], &Wanted::default());
+        for (force, alone) in force.iter().zip(alone.unwrap().force) {
+            assert!((force - alone).abs() < 1e-9 * alone, "{force} {alone}");
+        }
+    }
+}
+
+/// Fibres of unequal length: the mean over three nodes of Gauss and Hermite, at e and e +- sqrt(3) sigma.
+#[test]
+fn uneven_fibres_pull_the_mean_force() {
+    let muscle = &muscles()[0];
+    let (e, sigma) = (0.03, 0.004);
+    let wide = sigma * 3.0_f64.sqrt();
+    let mean = one_effect(muscle, "uneven-fibres");
+    let mean = mean.evaluate(&at_contractions(2e5, &[e]), &[sigma], &Wanted::default()).unwrap().force[0];
+    let alone = Model::new(muscle);
+    let alone = alone
+        .evaluate(&at_contractions(2e5, &[e - wide, e, e + wide]), &[], &Wanted::default())
+        .unwrap()
+        .force;
+    let expected = alone[0] / 6.0 + 2.0 / 3.0 * alone[1] + alone[2] / 6.0;
+    assert!((mean - expected).abs() < 1e-9 * expected, "{mean} {expected}");
+}
+
+#[test]
+fn parameters_are_called_by_their_effect() {
+    let model = one_effect(&muscles()[0], "frame-compliance");
+    let labels: Vec<String> = model.parameters().iter().map(bulge_model::ModelParameter::label).collect();
+    assert_eq!(labels, ["frame-compliance.compliance", "frame-compliance.power"]);
 }
