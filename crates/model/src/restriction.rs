@@ -282,6 +282,25 @@ mod tests {
         assert_eq!([chain.parameters()[0].tied, chain.parameters()[1].tied], [Some(root); 2]);
     }
 
+    /// Numbers of all specimens can follow one that they share; a shared one can't follow those of specimens, which differ.
+    #[test]
+    fn ties_across_specimens() {
+        let muscle = from_toml(&format!("{BRAID}[specimens.2]\nlength = \"80 mm\"\n"), "b").unwrap();
+        let catalogue = Catalogue::builtin();
+        let tied = |number: &str, to: &str| {
+            let restriction = Restriction { number: name(number), says: Says::Tied(name(to)) };
+            let base = Model::new(&muscle).for_specimens(&["1".to_owned(), "2".to_owned()]).unwrap();
+            let model = ["coulomb-friction", "force-offset"]
+                .into_iter()
+                .fold(base.restricted(&[restriction]), |model, effect| {
+                    model.with(catalogue.find(effect).unwrap(), None).unwrap()
+                });
+            model.parameters().iter().map(|p| p.tied).collect::<Vec<_>>()
+        };
+        assert_eq!(tied("force-offset.offset", "coulomb-friction.force"), [None, Some(0), Some(0)]);
+        assert_eq!(tied("coulomb-friction.force", "force-offset.offset"), [None; 3]);
+    }
+
     /// The derivative by a parameter is the sum of those by all parameters tied to it, for load effects and
     /// for shape effects.
     #[test]

@@ -61,3 +61,25 @@ pub fn specimen(muscle: &Muscle, name: &str, known: &[Known]) -> Result<(Muscle,
     }
     Ok((own, all))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bulge_effects::{Catalogue, known};
+    use bulge_muscles::from_toml;
+
+    /// A learnt radius keeps its ratio to the stated one: 10.5 of 10 mm, and 8.4 of 8 mm or 12.6 of 12 mm.
+    #[test]
+    fn a_learnt_radius_is_that_of_the_specimen() {
+        let text = "name = \"hose\"\nkind = \"braided\"\nlength = \"250 mm\"\nradius = \"10 mm\"\nbraid_angle = \"25 deg\"\n\
+                    [effects.radius-error]\nradius = \"10.5 mm\"\n[specimens.thin]\nradius = \"8 mm\"\n\
+                    [specimens.wide]\nradius = \"12 mm\"\n[specimens.short]\nlength = \"100 mm\"\n";
+        let hose = from_toml(text, "hose.toml").unwrap();
+        let known = known(&hose, &Catalogue::builtin()).unwrap();
+        for (name, radius) in [("thin", 0.0084), ("wide", 0.0126), ("short", 0.0105)] {
+            let (own, numbers) = specimen(&hose, name, &known).unwrap();
+            assert!((numbers[0].1[0] - radius).abs() < 1e-12, "{name}: {}", numbers[0].1[0]);
+            assert!((own.learnt()[0].values()[0].si - radius).abs() < 1e-12, "{name}");
+        }
+    }
+}
