@@ -406,6 +406,16 @@ mod tests {
     }
 
     #[test]
+    fn specimens_are_those_of_the_data() {
+        let csv =
+            "specimen,pressure [bar],contraction [%],force [N]\nlong,2,5,300\nlong,2,9,200\nshort,2,5,310\n";
+        let record = Record::new(&Data::from_csv(csv, "two.csv").unwrap(), 0.25);
+        assert_eq!(record.specimens(), ["long", "short"]);
+        let of_rows: Vec<u32> = record.moments().iter().map(|moment| moment.specimen).collect();
+        assert_eq!(of_rows, [0, 0, 1]);
+    }
+
+    #[test]
     fn groups_are_their_means() {
         let at = |i: u32| {
             let x = f64::from(i * i);

@@ -109,3 +109,17 @@ fn weights_are_exact_to_their_degree() {
         assert!((value - ((t - 1.3) * t + 2.0)).abs() < 1e-12 && (slope - (2.0 * t - 1.3)).abs() < 1e-12);
     }
 }
+
+/// The steps follow the logarithm of the contraction where the force is infinite at contraction 0, which has no node there.
+#[test]
+fn a_singular_muscle_has_nodes_above_zero() {
+    let preset = bulge_muscles::preset("ppam-2-r16").unwrap();
+    let parts = Parts::of(&preset).still();
+    let pleated = Equilibrium::new(Shaped { parts, beside: Vec::new() }).unwrap();
+    let spans = |equilibrium: &Equilibrium| {
+        let lattice = Lattice::unsolved(equilibrium, 0, 1.0, false);
+        [-0.01, 0.0, 0.05].map(|e| lattice.span(2e5, [e, e]).is_some())
+    };
+    assert_eq!(spans(&pleated), [false, false, true]);
+    assert_eq!(spans(&braid(10.0, 1e5).1), [true; 3]);
+}
