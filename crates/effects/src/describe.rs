@@ -407,6 +407,20 @@ mod tests {
         assert!(page("braid-angle-error").contains(of_braids));
     }
 
+    /// Parameters stand in columns, what goes on is indented, and nothing is cut within a differential.
+    #[test]
+    fn a_page_is_laid_out() {
+        let page = describe(Catalogue::builtin().find("frame-compliance").unwrap().as_ref());
+        for part in [
+            "\n  compliance  [um/N]  displacement per force at 1 kN\n                      0 to 20, usually 0.1; ",
+            "\n                        also shown as stiffness in N/mm\n  power       [1]     power of the force ",
+            "over the contraction: F\n          dF/d eps: vanishes",
+            "\ntwins     force-nonlinearity  0.958 (braid)\n          fibre-stretch       0.93 (braid), 0.974 (PPAM)\n",
+        ] {
+            assert!(page.contains(part), "{part:?} in\n{page}");
+        }
+    }
+
     /// An equation is cut at a blank outside parentheses, if what fits says anything.
     #[test]
     fn an_equation_is_cut_where_it_makes_sense() {

@@ -455,3 +455,23 @@ impl dyn Effect + '_ {
         Ok(changed.values())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// At 1 kN a joint gives as stated; the slope is that of [`Give::under`], which is odd in the load.
+    #[test]
+    fn a_joint_gives_with_a_power_of_the_load() {
+        let [linear, joint, power] = [2e-6, 3e-6, 0.6].map(Jet::from);
+        let give = Give { linear, joint, power };
+        let under = |load: f64| give.under(Jet::from(load)).value();
+        assert!((under(1e3) - 5e-3).abs() < 1e-8 && (under(-1e3) + under(1e3)).abs() < 1e-18);
+        for load in [-300.0_f64, -1.0, 0.0, 0.5, 40.0, 1e3] {
+            let step = 1e-4 * load.abs().max(1.0);
+            let slope = (under(load + step) - under(load - step)) / (2.0 * step);
+            assert!((give.slope(load) / slope - 1.0).abs() < 1e-6, "{load}: {} {slope}", give.slope(load));
+        }
+        assert!(!give.is_none() && Give::none().is_none());
+    }
+}
