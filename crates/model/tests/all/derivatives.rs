@@ -316,6 +316,24 @@ fn a_soft_frame_is_a_shorter_muscle() {
     }
 }
 
+/// Fibres that slip out of their ends shorten nothing but the fibres, by the tension of all: F + p pi R^2 where a law has no shape.
+#[test]
+fn fibres_that_slip_out_of_their_ends_follow_the_tension() {
+    let muscle = &muscles()[1];
+    let geometry = LawGeometry::from(muscle);
+    let law = LAWS.iter().find(|law| law.suits(Kind::Braided)).unwrap();
+    let theta = law.start(&geometry, None);
+    let (e, p, slip) = (0.05, 2e5, 1e-6);
+    let bare = Model::from_law(muscle, law, &theta, true);
+    let model = bare.with(Catalogue::builtin().find("end-slip").unwrap(), None).unwrap();
+    let all = [&theta[..], &[slip, 1.0]].concat();
+    let force = model.evaluate(&at_contractions(p, &[e]), &all, &Wanted::default()).unwrap().force[0];
+    let tension = force + p * std::f64::consts::PI * geometry.radius.powi(2);
+    let shorter = at_contractions(p, &[e + slip * tension / muscle.length().si()]);
+    let alone = bare.evaluate(&shorter, &theta, &Wanted::default()).unwrap().force[0];
+    assert!((force - alone).abs() < 1e-9 * alone.abs(), "{force} {alone}");
+}
+
 /// Fibres of unequal length: the mean over three nodes of Gauss and Hermite, at e and e +- sqrt(3) sigma.
 #[test]
 fn uneven_fibres_pull_the_mean_force() {
