@@ -24,13 +24,11 @@ pub enum Reason {
     /// the residuals are near zero.
     StepBelowRounding,
     /// The linearised minimum is lower by less than the rounding error of the sum of squares or
-    /// [`super::Options::least_decrease`], and the step to it was rejected.
+    /// [`super::Options::least_decrease`], and the step to it was rejected; or the gradient is zero as exactly
+    /// as sums of squares tell, and a nearly singular Jacobian promises a decrease that isn't there.
     DecreaseTooSmall,
     /// All residuals are zero.
     ExactFit,
-    /// The gradient is zero as exactly as sums of squares tell, but the Jacobian is nearly singular, so that
-    /// the linearised residuals promise a decrease that isn't there.
-    GradientVanishes,
     /// Nothing to vary: no parameters, or all of them fixed.
     NothingFree,
     /// [`super::Options::max_evaluations`] was reached. Not converged.

@@ -237,12 +237,10 @@ impl<'a, P: Residuals> Search<'a, P> {
                 Progress::Moved => self.iterations += 1,
                 Progress::Budget => return Reason::Budget,
                 Progress::Stuck | Progress::Kink
-                    if newton.predicted <= self.rounding().max(self.options.least_decrease) =>
+                    if newton.predicted <= self.rounding().max(self.options.least_decrease)
+                        || self.has_no_gradient(&newton) =>
                 {
                     return Reason::DecreaseTooSmall;
-                }
-                Progress::Stuck | Progress::Kink if self.has_no_gradient(&newton) => {
-                    return Reason::GradientVanishes;
                 }
                 Progress::Stuck => return Reason::Stagnated,
                 Progress::Kink => return Reason::Kink,

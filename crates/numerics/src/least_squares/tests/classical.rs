@@ -1,5 +1,6 @@
 //! The problems of J. J. Moré, B. S. Garbow, K. E. Hillstrom, *Testing Unconstrained Optimization Software*, ACM Transactions on
-//! Mathematical Software 7 (1981) 17, whose residuals are rational: the published minima, and the work that each takes. No function
+//! Mathematical Software 7 (1981) 17, whose residuals are rational: the published minima, and the work that each takes (that of
+//! the first, Rosenbrock's, is in `searches`). No function
 //! of a library is called, so that the counts are those of every machine.
 
 use super::*;
@@ -37,16 +38,7 @@ const ENZYME: [[f64; 2]; 11] = [
     [0.0246, 0.0625],
 ];
 
-const PROBLEMS: [Problem; 9] = [
-    Problem {
-        number: 1,
-        rows: 2,
-        start: &[-1.2, 1.0],
-        least: 0.0,
-        at: &[1.0, 1.0],
-        residual: |x, i| if i == 0 { (x[1] - x[0] * x[0]) * 10.0 } else { -x[0] + 1.0 },
-        work: [3, 5, 8],
-    },
+const PROBLEMS: [Problem; 8] = [
     // Freudenstein and Roth: as many rows as parameters, and a minimum at which the Jacobian is singular.
     Problem {
         number: 2,
@@ -180,8 +172,6 @@ fn published_minima_are_found_with_no_more_work_than_before() {
         };
         let found = free(&model(rows, start.len(), row), start);
         assert!(found.certificate.converged, "{number}: {:?}", found.certificate);
-        let is_singular = found.certificate.reason == Reason::GradientVanishes;
-        assert_eq!(is_singular, number == 2, "{number}: {:?}", found.certificate);
         assert!(
             (found.cost - least).abs() <= 1e-9 * least + 1e-18,
             "{number}: {} is not {least}",

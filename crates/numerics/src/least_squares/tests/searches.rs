@@ -105,6 +105,7 @@ fn forty_bounded_parameters_meet_the_conditions_of_a_minimum() {
 fn rosenbrock_free_and_bounded() {
     let minimum = free(&rosenbrock(), &[-1.2, 1.0]);
     assert_close(&minimum.theta, &[1.0, 1.0], 1e-13);
+    assert_eq!([minimum.iterations, minimum.evaluations, minimum.linearisations], [3, 5, 8]);
     let bounds = Bounds { lower: vec![-2.0; 2], upper: vec![0.5, 2.0] };
     let minimum = least(&rosenbrock(), &[-1.2, 1.0], &bounds);
     assert_eq!(minimum.theta[0].to_bits(), 0.5_f64.to_bits());
