@@ -9,6 +9,9 @@ use std::sync::OnceLock;
 fn wanted() -> &'static Target {
     static WANTED: OnceLock<&'static Target> = OnceLock::new();
     WANTED.get_or_init(|| {
+        // libFuzzer's hook ends the program at any panic. Panics of libraries that Bulge catches are no failure; all
+        // others reach the end of a run, where libFuzzer ends the program too.
+        drop(std::panic::take_hook());
         let name = std::env::var("BULGE_FUZZ_TARGET").unwrap_or_default();
         target(&name).unwrap_or_else(|| {
             let names: Vec<_> = TARGETS.iter().map(|target| target.name).collect();

@@ -18,6 +18,7 @@ use parquet::data_type::{ByteArrayType, DataType, DoubleType, FloatType, Int32Ty
 use parquet::errors::ParquetError;
 use parquet::file::reader::{ChunkReader, FileReader, RowGroupReader, SerializedFileReader};
 use parquet::schema::types::{ColumnDescPtr, ColumnDescriptor};
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 
 /// Rows that are decoded at a time.
@@ -25,6 +26,16 @@ const BATCH: usize = 1 << 14;
 
 /// Reads Parquet. `file` is its name, for messages.
 pub(crate) fn read<R: ChunkReader + 'static>(
+    file: &str,
+    source: R,
+    options: &ReadOptions,
+) -> Result<Table, MeasurementError> {
+    // Pages are checked before they are decoded, but a damaged file must not end the program in any case.
+    catch_unwind(AssertUnwindSafe(|| read_columns(file, source, options)))
+        .unwrap_or_else(|_| Err(no_parquet(file, "it is damaged", AGAIN)))
+}
+
+fn read_columns<R: ChunkReader + 'static>(
     file: &str,
     source: R,
     options: &ReadOptions,

@@ -1,14 +1,17 @@
 //! Pages of a Parquet column, checked before they are decoded.
 //!
 //! The decoder of the `parquet` crate relies on the page's own description and panics on damaged pages: if a
-//! dictionary is missing, if levels are longer than the page, or if texts are truncated. Such pages are
-//! errors here.
+//! dictionary is missing, if levels are longer than the page, if texts are truncated, or if the length of a
+//! run has no end. Such pages are errors here.
 
 use parquet::basic::{Encoding, Type};
 use parquet::column::page::{Page, PageMetadata, PageReader};
 use parquet::errors::{ParquetError, Result};
 use parquet::file::metadata::ColumnChunkMetaData;
 use parquet::schema::types::ColumnDescPtr;
+
+/// Most bytes of the length of a run, which has seven bits in each byte.
+const MOST_BYTES_OF_LENGTH: usize = 10;
 
 /// Refuses a column with an impossible position in the file.
 pub(crate) fn checked_place(column: &ColumnChunkMetaData) -> Result<()> {
@@ -48,6 +51,7 @@ impl CheckedPages {
                     Some(length) if is_optional => 4 + u32::from_le_bytes(*length) as usize,
                     _ => 0,
                 };
+                self.checked_levels(buf.get(4..levels), *num_values)?;
                 self.checked_values(buf.get(levels..), *encoding, *num_values)
             }
             Page::DataPageV2 {
@@ -61,16 +65,25 @@ impl CheckedPages {
             } => {
                 let levels = *def_levels_byte_len as usize + *rep_levels_byte_len as usize;
                 let count = num_values.saturating_sub(*num_nulls);
+                self.checked_levels(buf.get(*rep_levels_byte_len as usize..levels), *num_values)?;
                 self.checked_values(buf.get(levels..), *encoding, count)
             }
         }
+    }
+
+    fn checked_levels(&self, levels: Option<&[u8]>, count: u32) -> Result<()> {
+        let width = (i16::BITS - self.column.max_def_level().leading_zeros()) as usize;
+        checked_runs(levels.unwrap_or_default(), width, count)
     }
 
     fn checked_values(&self, values: Option<&[u8]>, encoding: Encoding, count: u32) -> Result<()> {
         let Some(values) = values else { return damaged("levels are longer than their page") };
         match encoding {
             Encoding::PLAIN => self.checked_texts(values, count),
-            Encoding::PLAIN_DICTIONARY | Encoding::RLE_DICTIONARY if self.has_dictionary => Ok(()),
+            // The first byte is the width of an index in bits.
+            Encoding::PLAIN_DICTIONARY | Encoding::RLE_DICTIONARY if self.has_dictionary => values
+                .split_first()
+                .map_or(Ok(()), |(width, runs)| checked_runs(runs, usize::from(*width), count)),
             Encoding::PLAIN_DICTIONARY | Encoding::RLE_DICTIONARY => damaged("a dictionary is missing"),
             // Rarely written and not checked: delta-encoded byte arrays and similar encodings.
             other => Err(ParquetError::General(format!("the encoding {other} is not read"))),
@@ -89,6 +102,33 @@ impl CheckedPages {
             bytes = rest;
         }
         Ok(())
+    }
+}
+
+/// Whether each run of `count` small numbers, each of `width` bits, has a length that ends: the number of
+/// repetitions of one value, or of groups of eight values if it is odd.
+fn checked_runs(mut bytes: &[u8], width: usize, count: u32) -> Result<()> {
+    let mut left = u64::from(count);
+    loop {
+        let Some(last) = bytes.iter().take(MOST_BYTES_OF_LENGTH).position(|byte| byte & 0x80 == 0) else {
+            return match bytes.len() {
+                // The page ends within a length: the decoder takes it for the end of the runs.
+                ..=MOST_BYTES_OF_LENGTH => Ok(()),
+                _ => damaged("a run has a length without an end"),
+            };
+        };
+        let length = bytes[..=last].iter().rev().fold(0_u64, |sum, byte| (sum << 7) | u64::from(byte & 0x7f));
+        let (values, size) = match length & 1 {
+            0 => (length >> 1, width.div_ceil(8) as u64),
+            _ => ((length >> 1).saturating_mul(8), (length >> 1).saturating_mul(width as u64)),
+        };
+        // What is stated too long is noticed by the decoder.
+        let size = usize::try_from(size).unwrap_or(usize::MAX).min(bytes.len() - last - 1);
+        bytes = &bytes[last + 1 + size..];
+        left = left.saturating_sub(values);
+        if left == 0 || length == 0 {
+            return Ok(());
+        }
     }
 }
 
@@ -119,5 +159,24 @@ impl PageReader for CheckedPages {
 
     fn skip_next_page(&mut self) -> Result<()> {
         self.pages.skip_next_page()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lengths_of_runs_end() {
+        // 300 times the number 5, then 16 numbers in two groups, of three bits each.
+        let mut runs = vec![0xd8, 0x04, 5, 0x05, 1, 2, 3, 4, 5, 6];
+        assert!(checked_runs(&runs, 3, 316).is_ok());
+        runs.extend([0xff; 11]);
+        assert!(checked_runs(&runs, 3, 316).is_ok(), "what follows the last value is not read");
+        assert!(checked_runs(&runs, 3, 317).is_err());
+        assert!(checked_runs(&runs, 4, 317).is_ok(), "ten bytes are left, which are a page that is cut off");
+        runs.extend([0xff; 2]);
+        assert!(checked_runs(&runs, 4, 317).is_err());
+        assert!(checked_runs(&[0x80, 0x80, 0x00], 3, 8).is_ok(), "zeros that fill a page up");
     }
 }
