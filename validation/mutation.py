@@ -4,10 +4,12 @@
     python validation/mutation.py numerics --again                       # those that survived before, after tests were written
     python validation/docs_table.py mutation [--check]                   # the table in docs/hardening.md
 
-A mutant is the crate with one operator exchanged, one result replaced or one match arm removed (cargo-mutants 27, from crates.io: `cargo install cargo-mutants`).
-Of all mutants a seeded sample is built, and the crate's own tests run on each: its unit tests first, on those that survive them all of its tests.
-cargo-nextest, where it is installed, ends a run with the first test that fails. It works in a clone of HEAD below target/mutation, hours for a large crate, and keeps
-what it found in validation/mutation.json after every 50: counts, and the names of the mutants that survive. A run that was stopped goes on from there.
+A mutant is the crate with one operator exchanged, one result replaced or one match arm removed. cargo-mutants 27 lists them (`cargo install cargo-mutants`); of
+all a seeded sample is tested. All of them are compiled at once: a function with mutants has a body for each, and BULGE_MUTANT chooses one as the tests run
+(mutant schemata, Untch, Offutt and Harrold 1993). What the compiler refuses in this form, constant functions and differing opaque types, is compiled alone.
+The crate's own test programs run one after the other, the fastest first, until a test fails: then the mutant is caught. It works in a clone of HEAD below
+target/mutation, and keeps what it found in validation/mutation.json after every 50: counts, and the names of the mutants that survive. A run that was stopped
+goes on from there.
 """
 
 import argparse
@@ -18,16 +20,28 @@ import re
 import shutil
 import subprocess
 import sys
+import time
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 KEPT = ROOT / "validation/mutation.json"
-OUTCOMES = ("caught", "timeout", "missed", "unviable")
 
 BATCH = 50
 
-UNIT_S, ALL_S = 300, 1200
-"""Seconds that the unit tests and all tests of a mutant may take: a loop without an end counts as caught."""
+PATIENCE = 8.0
+"""How many times longer than without a fault a test program may take: a loop without an end counts as caught."""
+
+SWITCH = """
+#[doc(hidden)]
+pub(crate) mod mutant {
+    extern crate std;
+    pub(crate) fn chosen() -> u32 {
+        static CHOSEN: std::sync::OnceLock<u32> = std::sync::OnceLock::new();
+        *CHOSEN.get_or_init(|| std::env::var("BULGE_MUTANT").ok().and_then(|text| text.parse().ok()).unwrap_or(0))
+    }
+}
+"""
 
 
 def main():
@@ -35,37 +49,36 @@ def main():
     parser.add_argument("crate", help="without `bulge-`")
     parser.add_argument("--sample", type=int, default=200, help="how many mutants")
     parser.add_argument("--anew", action="store_true", help="forget the sample that there is")
-    parser.add_argument("--together", action="store_true", help="all tests at once, for a crate with few unit tests")
     parser.add_argument("--again", action="store_true", help="run only those that survived before")
     arguments = parser.parse_args()
     if shutil.which("cargo-mutants") is None:
         parser.error("cargo-mutants isn't installed: cargo install cargo-mutants --locked")
     if not (ROOT / "crates" / arguments.crate).is_dir():
         parser.error(f"there is no crate `{arguments.crate}` below crates/")
-    tree = _clone(ROOT / "target/mutation" / arguments.crate)
     kept = json.loads(KEPT.read_text(encoding="utf-8")) if KEPT.exists() else {}
     before = kept.get(arguments.crate)
     if arguments.again and before is None:
         parser.error(f"`{arguments.crate}` has not been sampled yet: leave out --again")
-    mutants = _listed(tree, arguments.crate)
-    empty = {"mutants": len(mutants), "sample": 0, "unviable": 0, "survived": []}
+    crate = Crate(arguments.crate)
     if arguments.again:
         # Lines move; what is done to which function stays.
-        moved = {_without_place(name) for name in before["survived"] if name not in mutants}
-        chosen = [name for name in mutants if name in before["survived"] or _without_place(name) in moved]
-        found = _run(tree, arguments.crate, chosen, arguments.together)
-        counts = {**before, "survived": sorted(found["missed"])}
+        names = {mutant["name"] for mutant in crate.mutants}
+        moved = {_without_place(name) for name in before["survived"] if name not in names}
+        chosen = [mutant for mutant in crate.mutants if mutant["name"] in before["survived"] or _without_place(mutant["name"]) in moved]
+        _, survived = crate.tested(chosen)
+        counts = {**before, "survived": sorted(survived)}
         _keep(arguments.crate, counts)
     else:
+        empty = {"mutants": 0, "sample": 0, "unviable": 0, "survived": []}
         counts = empty if arguments.anew or before is None else before
-        while counts["sample"] < min(arguments.sample, len(mutants)):
-            batch = random.Random(f"{arguments.crate} from {counts['sample']}").sample(mutants, min(BATCH, len(mutants)))
-            found = _run(tree, arguments.crate, batch, arguments.together)
+        while counts["sample"] < min(arguments.sample, len(crate.mutants)):
+            batch = random.Random(f"{arguments.crate} from {counts['sample']}").sample(crate.mutants, min(BATCH, len(crate.mutants)))
+            unviable, survived = crate.tested(batch)
             counts = {
-                "mutants": len(mutants),
+                "mutants": len(crate.mutants),
                 "sample": counts["sample"] + len(batch),
-                "unviable": counts["unviable"] + len(found["unviable"]),
-                "survived": sorted({*counts["survived"], *found["missed"]}),
+                "unviable": counts["unviable"] + unviable,
+                "survived": sorted({*counts["survived"], *survived}),
             }
             _keep(arguments.crate, counts)
     print("\n".join([f"{len(counts['survived'])} of {counts['sample'] - counts['unviable']} that can be built survive:", *counts["survived"]]))
@@ -78,53 +91,207 @@ def _keep(crate, counts):
     KEPT.write_text(json.dumps(dict(sorted(kept.items())), indent=1) + "\n", encoding="utf-8")
 
 
-def _clone(tree):
-    """A clone with what HEAD has; what it has built stays."""
-    if not tree.exists():
-        subprocess.run(["git", "clone", "--quiet", "--shared", ROOT, tree], check=True)
-    subprocess.run(["git", "-C", tree, "fetch", "--quiet", "origin", "HEAD"], check=True)
-    subprocess.run(["git", "-C", tree, "reset", "--quiet", "--hard", "FETCH_HEAD"], check=True)
-    return tree
-
-
-def _listed(tree, crate):
-    words = ["cargo", "mutants", "--list", "--colors", "never", "--package", f"bulge-{crate}"]
-    return sorted(subprocess.run(words, cwd=tree, check=True, capture_output=True, text=True).stdout.splitlines())
-
-
 def _without_place(name):
     return re.sub(r":\d+:\d+:", ":", name)
 
 
-def _run(tree, crate, mutants, together):
-    """Names of the mutants by what became of them: by the unit tests, and by all tests for those that survive."""
-    found = {"missed": mutants} if together else _tested(tree, crate, mutants, ["--lib"], UNIT_S)
-    if not (tree / "crates" / crate / "tests").is_dir():
-        return found
-    rest = _tested(tree, crate, found.pop("missed"), ["--lib", "--bins", "--tests"], ALL_S)
-    return {outcome: [*found.get(outcome, []), *rest[outcome]] for outcome in OUTCOMES}
+class Crate:
+    """A crate in a clone of HEAD, what its tests take without a fault, and its mutants."""
+
+    def __init__(self, name):
+        self.tree = ROOT / "target/mutation/tree"
+        if not self.tree.exists():
+            subprocess.run(["git", "clone", "--quiet", "--shared", ROOT, self.tree], check=True)
+        self._git("fetch", "--quiet", "origin", "HEAD")
+        self._git("reset", "--quiet", "--hard", "FETCH_HEAD")
+        self.package = f"bulge-{name}"
+        self.folder = self.tree / "crates" / name
+        words = ["cargo", "mutants", "--list", "--json", "--package", self.package]
+        listed = subprocess.run(words, cwd=self.tree, check=True, capture_output=True, text=True).stdout
+        self.mutants = sorted(json.loads(listed), key=lambda mutant: mutant["name"])
+        self.limits = {}
+        programs = self._built()
+        for program in programs:
+            begun = time.monotonic()
+            if not self._passes(program, 0, None):
+                sys.exit(f"{program} fails without a fault")
+            # As many run at once as there are processors; starting one takes a moment.
+            self.limits[_stem(program)] = 5.0 + PATIENCE * (time.monotonic() - begun)
+        print(f"{self.package}: {len(self.mutants)} mutants, tests take {sum(self.limits.values()) / PATIENCE:.0f} s", flush=True)
+
+    def tested(self, mutants):
+        """How many can't be built, and the names of those that survive."""
+        together, alone = self._compiled_together(mutants)
+        survived, unviable = [], 0
+        if together:
+            programs = self._built()
+
+            def survives(number):
+                return all(self._passes(program, number, self.limits[_stem(program)]) for program in programs)
+
+            with ThreadPoolExecutor(os.cpu_count()) as pool:
+                for mutant, lives in zip(together.values(), pool.map(survives, together), strict=True):
+                    survived += [mutant["name"]] if lives else []
+                    print(f"{'SURVIVES' if lives else 'caught'}: {mutant['name']}", flush=True)
+        for mutant in alone:
+            self._write({mutant["file"]: [mutant]}, {})
+            if self._errors():
+                unviable += 1
+                continue
+            lives = all(self._passes(program, 0, self.limits[_stem(program)]) for program in self._built())
+            survived += [mutant["name"]] if lives else []
+            print(f"{'SURVIVES' if lives else 'caught'}, alone: {mutant['name']}", flush=True)
+        self._git("checkout", "--quiet", ".")
+        return unviable, survived
+
+    def _git(self, *words):
+        subprocess.run(["git", "-C", str(self.tree), *words], check=True)
+
+    def _compiled_together(self, mutants):
+        """Numbers with the mutants that a choice of bodies can be made of, and the others; the sources are written."""
+        together = {number: mutant for number, mutant in enumerate(mutants, 1) if mutant["function"] is not None}
+        alone = [mutant for mutant in mutants if mutant["function"] is None]
+        while together:
+            places = self._write({}, together)
+            errors = self._errors()
+            if not errors:
+                break
+            refused = _standing_at(errors, places["body"]) or _standing_at(errors, places["function"])
+            if not refused:
+                sys.exit(f"the compiler refuses what is no mutant: {errors}")
+            alone += [together.pop(number) for number in sorted(refused)]
+        return together, alone
+
+    def _write(self, alone, together):
+        """Writes the sources with these mutants, and returns where the body of each and its function stand: file, first and last line."""
+        self._git("checkout", "--quiet", ".")
+        places = {"body": {}, "function": {}}
+        for file, chosen in alone.items():
+            path = self.tree / file
+            source = Source(path.read_text(encoding="utf-8"))
+            path.write_text(source.changed(0, len(source.text), chosen[0]), encoding="utf-8")
+        for file in {mutant["file"] for mutant in together.values()}:
+            source = Source((self.tree / file).read_text(encoding="utf-8"))
+            text, bodies, functions = source.with_bodies({number: mutant for number, mutant in together.items() if mutant["file"] == file})
+            (self.tree / file).write_text(text, encoding="utf-8")
+            places["body"].update({number: (file, *lines) for number, lines in bodies.items()})
+            places["function"].update({number: (file, *lines) for number, lines in functions.items()})
+        if together:
+            with (self.folder / "src/lib.rs").open("a", encoding="utf-8") as library:
+                library.write(SWITCH)
+        return places
+
+    def _cargo(self, *words):
+        environment = {**os.environ, "CARGO_INCREMENTAL": "1", "CARGO_PROFILE_DEV_DEBUG": "false"}
+        words = ["cargo", *words, "--package", self.package, "--message-format", "json", "--quiet"]
+        done = subprocess.run(words, cwd=self.tree, env=environment, capture_output=True, text=True, check=False)
+        return done, [json.loads(line) for line in done.stdout.splitlines() if line.startswith("{")]
+
+    def _errors(self):
+        """Files and lines that the compiler complains about."""
+        done, messages = self._cargo("check", "--lib")
+        if done.returncode == 0:
+            return []
+        found = []
+        for message in messages:
+            if message["reason"] == "compiler-message" and message["message"]["level"] == "error":
+                for span in message["message"]["spans"]:
+                    while span is not None:
+                        found.append((span["file_name"], span["line_start"]))
+                        span = (span["expansion"] or {}).get("span")
+        return found or [(done.stderr, 0)]
+
+    def _built(self):
+        """The crate's test programs, the fastest first."""
+        done, messages = self._cargo("test", "--lib", "--bins", "--tests", "--no-run")
+        if done.returncode != 0:
+            sys.exit(f"the tests can't be built: {done.stderr} {done.stdout[-4000:]}")
+        programs = [message["executable"] for message in messages if message["reason"] == "compiler-artifact" and message["profile"]["test"] and message["executable"]]
+        return sorted(programs, key=lambda program: self.limits.get(_stem(program), 0.0))
+
+    def _passes(self, program, number, limit_s):
+        """Whether all tests of a program pass; it is ended at the first that fails."""
+        # What a property test writes down when it fails would help to catch the next mutant.
+        self._git("clean", "--quiet", "--force", "-d", "crates")
+        threads = {} if limit_s is None else {"RUST_TEST_THREADS": "1", "RAYON_NUM_THREADS": "1"}
+        environment = {**os.environ, "BULGE_MUTANT": str(number), "CARGO_MANIFEST_DIR": str(self.folder), **threads}
+        begun = time.monotonic()
+        with subprocess.Popen([program], cwd=self.folder, env=environment, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) as running:
+            os.set_blocking(running.stdout.fileno(), False)
+            printed = b""
+            while (status := running.poll()) is None:
+                printed += running.stdout.read() or b""
+                if b"... FAILED" in printed or (limit_s is not None and time.monotonic() - begun > limit_s):
+                    running.kill()
+                    return False
+                time.sleep(0.05)
+            return status == 0
 
 
-def _tested(tree, crate, mutants, which, limit_s):
-    if not mutants:
-        return {outcome: [] for outcome in OUTCOMES}
-    out = tree.parent / f"{crate}-found"
-    shutil.rmtree(out, ignore_errors=True)
-    exactly = "^(" + "|".join(re.escape(name) for name in mutants) + ")$"
-    tool = "nextest" if shutil.which("cargo-nextest") else "cargo"
-    words = ["cargo", "mutants", "--in-place", "--package", f"bulge-{crate}", "--re", exactly, "--baseline", "skip", "--timeout", limit_s]
-    for file in sorted({name.split(":")[0] for name in mutants}):
-        words += ["--file", file]
-    words += ["--output", out, "--test-tool", tool, "--no-shuffle", "--colors", "never", "--", *which]
-    # Its status is 2 or 3 if a mutant survives or takes too long.
-    subprocess.run([str(word) for word in words], cwd=tree, env={**os.environ, "CARGO_INCREMENTAL": "1", "CARGO_PROFILE_DEV_DEBUG": "false"}, check=False)
-    chosen = set(mutants)
-    # `--re` lets mutants that leave out a field of a struct through, whatever their names.
-    read = {outcome: [name for name in (out / "mutants.out" / f"{outcome}.txt").read_text(encoding="utf-8").splitlines() if name in chosen] for outcome in OUTCOMES}
-    done = sum(len(names) for names in read.values())
-    if done != len(mutants):
-        sys.exit(f"{done} of {len(mutants)} mutants were tested: see {out}")
-    return read
+def _standing_at(errors, places):
+    return {number for file, line in errors for number, (its, first, last) in places.items() if file == its and first <= line <= last}
+
+
+def _stem(program):
+    return re.sub(r"-[0-9a-f]+$", "", Path(program).name)
+
+
+class Source:
+    """The text of a file, and where its lines begin."""
+
+    def __init__(self, text):
+        self.text = text
+        self.lines = [0]
+        for line in text.splitlines(keepends=True):
+            self.lines.append(self.lines[-1] + len(line))
+
+    def place(self, at):
+        return self.lines[at["line"] - 1] + at["column"] - 1
+
+    def span(self, span):
+        return self.place(span["start"]), self.place(span["end"])
+
+    def changed(self, start, end, mutant):
+        """The text from `start` to `end` with the fault of a mutant."""
+        first, last = self.span(mutant["span"])
+        return f"{self.text[start:first]} {mutant['replacement']} {self.text[last:end]}"
+
+    def with_bodies(self, mutants):
+        """The text in which each function with mutants chooses among bodies, and the lines of the mutants' bodies and of their functions."""
+        spans = {number: self.span(mutant["function"]["span"]) for number, mutant in mutants.items()}
+        # A function within a function is changed with the outer one.
+        outer = {number: min(other for other in spans.values() if other[0] <= span[0] and span[1] <= other[1]) for number, span in spans.items()}
+        text, at, bodies, functions = "", 0, {}, {}
+        for start, end in sorted(set(outer.values())):
+            body = _brace(self.text, start)
+            numbers = [number for number, span in outer.items() if span == (start, end)]
+            listed = ", ".join(map(str, numbers))
+            text += self.text[at:start]
+            head = text.count("\n") + 1
+            text += f"{self.text[start:body]}{{ match crate::mutant::chosen() {{ number if ![{listed}].contains(&number) => {self.text[body:end]}"
+            for number in numbers:
+                text += f"\n{number} => "
+                first = text.count("\n") + 1
+                text += self.changed(body, end, mutants[number])
+                bodies[number] = (first, text.count("\n") + 1)
+            text += "\n_ => unreachable!() } }"
+            functions.update(dict.fromkeys(numbers, (head, text.count("\n") + 1)))
+            at = end
+        return text + self.text[at:], bodies, functions
+
+
+def _brace(text, at):
+    """Where the body of the function that begins at `at` opens: comments, attributes and arguments come before."""
+    depth = 0
+    while True:
+        if match := re.compile(r'//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\])*"', re.DOTALL).match(text, at):
+            at = match.end()
+            continue
+        letter = text[at]
+        if letter == "{" and depth == 0:
+            return at
+        depth += (letter in "([{") - (letter in ")]}")
+        at += 1
 
 
 if __name__ == "__main__":
