@@ -125,6 +125,8 @@ class Crate:
         survived, unviable = [], 0
         if together:
             programs = self._built()
+            if not all(self._passes(program, 0, None) for program in programs):
+                sys.exit("tests fail without a fault if there is a choice of bodies")
 
             def survives(number):
                 return all(self._passes(program, number, self.limits[_stem(program)]) for program in programs)

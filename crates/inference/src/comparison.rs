@@ -13,6 +13,7 @@ pub(crate) mod levels;
 pub(crate) mod loops;
 pub(crate) mod mismatch;
 pub(crate) mod options;
+mod other_length;
 pub(crate) mod other_units;
 mod recent;
 pub(crate) mod requirements;

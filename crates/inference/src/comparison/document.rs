@@ -86,7 +86,7 @@ pub struct DataSummary {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Mismatch {
     /// What it is about: `absolute-pressure`, `pressure-unit`, `force-unit`, `force-sign`,
-    /// `contraction-unit`, `displacement`, `length`, `time-unit`, `scale`, `pushes`, `no-force`.
+    /// `contraction-unit`, `displacement`, `length`, `time-unit`, `muscle-length`, `scale`, `pushes`, `no-force`.
     pub kind: &'static str,
     /// Whether the readings have another unit or sign beyond doubt. Nothing can be learnt about the muscle
     /// from them as they stand.

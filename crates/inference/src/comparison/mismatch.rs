@@ -10,13 +10,14 @@ use bulge_muscles::{Muscle, Quantity};
 
 use crate::comparison::clock;
 use crate::comparison::document::Mismatch;
+use crate::comparison::other_length;
 use crate::comparison::rows::{full_scale, lines};
 use crate::median::median;
 
 /// An error below this fraction of full scale raises no question about units.
 const LARGE: f64 = 0.08;
 /// Largest remaining fraction of the error if the readings were meant otherwise.
-const LEFT: f64 = 0.35;
+pub(crate) const LEFT: f64 = 0.35;
 /// An absolute pressure is decided if at most this fraction of the error remains, or a small error; otherwise
 /// geometry or an effect may cause the offset as well.
 const LEFT_SURELY: f64 = 0.15;
@@ -169,6 +170,7 @@ pub(crate) fn questions(
         found.extend(tried.into_iter().map(|(after, meaning)| asked(before, after, full, meaning)));
         return found;
     }
+    found.extend(other_length::question(data, muscle, &first, &trial, before));
     found.extend(scale(&thin, &counts, &force, before));
     found.extend(pushes(data, muscle, &thin, &kept, &counts, &force, [before, full]));
     found
