@@ -91,3 +91,17 @@ impl Catalogue {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A load cell and a length sensor are zeroed when a muscle is mounted; what belongs to the muscle or to a range stays.
+    #[test]
+    fn zeros_change_with_each_mounting() {
+        let catalogue = Catalogue::builtin();
+        let changing =
+            catalogue.iter().filter(|effect| effect.is_of_mounting()).map(|effect| effect.card().name);
+        assert_eq!(changing.collect::<Vec<_>>(), ["length-zero-error", "force-offset"]);
+    }
+}

@@ -472,6 +472,8 @@ mod tests {
             let slope = (under(load + step) - under(load - step)) / (2.0 * step);
             assert!((give.slope(load) / slope - 1.0).abs() < 1e-6, "{load}: {} {slope}", give.slope(load));
         }
-        assert!(!give.is_none() && Give::none().is_none());
+        let [alone, seated] =
+            [Give { joint: Jet::from(0.0), ..give }, Give { linear: Jet::from(0.0), ..give }];
+        assert!(!give.is_none() && !alone.is_none() && !seated.is_none() && Give::none().is_none());
     }
 }

@@ -92,6 +92,10 @@ mod tests {
     #[test]
     fn none_is_the_same_muscle() {
         assert_eq!(with(&WallThickness, &[0.0], &cylinder()).unwrap(), Parts::of(&cylinder()));
+        // What the muscle states stays without an effect, and is replaced by one.
+        let stated = cylinder().with_gas_wall(Some(Length::mm(1.0))).unwrap();
+        assert_eq!(with(&WallThickness, &[0.0], &stated).unwrap(), Parts::of(&stated));
+        assert_eq!(with(&WallThickness, &[0.002], &stated), with(&WallThickness, &[0.002], &cylinder()));
         assert!(with(&WallThickness, &[-0.001], &cylinder()).is_err());
         assert!(with(&WallThickness, &[0.002], &pleated()).is_err());
     }

@@ -225,10 +225,22 @@ mod tests {
                 assert!(text.contains(part), "{part} in\n{text}");
             }
             for coefficient in law.coefficients {
-                assert!(
-                    text.contains(&format!("[{}]", coefficient.unit)) && text.contains(coefficient.meaning)
-                );
+                let unit = format!("[{}]", coefficient.unit);
+                let line = text
+                    .lines()
+                    .find(|line| line.contains(&format!("{unit} ")) && line.contains(coefficient.meaning));
+                let note =
+                    line.unwrap_or_else(|| panic!("{}: {text}", coefficient.name)).contains(" (not linear)");
+                let is_asked = matches!(coefficient.role, Role::Fitted) && !law.tables.is_empty();
+                assert_eq!(note, is_asked && !coefficient.linear, "{}: {text}", coefficient.name);
             }
+            // Meanings stand below each other, two spaces after the widest unit.
+            let mut meanings = law
+                .coefficients
+                .iter()
+                .filter_map(|c| text.lines().find_map(|line| line.find(&format!("  {}", c.meaning))));
+            let first = meanings.next();
+            assert!(meanings.all(|at| Some(at) == first), "{text}");
             for table in law.tables {
                 assert!(text.contains(table.name));
                 assert!(table.values.iter().all(|value| text.contains(&digits(*value))), "{}", table.name);
