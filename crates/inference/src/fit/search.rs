@@ -13,6 +13,7 @@ use crate::fit::problem::{FitProblem, free};
 use crate::fit::report::report;
 use crate::fit::states::{Minimised, is_of_rows, minimise_partly, of_start};
 use crate::fit::weights::Noise;
+use crate::median::robust_sd;
 
 /// Rows of the thinned record on which starts are tried.
 const FEW_ROWS: usize = 400;
@@ -92,9 +93,7 @@ pub(crate) fn fit_and_force(
 /// Standard deviation of normal residuals that has their median absolute value \[N\].
 fn scatter(task: &Task<'_>, force: &[f64]) -> f64 {
     let rows = (0..force.len()).filter(|row| task.used[*row] && force[*row].is_finite());
-    let mut off: Vec<f64> = rows.map(|row| (task.record.force()[row] - force[row]).abs()).collect();
-    off.sort_by(f64::total_cmp);
-    1.4826 * off.get(off.len() / 2).copied().unwrap_or(0.0)
+    robust_sd(&rows.map(|row| task.record.force()[row] - force[row]).collect::<Vec<_>>())
 }
 
 fn fit_with_noise(

@@ -6,6 +6,7 @@ use bulge_muscles::units::rounded;
 use std::collections::BTreeMap;
 use std::ops::Range;
 
+use crate::median::median;
 use crate::protocol::bench::{Block, Path, Protocol};
 use crate::vector::range;
 
@@ -43,12 +44,6 @@ fn width([low, high]: [f64; 2]) -> f64 {
 
 fn middle([low, high]: [f64; 2]) -> f64 {
     f64::midpoint(low, high)
-}
-
-fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
-    let mut values: Vec<f64> = values.collect();
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied()
 }
 
 impl Moved {
@@ -111,11 +106,14 @@ fn count(value: f64, range: Range<f64>) -> u32 {
 
 /// The block with the median motion of its sweeps.
 fn moving(block: Block, sweeps: &[&Moved], kept: usize) -> Block {
-    let of = |value: &dyn Fn(&Moved) -> f64| median(sweeps.iter().map(|sweep| value(sweep))).unwrap_or(0.0);
+    let of = |value: &dyn Fn(&Moved) -> f64| {
+        median(&mut sweeps.iter().map(|sweep| value(sweep)).collect::<Vec<_>>())
+    };
     // A stroke each way is one cycle; a single stroke is completed by the one back.
     let cycles = count(of(&|sweep| sweep.ways as f64 / 2.0), 1.0..1e4);
     let period = of(&|sweep| 2.0 * sweep.seconds / sweep.ways as f64);
-    let evenness = median(sweeps.iter().filter_map(|sweep| sweep.evenness));
+    let mut evenness: Vec<f64> = sweeps.iter().filter_map(|sweep| sweep.evenness).collect();
+    let evenness = (!evenness.is_empty()).then(|| median(&mut evenness));
     Block {
         path: if evenness.is_some_and(|evenness| evenness < EVEN) { Path::Sine } else { Path::Triangle },
         cycles,
