@@ -163,5 +163,9 @@ mod tests {
         assert!((force + 50.0 * 0.06).abs() < 1e-12, "{force}");
         let catalogue = Catalogue::builtin().with(effect).unwrap();
         assert!((catalogue.find("hose-stiffness").unwrap().parameters()[0].high - 500.0).abs() < 1e-9);
+        // Without an effect a parameter is 0, or as near to it as its range allows: walls begin at 0.5 mm.
+        let shape = from_toml(user::SHAPE_EXAMPLE, "own.toml").unwrap();
+        let off: Vec<f64> = shape[0].parameters().iter().map(|card| card.off).collect();
+        assert_eq!(off, [0.0, 5e-4]);
     }
 }
