@@ -286,7 +286,6 @@ impl Parser<'_> {
     fn unexpected(&self, wanted: &str) -> ExpressionError {
         let word = shortened(&self.text[self.span.clone()]);
         let is_operand = matches!(self.token, Token::Number | Token::Name | Token::Open);
-        let before = &self.text[..self.end];
         let (what, instead) = match self.token {
             Token::End => (
                 format!("the formula ends where {wanted} should stand"),
@@ -305,7 +304,8 @@ impl Parser<'_> {
                 "separate arguments of a function by commas, and write decimals with a point".to_owned(),
             ),
             Token::Close => (format!("`)` where {wanted} should stand"), "check the parentheses".to_owned()),
-            _ if is_operand && !before.is_empty() && !wanted.starts_with("a number") => {
+            // Where a number is wanted, an operand can stand.
+            _ if is_operand => {
                 let instead = format!(
                     "write an operator before `{word}`, such as `*`; a unit stands in brackets: `3 [N]`"
                 );

@@ -133,6 +133,7 @@ fn units_that_do_not_fit() {
     );
     refuses("k*(eps - l0)", "eps - l0", &["`l0` (m) cannot be subtracted from `eps` (1)", "quantity in 1/m"]);
     refuses("k + 3", "k + 3", &["give the number its unit: `3 [N]`"]);
+    refuses("3 - k", "3 - k", &["give the number its unit: `3 [N]`"]);
     refuses(
         "max(p, 1e5)*area",
         "p, 1e5",
@@ -196,6 +197,8 @@ fn formulas_that_are_none() {
     refuses("3 N", "N", &["`3 [N]`"]);
     refuses("3 [Nn]", "Nn", &["unknown unit `Nn`"]);
     refuses("3 [N", "[", &["not closed"]);
+    refuses("3 [N [m]", "[", &["not closed"]);
+    refuses("3 [N\n]", "[", &["not closed"]);
     refuses("3 []]", "]", &["`]` is no sign"]);
     refuses("k [N]", "[N]", &["does not stand behind a number"]);
     refuses("k*", "", &["the formula ends where a number, a name or `(` should stand"]);

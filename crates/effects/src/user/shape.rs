@@ -454,6 +454,24 @@ mod tests {
         assert!(problem.solve(Given::Force(0.0), Approach::Auto).unwrap().contraction - limit < 1e-9);
     }
 
+    #[test]
+    fn as_many_kinks_as_are_solved_with() {
+        let read = |count: usize| {
+            let slings: Vec<String> = (0..count).map(|i| format!("max(0, l2 - 1.{i})")).collect();
+            let energy = format!("k*({})", slings.join(" + "));
+            let text = format!(
+                "[effects.slings]\ntitle = \"Slings\"\nenergy = \"{energy}\"\n\
+                 parameters.k = {{ unit = \"N/m\", typical = \"1 N/m\", low = \"0 N/m\", high = \"9 N/m\" }}\n"
+            );
+            from_toml(&text, "own.toml")
+        };
+        assert!(read(MOST_GAPS - 1).is_ok() && read(MOST_GAPS).is_ok());
+        for count in [MOST_GAPS + 1, MOST_GAPS + 2] {
+            let error = read(count).unwrap_err().to_string();
+            assert!(error.contains(&format!("has {count} places where its branch may change")), "{error}");
+        }
+    }
+
     /// A sling that comes taut on the way. Its energy has a kink, so the meridian is integrated.
     #[test]
     fn a_kink_is_integrated() {
