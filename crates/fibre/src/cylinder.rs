@@ -11,6 +11,7 @@
 //! Lopez (S2 eq. 12, S5 eq. 11): `F = pi r0^2 p (3 (1 - eps)^2/tan^2(alpha0) - 1/sin^2(alpha0))`.
 
 use bulge_numerics::{Dual, Real};
+use std::f64::consts::E;
 
 use crate::FibreError;
 use crate::net::Net;
@@ -62,13 +63,14 @@ pub(crate) fn solve<D: Real>(net: &Net<D>, contraction: D) -> Result<Cylinder<D>
     Ok(Cylinder { radius, tension, force, volume, iterations })
 }
 
-/// The tension of the radial balance, see [`balance`]. The balance is linear for inextensible fibres.
-/// Otherwise Newton's method in ln T solves it for the values, and one more step gives the derivatives.
+/// The tension of the radial balance, see [`balance`]. Newton's method in T solves it for the values, and one
+/// more step gives the derivatives. For inextensible fibres the balance is linear, and the first step is exact.
 fn tension<D: Real>(net: &Net<D>, sigma: D, contraction: f64) -> Result<(D, u32), FibreError> {
     let plain = net.constant();
+    let lifted = plain.lift::<1>();
     let s = sigma.value();
     let residual = |ln_t: f64| {
-        let (r, _, gap) = balance(&plain.lift::<1>(), Dual::from(s), Dual::<1>::variable(ln_t, 0).exp());
+        let (r, _, gap) = balance(&lifted, Dual::from(s), Dual::<1>::variable(ln_t, 0).exp());
         (r.value(), gap.value(), gap.gradient()[0])
     };
     let mut ln_t = (plain.area_r(1.0) / (plain.turn * plain.turn)).ln();
@@ -87,7 +89,8 @@ fn tension<D: Real>(net: &Net<D>, sigma: D, contraction: f64) -> Result<(D, u32)
             let tension = at - gap * (ln_t.exp() / slope);
             return if tension.value() > 0.0 { Ok((tension, iteration)) } else { break };
         }
-        ln_t -= step.clamp(-1.0, 1.0);
+        // T -> T - gap/(dgap/dT), by a factor of e at most.
+        ln_t += (1.0 - step).clamp(1.0 / E, E).ln();
     }
     // The wall may hold more than the pressure at hardly any tension.
     let (r, gap, _) = residual(SLACK.ln());
@@ -95,4 +98,30 @@ fn tension<D: Real>(net: &Net<D>, sigma: D, contraction: f64) -> Result<(D, u32)
         return Err(FibreError::Slack { contraction, limit: None });
     }
     Err(FibreError::NotConverged { contraction, residual: last, iterations: 100 })
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{Approach, Problem};
+    use bulge_muscles::{Ends, Parameter, Pressure, preset};
+
+    /// Inextensible fibres take one step, or two where the first guess is far off, and a last evaluation; elastic ones one more.
+    #[test]
+    fn few_steps_of_newton() {
+        let braid =
+            preset("dmsp-20-250").unwrap().with_ends(Ends::Cylinder).with(Parameter::Wall, 0.002).unwrap();
+        let rubber = braid.clone().with(Parameter::C10, 2e5).unwrap();
+        let rope = rubber.clone().with(Parameter::Fibres, 40.0).unwrap();
+        let [elastic, soft] = [4e4, 4e3].map(|n| rope.clone().with(Parameter::FibreStiffness, n).unwrap());
+        for (muscle, most) in [(braid, 2), (rubber, 3), (elastic, 4), (soft, 4)] {
+            let mut found = Vec::new();
+            for bar in [1.0, 3.0, 6.0] {
+                for contraction in [0.0, 0.1, 0.25] {
+                    let problem = Problem::new(&muscle, Pressure::bar(bar)).unwrap();
+                    found.push(problem.follow(contraction, Approach::Auto).unwrap().convergence.iterations);
+                }
+            }
+            assert!(found.iter().all(|count| *count <= most), "{most}: {found:?}");
+        }
+    }
 }
