@@ -100,3 +100,23 @@ impl Part<'_> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_without_a_state_have_no_derivatives() {
+        let mut prediction = Prediction {
+            force: vec![1.0; 3],
+            jacobian: vec![2.0; 6],
+            by_pressure: vec![3.0; 3],
+            by_contraction: vec![4.0; 3],
+        };
+        prediction.leave_out(&[1]);
+        assert!(prediction.force[1].is_nan() && [0, 2].iter().all(|row| prediction.force[*row] == 1.0));
+        assert_eq!(prediction.jacobian, [2.0, 2.0, 0.0, 0.0, 2.0, 2.0]);
+        assert_eq!(prediction.by_pressure, [3.0, 0.0, 3.0]);
+        assert_eq!(prediction.by_contraction, [4.0, 0.0, 4.0]);
+    }
+}

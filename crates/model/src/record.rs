@@ -461,6 +461,78 @@ mod tests {
         assert!(record.averaged(&groups, vec![10.0], sweeps).is_none());
     }
 
+    /// Two sweeps at a held length, with uneven times: rates are differences of the neighbours, steps those of the row before.
+    #[test]
+    fn moments_know_what_was_before() {
+        let head = "time [s],pressure [bar],contraction [%],force [N],temperature [C],sweep\n";
+        let rows =
+            "10,1,5,1,20,a\n11,2,5,2,21,a\n13,4,5,3,23,a\n17,3,5,2,26,a\n20,1,5,1,26,b\n22,3,5,2,25,b\n";
+        let record = Record::new(&Data::from_csv(&format!("{head}{rows}"), "held.csv").unwrap(), 0.25);
+        let of = |number: &dyn Fn(&Moment) -> f64| record.moments().iter().map(number).collect::<Vec<_>>();
+        let close = |found: Vec<f64>, expected: [f64; 6]| {
+            let worst = found.iter().zip(expected).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            assert!(worst < 1e-9, "{found:?} {expected:?}");
+        };
+        close(of(&|m| 1e-5 * m.pressure_rate), [1.0, 1.0, 1.0 / 6.0, -0.25, 1.0, 1.0]);
+        close(of(&|m| 1e-5 * m.pressure_step), [0.0, 1.0, 2.0, -1.0, 0.0, 2.0]);
+        close(of(&|m| m.since), [0.0, 1.0, 2.0, 4.0, 0.0, 2.0]);
+        close(of(&|m| m.time), [0.0, 1.0, 3.0, 7.0, 0.0, 2.0]);
+        close(of(&|m| m.clock), [0.0, 1.0, 3.0, 7.0, 10.0, 12.0]);
+        close(of(&|m| m.temperature), [0.0, 1.0, 3.0, 6.0, 6.0, 5.0]);
+        close(of(&|m| f64::from(m.begins)), [1.0, 0.0, 0.0, 0.0, 1.0, 0.0]);
+        // Without times there are no rates.
+        let untimed = "pressure [bar],contraction [%],force [N]\n1,5,1\n2,5,2\n";
+        let untimed = Record::new(&Data::from_csv(untimed, "map.csv").unwrap(), 0.25);
+        assert!(untimed.moments().iter().all(|m| m.pressure_rate == 0.0 && m.since == 0.0));
+        assert!(!record.is_empty() && record.has_time() && !untimed.has_time());
+    }
+
+    /// A noisy reading at rest adds nothing to the part of the loop that is done.
+    #[test]
+    fn rest_is_no_part_of_a_loop() {
+        let place = [0.0, 1.0, 2.0, 2.2, 1.8, 2.2, 1.8, 2.0, 3.0, 4.0];
+        let moves = [1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0];
+        let at = |i: usize| Moment {
+            direction: moves[i],
+            begins: i == 0,
+            ..Moment::at_rest(1e5, 0.01 * place[i])
+        };
+        let mut sweep: Vec<Moment> = (0..place.len()).map(at).collect();
+        under_way(&mut sweep);
+        for (moment, place) in sweep.iter().zip(place) {
+            assert!((moment.cycle - place / 8.0).abs() < 1e-12, "{place}: {}", moment.cycle);
+        }
+    }
+
+    #[test]
+    fn a_map_is_no_path() {
+        let still = || vec![Moment::at_rest(1e5, 0.01), Moment::at_rest(2e5, 0.02)];
+        let of =
+            |moments| Record::from_moments(moments, vec![1.0; 2], std::iter::once(0..2).collect()).unwrap();
+        let [mut moved, map] = [still(), still()];
+        moved[1].direction = 1.0;
+        let (moved, map) = (of(moved), of(map));
+        assert!(moved.is_path() && !map.is_path());
+    }
+
+    /// The last row of a sweep is kept, once; steps are those between the rows kept.
+    #[test]
+    fn thinned_sweeps_end_where_they_ended() {
+        let at = |i: u32| Moment {
+            direction: 1.0,
+            clock: f64::from(i),
+            ..Moment::at_rest(1e5, 0.01 * f64::from(i))
+        };
+        let record =
+            Record::from_moments((0..19).map(at).collect(), vec![0.0; 19], vec![0..9, 9..19]).unwrap();
+        let (thin, kept) = record.thinned(10);
+        assert_eq!(kept, [0, 2, 4, 6, 8, 9, 11, 13, 15, 17, 18]);
+        assert_eq!(thin.sweeps(), [0..5, 5..11]);
+        let steps: Vec<f64> = thin.moments().iter().map(|moment| (100.0 * moment.step).round()).collect();
+        assert_eq!(steps, [0.0, 2.0, 2.0, 2.0, 2.0, 0.0, 2.0, 2.0, 2.0, 2.0, 1.0]);
+        assert_eq!(thin.moments()[10].since.to_bits(), 1.0_f64.to_bits());
+    }
+
     #[test]
     fn copies_with_other_forces_share_what_was_moved() {
         let moments: Vec<Moment> = (0..5).map(|i| Moment::at_rest(1e5, 0.01 * f64::from(i))).collect();

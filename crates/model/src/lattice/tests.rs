@@ -123,3 +123,48 @@ fn a_singular_muscle_has_nodes_above_zero() {
     assert_eq!(spans(&pleated), [false, false, true]);
     assert_eq!(spans(&braid(10.0, 1e5).1), [true; 3]);
 }
+
+/// Nodes of both lattices are called by their place on the finer one, so that one starts from the other.
+#[test]
+fn a_node_has_one_name() {
+    let equilibrium = braid(10.0, 1e5).1;
+    for levels in [false, true] {
+        let empty = Lattice::unsolved(&equilibrium, 0, 1.0, levels);
+        let spans = [2e5, 2.2e5].map(|p| empty.span(p, [0.01, 0.1]).unwrap());
+        let lattice = empty.around(&spans);
+        let fine = STEP[0] / LEVEL_STEPS as f64;
+        for (row, column) in [(0, 0), (1, 3), (2, 5)] {
+            let [of_pressure, of_contraction] = lattice.key(row, column);
+            let ln_p = (lattice.low[0] as f64 + row as f64) * lattice.steps[0];
+            assert!((of_pressure as f64 * fine - ln_p).abs() < 1e-9, "{levels}: {of_pressure} {ln_p}");
+            assert_eq!(of_contraction, lattice.low[1] + column as i64);
+        }
+    }
+}
+
+/// A row has no equilibrium for sure only if they have ended at the pressures on both sides.
+#[test]
+fn equilibria_end_at_both_neighbouring_pressures() {
+    let equilibrium = braid(10.0, 1e6).1;
+    let empty = Lattice::unsolved(&equilibrium, 0, 1.0, false);
+    let spans: Vec<Span> = (0..8).map(|i| empty.span(6e4 * 1.1_f64.powi(i), [0.01, 0.4]).unwrap()).collect();
+    let lattice = empty.around(&spans).solved(&equilibrium, &Starts::default()).0;
+    let (mut both, mut one) = (0, 0);
+    for line in 0..lattice.count[0] - 1 {
+        let ends = [line, line + 1].map(|line| lattice.ends[line].as_ref().map(|(end, _)| *end));
+        let [Some(below), Some(above)] = ends else { continue };
+        let pressure = ((lattice.low[0] as f64 + line as f64 + 0.5) * lattice.steps[0]).exp();
+        for column in below.min(above).saturating_sub(1)..below.max(above) + 3 {
+            let contraction = 0.5 * (lattice.contraction(column) + lattice.contraction(column + 1));
+            let is_beyond = column > below && column > above;
+            assert_eq!(
+                lattice.beyond(pressure, contraction).is_some(),
+                is_beyond,
+                "{line} {column} {ends:?}"
+            );
+            both += usize::from(is_beyond);
+            one += usize::from(!is_beyond && (column > below || column > above));
+        }
+    }
+    assert!(both > 0 && one > 0, "{both} {one}");
+}

@@ -6,7 +6,7 @@
     reason = "a test that cannot be set up fails; values are exact by construction"
 )]
 
-use bulge_effects::law::{LAWS, LawGeometry};
+use bulge_effects::law::{LAWS, Law, LawGeometry};
 use bulge_effects::{Catalogue, Group, Moment};
 use bulge_model::{Model, Record, Wanted};
 use bulge_muscles::{Kind, Muscle, Parameter, Quantity, preset};
@@ -356,4 +356,37 @@ fn parameters_are_called_by_their_effect() {
     let model = one_effect(&muscles()[0], "frame-compliance");
     let labels: Vec<String> = model.parameters().iter().map(bulge_model::ModelParameter::label).collect();
     assert_eq!(labels, ["frame-compliance.compliance", "frame-compliance.power"]);
+    let zero = one_effect(&muscles()[0], "length-zero-error");
+    assert!((zero.parameters()[0].shown(4e-3) - 4.0).abs() < 1e-12, "millimetres are shown");
+}
+
+/// Rows of a specimen that a model was not made for are those of its last one.
+#[test]
+fn specimens_that_are_not_known_are_the_last_one() {
+    let (muscle, record) = specimens("cylinder");
+    let model = of_both(&muscle);
+    assert_eq!(model.specimens(), ["1", "2"]);
+    let model = model.with(Catalogue::builtin().find("force-offset").unwrap(), Some(&[3.0])).unwrap();
+    let later: Vec<Moment> = record
+        .moments()
+        .iter()
+        .map(|m| Moment { specimen: m.specimen + m.specimen.min(1) * 4, ..*m })
+        .collect();
+    let later = Record::from_moments(later, vec![0.0; 48], record.sweeps().to_vec()).unwrap();
+    let [known, unknown] = [&record, &later]
+        .map(|record| model.evaluate(record, &[3.0, 8.0], &Wanted::default()).unwrap().force);
+    assert!(known.iter().zip(&unknown).all(|(a, b)| a.to_bits() == b.to_bits()));
+}
+
+/// Rows take an integration where ends are clamped; cylinders and laws have formulas.
+#[test]
+fn clamped_braids_are_costly() {
+    let costly = |model: &Model| model.is_costly(&model.start()).unwrap();
+    for (ends, expected) in [("cylinder", false), ("clamped", true)] {
+        let muscle = specimens(ends).0;
+        assert_eq!(costly(&Model::new(&muscle)), expected);
+        let law = Law::find("tondu-lopez").unwrap();
+        let start = law.start(&LawGeometry::from(&muscle), None);
+        assert!(!costly(&Model::from_law(&muscle, law, &start, true)));
+    }
 }

@@ -96,6 +96,7 @@ fn what_is_shared_serves_the_same_muscle_only() {
     warm.hold();
     let base = base();
     base.evaluate_warm(&record, &THETA, &wanted(), &warm).unwrap();
+    assert!(warm.is_held() && warm.shared().is_held());
     let all = ["radius-error", "braid-angle-error", "length-zero-error"];
     for (effect, value) in
         [("coulomb-friction", 8.0), ("bladder-elasticity", 2e5), ("pressure-offset", 500.0)]

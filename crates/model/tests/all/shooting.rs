@@ -6,6 +6,7 @@
     reason = "a test that cannot be set up fails; values are exact by construction"
 )]
 
+use bulge_effects::law::{Law, LawGeometry};
 use bulge_effects::{
     Action, Balance, Card, Catalogue, Effect, Evidence, Form, Group, Jet, LoadEffect, Mechanism, Moment,
     Needs, ParameterCard, Parity, Row, Signature, Stage,
@@ -248,15 +249,15 @@ fn effects_see_the_bladder_of_the_reshaped_muscle() {
     }
 }
 
-/// Adds up the turn of the strands and reads 1e6 N per unit.
+/// Adds up a quantity along a sweep and reads 1e6 N per unit.
 #[derive(Debug)]
-struct Turns;
+struct Summed(fn(&Balance) -> Jet);
 
-impl Effect for Turns {
+impl Effect for Summed {
     fn card(&self) -> Card<'_> {
         Card {
-            name: "turns",
-            family: "turns",
+            name: "summed",
+            family: "summed",
             mechanism: Mechanism::DryFriction,
             form: Form::Loose,
             title: "",
@@ -286,9 +287,9 @@ impl Effect for Turns {
     }
 }
 
-impl LoadEffect for Turns {
+impl LoadEffect for Summed {
     fn act(&self, row: Row<'_>, balance: &Balance, force: &mut Jet) {
-        row.memory[0] += balance.turn;
+        row.memory[0] += (self.0)(balance);
         *force = row.memory[0] * 1e6;
     }
 }
@@ -299,7 +300,7 @@ fn turned(muscle: &Muscle, effects: &[(&str, &[f64])], pressures: [f64; 2], eps:
     let model = effects.iter().fold(Model::new(muscle), |model, (name, values)| {
         model.with(catalogue.find(name).unwrap(), Some(values)).unwrap()
     });
-    let turns: std::sync::Arc<dyn Effect> = std::sync::Arc::new(Turns);
+    let turns: std::sync::Arc<dyn Effect> = std::sync::Arc::new(Summed(|balance| balance.turn));
     let [alone, turning] = [model.clone(), model.with(&turns, None).unwrap()];
     let step = (pressures[1] - pressures[0]) / f64::from(steps);
     let moments: Vec<Moment> = (0..=steps)
@@ -342,6 +343,30 @@ fn strands_turn_with_the_pressure_where_fibres_or_bladder_give() {
     assert!((usual / known - 1.0).abs() < 0.1, "{usual} {known}");
     // With rigid fibres and no bladder the shape doesn't depend on the pressure.
     assert!(turned(&muscle, &[stiff], [1e5, 6e5], 0.1, 10).abs() < 1e-6);
+}
+
+/// Force laws have no shape: effects see a cylinder of the stated radius, with its volume and the tension of its fibres.
+#[test]
+fn effects_see_a_cylinder_where_a_law_gives_the_force() {
+    let muscle = braid();
+    let law = Law::find("tondu-lopez").unwrap();
+    let model = Model::from_law(&muscle, law, &law.start(&LawGeometry::from(&muscle), None), true);
+    let [pressure, eps] = [3e5, 0.1];
+    let record = map(&[pressure], &[eps]);
+    let law_n = force(&model, &record, &model.start())[0];
+    let seen = |quantity: fn(&Balance) -> Jet| {
+        let summed: std::sync::Arc<dyn Effect> = std::sync::Arc::new(Summed(quantity));
+        let model = model.with(&summed, None).unwrap();
+        (force(&model, &record, &model.start())[0] - law_n) / 1e6
+    };
+    let area = std::f64::consts::PI * 0.01 * 0.01;
+    for (found, expected) in [
+        (seen(|balance| balance.volume), area * 0.3 * (1.0 - eps)),
+        (seen(|balance| balance.mid_radius), 0.01),
+        (seen(|balance| balance.tension), law_n + pressure * area),
+    ] {
+        assert!((found / expected - 1.0).abs() < 1e-9, "{found} {expected}");
+    }
 }
 
 #[test]
