@@ -136,7 +136,7 @@ impl Line {
         Self { asked, values, evaluations }
     }
 
-    fn without(asked: String, error: &bulge_fibre::FibreError) -> Self {
+    fn without(asked: &str, error: &bulge_fibre::FibreError) -> Self {
         // The kind of the error, without its numbers.
         let kind = format!("{error:?}");
         let kind = kind.split([' ', '(']).next().unwrap_or_default().to_owned();
@@ -153,7 +153,7 @@ fn lines(name: &str, keys: &str, bar: f64) -> Vec<Line> {
         let asked = format!("{name}, {bar} bar, {what}");
         lines.push(match &found {
             Ok(found) => Line::of(asked, found),
-            Err(error) => Line::without(asked, error),
+            Err(error) => Line::without(&asked, error),
         });
         found.ok()
     };

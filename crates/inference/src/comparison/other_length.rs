@@ -38,7 +38,7 @@ pub(crate) fn question(
     let is_displacement =
         |column: &bulge_measurements::ColumnUse| column.quantity.as_deref() == Some("displacement");
     let l0 = muscle.length().si();
-    let differ = (0..data.specimens().len()).any(|specimen| data.length_of(specimen as u32, l0) != l0);
+    let differ = (0..data.len()).any(|row| data.length_of(data.specimen_of(row), l0).total_cmp(&l0).is_ne());
     if !matches!(data.motion(), Trace::Length(_))
         || differ
         || data.reading().columns.iter().any(is_displacement)

@@ -137,7 +137,7 @@ fn a_node_has_one_name() {
             let [of_pressure, of_contraction] = lattice.key(row, column);
             let ln_p = (lattice.low[0] as f64 + row as f64) * lattice.steps[0];
             assert!((of_pressure as f64 * fine - ln_p).abs() < 1e-9, "{levels}: {of_pressure} {ln_p}");
-            assert_eq!(of_contraction, lattice.low[1] + column as i64);
+            assert_eq!(of_contraction, lattice.low[1] + i64::try_from(column).unwrap());
         }
     }
 }
