@@ -162,6 +162,8 @@ struct Integrals {
 
 impl Integrals {
     fn at(t: f64, m: f64) -> Self {
+        #[cfg(test)]
+        crate::work::count();
         let Pair { f, d } = incomplete(t, m);
         let c2 = 1.0 / (1.0 + t * t);
         let (c, s) = (c2.sqrt(), t * c2.sqrt());

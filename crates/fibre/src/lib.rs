@@ -10,6 +10,8 @@ mod error;
 mod formulas;
 mod groups;
 mod isobars;
+#[cfg(test)]
+mod kept;
 mod linearised;
 mod lobes;
 mod meridian;
@@ -26,6 +28,8 @@ mod solve;
 mod start;
 mod unknowns;
 mod volume;
+#[cfg(test)]
+mod work;
 pub use draw::PleatedNumbers;
 pub use error::FibreError;
 pub use formulas::{Formula, FormulaInput, MOST_GAPS, MOST_PARAMETERS};

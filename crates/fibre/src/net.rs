@@ -291,6 +291,8 @@ impl<D: Real> Net<D> {
     /// An integration spends most of its time here. The two usual nets are therefore written out: that of a
     /// braid takes half the time of the general formulas, to which both are equal up to rounding.
     pub(crate) fn local(&self, r: D, tension: D) -> Local<D> {
+        #[cfg(test)]
+        crate::work::count();
         if self.has_wall() || self.cloth.is_some() {
             return self.local_of_everything(r, tension);
         }
@@ -334,6 +336,8 @@ impl<D: Real> Net<D> {
     /// Tension and local quantities of fibres that don't stretch, where H has the value `energy`. The energy
     /// of the wall is computed only once.
     pub(crate) fn local_with_energy(&self, r: D, energy: D) -> (D, Local<D>) {
+        #[cfg(test)]
+        crate::work::count();
         let sigma = self.sigma(r, D::from(0.0));
         let wall = self.wall(sigma, r);
         let tension = (energy + wall.w - sigma * wall.w_1) / (sigma * sigma);
@@ -342,6 +346,8 @@ impl<D: Real> Net<D> {
 
     /// Tension and local quantities of fibres that don't stretch, from the meridional force N = T sigma + w_1.
     pub(crate) fn local_with_force(&self, r: D, sigma: D, force: D) -> (D, Local<D>) {
+        #[cfg(test)]
+        crate::work::count();
         let wall = self.wall(sigma, r);
         let tension = (force - wall.w_1) / sigma;
         (tension, self.local_in(&wall, sigma, r, tension))

@@ -318,6 +318,8 @@ impl<D: Real> Meridian<D> for Elastic<'_, D> {
     }
 
     fn at(&self, point: &Point) -> Local<D> {
+        #[cfg(test)]
+        crate::work::count();
         let Ends { r_m, size, q2, .. } = self.ends;
         let zero = D::from(0.0);
         let reaches = |piece: &&Piece<D>| piece.span.to >= point.part && piece.span.slack == point.slack;

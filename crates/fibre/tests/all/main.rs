@@ -3,6 +3,5 @@
 mod cloth_energy;
 mod elastic_waist;
 mod found_again;
-mod kept;
 mod quadrature_and_ode;
 mod slack;

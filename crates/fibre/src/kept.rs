@@ -1,0 +1,291 @@
+//! Equilibria of very different muscles: their values to eight digits, and what they cost, as kept in `kept.tsv`.
+//! The values are those of the independent checks of `bulge validate`; a change that moves one of them, or
+//! takes more evaluations, is seen here.
+//!
+//! `BULGE_KEEP=1 cargo test -p bulge-fibre --lib kept` writes the file anew.
+
+use crate::{
+    Approach, Convergence, FibreError, Given, Linear, Linearised, Parts, Problem, Repeated, Response, Start,
+    work,
+};
+use bulge_muscles::{Muscle, Parameter, Pressure, from_toml};
+use std::cell::RefCell;
+use std::fmt::Write;
+
+/// Names with keys of muscle files.
+const MUSCLES: [(&str, &str); 25] = [
+    ("pleated", "kind = \"pleated\"\nlength = \"110 mm\"\nradius = \"16 mm\"\nfibres = 40\n"),
+    (
+        "pleated elastic",
+        "kind = \"pleated\"\nlength = \"110 mm\"\nradius = \"16 mm\"\nfibres = 40\nfibre = { stiffness = \"6 kN\" }\n",
+    ),
+    (
+        "pleated slender",
+        "kind = \"pleated\"\nlength = \"300 mm\"\nradius = \"12 mm\"\nfibres = 24\nfibre = { stiffness = \"25 kN\" }\n",
+    ),
+    (
+        "pleated smooth",
+        "kind = \"pleated\"\nlength = \"60 mm\"\nradius = \"25 mm\"\nfibres = \"continuous\"\n",
+    ),
+    (
+        "cylinder",
+        "kind = \"braided\"\nlength = \"250 mm\"\nradius = \"10 mm\"\nbraid_angle = \"25 deg\"\nends = \"cylinder\"\n",
+    ),
+    (
+        "cylinder rubber",
+        "kind = \"braided\"\nlength = \"250 mm\"\nradius = \"10 mm\"\nbraid_angle = \"25 deg\"\nends = \"cylinder\"\nwall = \"2 mm\"\n\
+         fibres = 60\nfibre = { stiffness = \"9 kN\" }\neffects = { bladder-elasticity = { c10 = \"0.25 MPa\", c01 = \"0.02 MPa\" } }\n",
+    ),
+    (
+        "braid",
+        "kind = \"braided\"\nlength = \"250 mm\"\nradius = \"10 mm\"\nbraid_angle = \"25 deg\"\nends = \"clamped\"\n",
+    ),
+    (
+        "braid short",
+        "kind = \"braided\"\nlength = \"60 mm\"\nradius = \"12 mm\"\nbraid_angle = \"28 deg\"\nends = \"clamped\"\n",
+    ),
+    (
+        "braid narrow ends",
+        "kind = \"braided\"\nlength = \"120 mm\"\nradius = \"12 mm\"\nbraid_angle = \"24 deg\"\nends = \"clamped\"\neffects = { end-radius = { radius = \"7 mm\" } }\n",
+    ),
+    (
+        "braid wide ends",
+        "kind = \"braided\"\nlength = \"150 mm\"\nradius = \"10 mm\"\nbraid_angle = \"24 deg\"\nends = \"clamped\"\neffects = { end-radius = { radius = \"12 mm\" } }\n",
+    ),
+    (
+        "braid rubber",
+        "kind = \"braided\"\nlength = \"200 mm\"\nradius = \"10 mm\"\nbraid_angle = \"25 deg\"\nends = \"clamped\"\nwall = \"2 mm\"\n\
+         effects = { bladder-elasticity = { c10 = \"0.3 MPa\" } }\n",
+    ),
+    (
+        "braid stiff rubber",
+        "kind = \"braided\"\nlength = \"90 mm\"\nradius = \"9 mm\"\nbraid_angle = \"30 deg\"\nends = \"clamped\"\nwall = \"2.5 mm\"\n\
+         effects = { bladder-elasticity = { c10 = \"0.9 MPa\", c01 = \"0.1 MPa\" } }\n",
+    ),
+    (
+        "braid elastic",
+        "kind = \"braided\"\nlength = \"250 mm\"\nradius = \"10 mm\"\nbraid_angle = \"25 deg\"\nends = \"clamped\"\nfibres = 60\n\
+         fibre = { stiffness = \"9 kN\" }\n",
+    ),
+    (
+        "braid elastic rubber",
+        "kind = \"braided\"\nlength = \"140 mm\"\nradius = \"10 mm\"\nbraid_angle = \"27 deg\"\nends = \"clamped\"\nwall = \"1.5 mm\"\n\
+         fibres = 60\nfibre = { stiffness = \"9 kN\" }\neffects = { bladder-elasticity = { c10 = \"0.3 MPa\" } }\n",
+    ),
+    (
+        "braid gas inside",
+        "kind = \"braided\"\nlength = \"250 mm\"\nradius = \"10 mm\"\nbraid_angle = \"25 deg\"\nends = \"clamped\"\nwall = \"2 mm\"\n\
+         effects = { wall-thickness = { thickness = \"1 mm\" }, bladder-elasticity = { c10 = \"0.2 MPa\" } }\n",
+    ),
+    (
+        "pleated pleats",
+        "kind = \"pleated\"\nlength = \"110 mm\"\nradius = \"16 mm\"\nfibres = 40\nfibre = { stiffness = \"12.5 kN\" }\n\
+         effects = { pleat-depth = { depth = \"2 mm\" } }\n",
+    ),
+    (
+        "pleated cloth",
+        "kind = \"pleated\"\nlength = \"110 mm\"\nradius = \"16 mm\"\nfibres = 40\nfibre = { stiffness = \"12.5 kN\" }\n\
+         effects = { limited-unfolding = { hoop_stiffness = \"81 kN/m\", unfolded_radius = \"28 mm\" } }\n",
+    ),
+    (
+        "pleated lobes",
+        "kind = \"pleated\"\nlength = \"110 mm\"\nradius = \"16 mm\"\nfibres = 12\neffects = { lobes = { circumference = \"330 mm\" } }\n",
+    ),
+    (
+        "pleated twist",
+        "kind = \"pleated\"\nlength = \"110 mm\"\nradius = \"16 mm\"\nfibres = 40\neffects = { fibre-misalignment = { angle = \"4 deg\" } }\n",
+    ),
+    (
+        "long braid of elastic fibres",
+        "kind = \"braided\"\nlength = \"539 mm\"\nradius = \"5.66 mm\"\nbraid_angle = \"24.3 deg\"\nends = \"clamped\"\nfibres = 60\n\
+         fibre = { stiffness = \"50.8 kN\" }\n",
+    ),
+    (
+        "braid with a waist",
+        "kind = \"braided\"\nlength = \"665 mm\"\nradius = \"25 mm\"\nbraid_angle = \"37.6 deg\"\nends = \"clamped\"\n\
+         effects = { end-radius = { radius = \"8.1 mm\" } }\n",
+    ),
+    (
+        "braid in cloth",
+        "kind = \"braided\"\nlength = \"300 mm\"\nradius = \"7.7 mm\"\nbraid_angle = \"47.8 deg\"\nends = \"clamped\"\n\
+         effects = { limited-unfolding = { hoop_stiffness = \"8.7 kN/m\", unfolded_radius = \"7.73 mm\" } }\n",
+    ),
+    (
+        "braid with gas far inside",
+        "kind = \"braided\"\nlength = \"487 mm\"\nradius = \"12.4 mm\"\nbraid_angle = \"10.1 deg\"\nends = \"clamped\"\n\
+         effects = { wall-thickness = { thickness = \"3.54 mm\" } }\n",
+    ),
+    (
+        "braid of hard rubber",
+        "kind = \"braided\"\nlength = \"54 mm\"\nradius = \"19 mm\"\nbraid_angle = \"20 deg\"\nends = \"clamped\"\nwall = \"1.6 mm\"\n\
+         effects = { end-radius = { radius = \"9 mm\" }, bladder-elasticity = { c10 = \"20 MPa\" } }\n",
+    ),
+    (
+        "pleated soft lobes",
+        "kind = \"pleated\"\nlength = \"47 mm\"\nradius = \"33 mm\"\nfibres = 24\nfibre = { stiffness = \"0.5 kN\" }\n\
+         effects = { lobes = { circumference = \"234 mm\" } }\n",
+    ),
+];
+const BARS: [f64; 2] = [0.8, 3.5];
+const CONTRACTIONS: [f64; 6] = [-0.03, 0.003, 0.02, 0.08, 0.15, 0.22];
+/// Accuracy of the sums of kept values: what other processors' elementary functions, and the steps that depend
+/// on them, differ by is smaller.
+const CLOSE: f64 = 1e-8;
+/// Values below this one are differences of larger ones, in SI units.
+const LEAST: f64 = 1e-7;
+/// More evaluations than kept that are no change: one step of an integration.
+const MORE: f64 = 1.02;
+
+fn muscle(keys: &str) -> Muscle {
+    from_toml(&format!("name = \"m\"\n{keys}"), "m.toml").unwrap()
+}
+
+/// What was asked, values, and the evaluations of all that was tried on the way ([`work`]).
+struct Line {
+    asked: String,
+    values: [f64; 2],
+    work: u64,
+}
+
+fn values_of(asked: &str, found: &Response) -> Vec<f64> {
+    let Convergence { residual, first_integral, .. } = found.convergence;
+    assert!(residual < 1e-8 && first_integral < 1e-8, "{asked}: {residual:e} {first_integral:e}");
+    vec![
+        found.force_n,
+        found.length_m,
+        found.volume_m3,
+        found.volume_polygon_m3,
+        found.max_radius_m,
+        found.mid_radius_m,
+        found.fibre_tension_n,
+        found.fibre_strain,
+        found.stiffness_n_per_m,
+        found.volume_slope_m2,
+        found.stiffness_isothermal_n_per_m,
+        found.stiffness_adiabatic_n_per_m,
+        found.end_slope_rad,
+    ]
+}
+
+/// Two sums of all values, in which each counts by its relative change: asinh(v/e) is ln(2 v/e) far above e.
+fn summed(values: &[f64]) -> [f64; 2] {
+    let place = |i: usize| 1.0 + i as f64;
+    let term = |(i, value): (usize, &f64)| {
+        let ln = (value / LEAST).asinh();
+        [ln * place(i).sin(), ln * (1.3 * place(i)).cos()]
+    };
+    values.iter().enumerate().map(term).fold([0.0; 2], |sum, term| [sum[0] + term[0], sum[1] + term[1]])
+}
+
+/// All that is asked about a muscle at a pressure.
+fn lines(name: &str, keys: &str, bar: f64) -> Vec<Line> {
+    let muscle = muscle(keys);
+    let problem = Problem::new(&muscle, Pressure::bar(bar)).unwrap();
+    let auto = Approach::Auto;
+    let lines = RefCell::new(Vec::new());
+    let add = |what: &str, answer: &dyn Fn() -> Result<Vec<f64>, FibreError>| {
+        let (found, work) = work::of(answer);
+        let mut asked = format!("{name}, {bar} bar, {what}");
+        if let Err(error) = &found {
+            // The kind of the error, without its numbers.
+            let kind = format!("{error:?}");
+            asked = format!("{asked}: {}", kind.split([' ', '(']).next().unwrap_or_default());
+        }
+        lines.borrow_mut().push(Line { asked, values: summed(&found.unwrap_or_default()), work });
+    };
+    let response = |what: &str, answer: &dyn Fn() -> Result<Response, FibreError>| {
+        add(what, &|| answer().map(|found| values_of(what, &found)));
+        answer().ok()
+    };
+    for contraction in CONTRACTIONS {
+        let found = response(&format!("contraction {contraction}"), &|| problem.follow(contraction, auto));
+        let Some(found) = found.filter(|found| found.force_n > 0.0) else { continue };
+        response(&format!("force of {contraction}"), &|| {
+            problem.solve(Given::Force(0.9 * found.force_n), auto)
+        });
+        response(&format!("volume of {contraction}"), &|| {
+            problem.solve(Given::Volume(1.02 * found.volume_m3), auto)
+        });
+    }
+    response("no force", &|| problem.solve(Given::Force(0.0), auto));
+    response("shooting", &|| problem.follow(0.1, Approach::Shooting));
+    add("end", &|| Ok(vec![problem.contraction_limit(auto)?, problem.range_end(auto)?.contraction()]));
+    add("longest", &|| Ok(problem.longest().into_iter().collect()));
+    let of_isobar = |contractions: &[f64]| {
+        let isobar = problem.isobar(contractions, auto)?;
+        let of = |point: &Response| [point.contraction, point.force_n, point.volume_m3];
+        Ok(isobar.points.iter().flat_map(of).chain(isobar.contraction_limit).collect())
+    };
+    add("isobar", &|| of_isobar(&[-0.02, 0.01, 0.05, 0.1, 0.2, 0.3]));
+    add("isobar backwards", &|| of_isobar(&[0.3, 0.2, 0.1, 0.05]));
+    add("gradient", &|| {
+        let gradient = problem.gradient(0.08, auto)?;
+        let by_part = gradient.by_part.iter().flat_map(|(_, by)| *by);
+        Ok(gradient.by_contraction.into_iter().chain(gradient.by_pressure).chain(by_part).collect())
+    });
+    let moving = Parts::seeded(&muscle, &[Parameter::Length, Parameter::Radius]);
+    let linear = |found: &Linearised| {
+        let linear = [found.force_n, found.equator_force_n, found.mid_radius_m, found.volume_polygon_m3];
+        let numbers = |l: &Linear| [l.value, l.by_contraction, l.by_pressure, l.by_lane[0], l.by_lane[1]];
+        linear.iter().flat_map(numbers).collect::<Vec<_>>()
+    };
+    add("linearised", &|| problem.linearised(0.08, &moving, auto).map(|found| linear(&found)));
+    let start: Option<Start> = problem.linearised(0.08, &moving, auto).ok().and_then(Linearised::into_start);
+    add("linearised beside", &|| {
+        problem.linearised_from(start.as_ref(), 0.085, &moving, auto).map(|found| linear(&found))
+    });
+    if let Ok(repeated) = Repeated::new(moving.clone()) {
+        let mut near = None;
+        for i in 0..3 {
+            let at = (Pressure::bar(bar * (1.0 + 0.1 * f64::from(i))), 0.05 + 0.02 * f64::from(i));
+            let found = repeated.linearised_from(near.as_ref(), at.0, at.1).ok();
+            add(&format!("repeated {i}"), &|| {
+                repeated.linearised_from(near.as_ref(), at.0, at.1).map(|found| linear(&found))
+            });
+            near = found.and_then(Linearised::into_start);
+        }
+    }
+    add("shape", &|| {
+        let shape = problem.shape(Given::Contraction(0.08), auto, 9)?;
+        let of = |p: &crate::MeridianPoint| [p.x_m, p.r_m, p.slope_rad, p.braid_angle_rad, p.fibre_tension_n];
+        let mut values: Vec<f64> = shape.meridian.iter().flat_map(of).collect();
+        if let Some(numbers) = problem.pleated_numbers(&shape.response) {
+            values.extend([numbers.m, numbers.phi_r, numbers.force_f, numbers.volume_v]);
+        }
+        Ok(values)
+    });
+    lines.into_inner()
+}
+
+#[test]
+fn kept_equilibria_and_their_cost() {
+    let found: Vec<Line> =
+        MUSCLES.iter().flat_map(|(name, keys)| BARS.map(|bar| lines(name, keys, bar))).flatten().collect();
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/src/kept.tsv");
+    if std::env::var_os("BULGE_KEEP").is_some() {
+        let mut text = String::new();
+        for line in &found {
+            let values: Vec<String> = line.values.iter().map(|value| format!("{value:.9}")).collect();
+            writeln!(text, "{}\t{}\t{}", line.asked, line.work, values.join(" ")).unwrap();
+        }
+        std::fs::write(path, text).unwrap();
+    }
+    let kept = std::fs::read_to_string(path).unwrap();
+    assert_eq!(kept.lines().count(), found.len());
+    let mut differ = Vec::new();
+    for (line, kept) in found.iter().zip(kept.lines()) {
+        let mut parts = kept.split('\t');
+        let mut next = || parts.next().unwrap_or_default();
+        let (asked, evaluations) = (next(), next().parse::<f64>().unwrap());
+        let values: Vec<f64> = next().split_whitespace().map(|value| value.parse().unwrap()).collect();
+        let off = line.values.iter().zip(&values).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        let same = line.asked == asked && off < CLOSE;
+        if !same || line.work as f64 > MORE * evaluations + 1.0 {
+            differ.push(format!(
+                "{asked}: {off:e}, {} of {evaluations} evaluations; found {}",
+                line.work, line.asked
+            ));
+        }
+    }
+    assert!(differ.is_empty(), "{} differ:\n{}", differ.len(), differ[..differ.len().min(20)].join("\n"));
+}
