@@ -27,19 +27,26 @@ pub(crate) struct Cylinder<D> {
     pub(crate) force: D,
     pub(crate) volume: D,
     pub(crate) iterations: u32,
+    /// Radial imbalance that is left, in parts of A'.
+    pub(crate) residual: f64,
 }
 
-/// Radius, tension and radial imbalance A' - h with a tension `more` beyond the one that stretches the fibres
-/// to the end distance: `q^2 r^2 = (1 + e)^2 - sigma^2` without a difference of two nearly equal numbers.
-fn balance<D: Real>(net: &Net<D>, sigma: D, more: D) -> (D, D, D) {
+/// Radius and tension with a tension `more` beyond the one that stretches the fibres to the end distance:
+/// `q^2 r^2 = (1 + e)^2 - sigma^2` without a difference of two nearly equal numbers.
+fn stretched<D: Real>(net: &Net<D>, sigma: D, more: D) -> (D, D) {
     let stretch = net.compliance * more;
     let (least, square) = if sigma.value() > 1.0 {
         ((sigma - 1.0) / net.compliance, stretch * (stretch + sigma * 2.0))
     } else {
         (D::from(0.0), -(sigma * sigma) + 1.0 + stretch * (stretch + 2.0))
     };
-    let (radius, tension) = (square.sqrt() / net.turn, least + more);
-    (radius, tension, net.area_r(radius) - net.acting_at(radius.value()).local(radius, tension).hoop)
+    (square.sqrt() / net.turn, least + more)
+}
+
+/// The radius, and the radial imbalance A' - h there.
+fn balance<D: Real>(net: &Net<D>, sigma: D, more: D) -> (D, D) {
+    let (radius, tension) = stretched(net, sigma, more);
+    (radius, net.area_r(radius) - net.acting_at(radius.value()).local(radius, tension).hoop)
 }
 
 /// The cylinder at a contraction.
@@ -55,12 +62,14 @@ pub(crate) fn solve<D: Real>(net: &Net<D>, contraction: D) -> Result<Cylinder<D>
         return Err(FibreError::TooLong { contraction: contraction.value(), limit });
     }
     let (more, iterations) = tension(net, sigma, contraction.value())?;
-    let (radius, tension, _) = balance(net, sigma, more);
+    let (radius, tension) = stretched(net, sigma, more);
     let local = net.acting_at(radius.value()).local(radius, tension);
     let section = net.section(radius);
     let force = local.force - section.area;
     let volume = net.volume_section(radius, &section) * sigma * net.half_fibre * 2.0;
-    Ok(Cylinder { radius, tension, force, volume, iterations })
+    let pressure = net.area_r(radius).value();
+    let residual = ((pressure - local.hoop.value()) / pressure).abs();
+    Ok(Cylinder { radius, tension, force, volume, iterations, residual })
 }
 
 /// The tension of the radial balance, see [`balance`]. Newton's method in T solves it for the values, and one
@@ -70,7 +79,7 @@ fn tension<D: Real>(net: &Net<D>, sigma: D, contraction: f64) -> Result<(D, u32)
     let lifted = plain.lift::<1>();
     let s = sigma.value();
     let residual = |ln_t: f64| {
-        let (r, _, gap) = balance(&lifted, Dual::from(s), Dual::<1>::variable(ln_t, 0).exp());
+        let (r, gap) = balance(&lifted, Dual::from(s), Dual::<1>::variable(ln_t, 0).exp());
         (r.value(), gap.value(), gap.gradient()[0])
     };
     let mut ln_t = (plain.area_r(1.0) / (plain.turn * plain.turn)).ln();
@@ -85,7 +94,7 @@ fn tension<D: Real>(net: &Net<D>, sigma: D, contraction: f64) -> Result<(D, u32)
         last = gap.abs();
         if step.abs() < 1e-9 {
             let at = D::from(ln_t.exp());
-            let (_, _, gap) = balance(net, sigma, at);
+            let (_, gap) = balance(net, sigma, at);
             let tension = at - gap * (ln_t.exp() / slope);
             return if tension.value() > 0.0 { Ok((tension, iteration)) } else { break };
         }

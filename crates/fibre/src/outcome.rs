@@ -254,8 +254,6 @@ fn by_cylinder<const N: usize>(net: &Net<Dual<N>>, contraction: f64) -> Result<O
         Total { value: d.value(), by_contraction, by_parameter }
     };
     let (radius, tension) = (found.radius.value(), found.tension.value());
-    let local = net.acting_at(radius).local(found.radius, found.tension);
-    let residual = ((net.area_r(found.radius) - local.hoop) / net.area_r(found.radius)).value().abs();
     Ok(Outcome {
         force: total(found.force),
         volume: total(found.volume),
@@ -267,7 +265,7 @@ fn by_cylinder<const N: usize>(net: &Net<Dual<N>>, contraction: f64) -> Result<O
             iterations: found.iterations,
             evaluations: found.iterations,
             steps: 0,
-            residual,
+            residual: found.residual,
             first_integral: 0.0,
         },
         solution: Solution::Cylinder { radius, tension },
