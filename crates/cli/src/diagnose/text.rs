@@ -234,7 +234,9 @@ fn limits(out: &mut String, diagnosis: &Diagnosis) {
     if !named.is_empty() {
         let all = absent.len();
         let of_all = if all > named.len() { format!("; all {all}: --json") } else { String::new() };
-        paragraph(out, "  ", &format!("not found, and would show from: {}{of_all}", named.join(", ")));
+        // These are limits of what is more than the effects named.
+        let beside = if diagnosis.missing.is_empty() { "" } else { " beside what is missing" };
+        paragraph(out, "  ", &format!("not found{beside}, and would show from: {}{of_all}", named.join(", ")));
     }
     if let Some(unseen) = diagnosis.remaining.unseen_below_n {
         let says = format!(
@@ -375,7 +377,7 @@ mod tests {
             "    grows with the pressure",
             "  noise: a single reading scatters by 4.10 N, 1.00 N of it correlated over 5.00 s",
             "    bladder-elasticity: wall-thickness 1.20, hoop-elasticity 7.50",
-            "  not found, and would show from: creep 0.220 N/decade (0.500 N), end-slip 0.0500 um/N",
+            "  not found beside what is missing, and would show from: creep 0.220 N/decade (0.500 N)",
             "  a further effect that changes less than about 0.320 N (RMS) would not be told",
             "  did not converge, so neither found nor rejected: bouc-wen",
             "  could not be looked for (needs a column `temperature` that changes): temperature",

@@ -221,13 +221,13 @@ fn rubber(diagnosis: &Diagnosis, catalogue: &Catalogue, wall: f64) -> String {
 impl Geometry {
     fn doubt_says(&self) -> String {
         let taken: Vec<&DoubtfulNumber> = self.doubtful.iter().filter(|number| number.by_default).collect();
-        if taken.is_empty() {
+        let stated: Vec<String> = taken.iter().map(|number| number.says()).collect();
+        let moved: Vec<String> = self.doubtful.iter().filter_map(DoubtfulNumber::moved_says).collect();
+        if taken.is_empty() && moved.is_empty() {
             return String::new();
         }
-        let stated: Vec<String> = taken.iter().map(|number| number.says()).collect();
-        let moved: Vec<String> = taken.iter().filter_map(|number| number.moved_says()).collect();
         let data = match (moved.is_empty(), self.as_stated_rmse_n) {
-            (true, _) => "the data move none of them".to_owned(),
+            (true, _) => "the data move none of the numbers with a width".to_owned(),
             (false, Some(error)) => {
                 format!(
                     "the data want {} (as stated the base is off by {} N)",
@@ -237,6 +237,9 @@ impl Geometry {
             }
             (false, None) => format!("the data want {}", moved.join(", ")),
         };
+        if taken.is_empty() {
+            return format!("within the stated widths {data}");
+        }
         let default = format!("{} by default (state `+- ...`, `+- 0` if exact)", stated.join(", "));
         let ruler = || self.ruler().map_or_else(String::new, |ruler| format!(": {ruler} settles that"));
         match (&self.if_exact, &self.if_doubtful) {
@@ -251,9 +254,9 @@ impl Geometry {
                 )
             }
             (Some(other), _) if other.differs => {
-                format!("{default}: {data}; were they exact, the answer would be {}{}", other.says(), ruler())
+                format!("{default}: {data}; were what is by default exact, the answer would be {}{}", other.says(), ruler())
             }
-            (Some(_), _) => format!("{default}: {data}; were they exact, the answer would be the same"),
+            (Some(_), _) => format!("{default}: {data}; were what is by default exact, the answer would be the same"),
             (None, None) => format!("{default}: {data}"),
         }
     }

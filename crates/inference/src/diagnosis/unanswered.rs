@@ -60,7 +60,8 @@ pub(crate) fn unanswered(data: &Data, muscle: &Muscle, comparison: Comparison) -
             quality: comparison.quality.clone(),
             ..diagnosis.data
         },
-        warnings: comparison.warnings.clone(),
+        // Those of the fit of the base are of readings that are others.
+        warnings: questions,
         comparison,
         ..diagnosis
     }

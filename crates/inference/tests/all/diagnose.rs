@@ -842,7 +842,7 @@ fn a_radius_that_is_off_is_no_effect_of_the_material() {
     );
     // With an exact radius the answer is another one, and the sentence says so.
     let exact = geometry.if_exact.as_ref().unwrap();
-    assert!(exact.differs && geometry.says.contains("were they exact"), "{geometry:?}");
+    assert!(exact.differs && geometry.says.contains("were what is by default exact"), "{geometry:?}");
     let stated = of_catalogue(
         &truth,
         &[],

@@ -20,6 +20,7 @@ const CANNOT_TELL: &str = "these data can't tell: ";
 const ADEQUATE: &str = "the model explains these data within noise and tolerance";
 const UNKNOWN: &str = "these data hold a structure that no effect of the catalogue explains";
 const TOO_FEW: &str = "these data are too few or too noisy for a verdict";
+const ASKED: &str = "these readings are asked about before anything is looked for in them";
 const EVENT: &str = "something happened during the test, and no effect is named across it";
 
 /// The verdict, one line per statement. Each line begins with `missing: `, `remains: `, `adequate: `,
@@ -96,7 +97,12 @@ fn verdict(diagnosis: &Diagnosis) -> Vec<String> {
         Verdict::Adequate => ("adequate", ADEQUATE, nearest("not needed")),
         Verdict::Unknown => ("unknown", UNKNOWN, nearest("it lowers the error and leaves the structure")),
         Verdict::CannotTell => {
-            let why = if diagnosis.remaining.event.is_some() { EVENT } else { TOO_FEW };
+            let is_asked = diagnosis.data.findings.iter().any(|finding| finding.decided);
+            let why = match &diagnosis.remaining.event {
+                Some(_) => EVENT,
+                None if is_asked => ASKED,
+                None => TOO_FEW,
+            };
             ("cannot tell", why, nearest("a ranking, not a claim"))
         }
     };

@@ -3,7 +3,7 @@
 use crate::diagnosed::{adequate, cannot_tell, missing, unknown};
 use crate::page::{check_page, check_plots, parsed, words};
 use crate::sample::{Recipe, bare, crowded, empty, hostile, rich};
-use bulge_inference::{Comparison, Diagnosis, Level, OtherAnswer, Verdict};
+use bulge_inference::{Comparison, Diagnosis, Level, Mismatch, OtherAnswer, Verdict};
 use bulge_report::PlotError;
 use bulge_report::diagnosis::{base_name, headlines, html, noise_says, plots, remains_says};
 use roxmltree::Document;
@@ -113,6 +113,15 @@ fn a_jump_stands_in_the_head_in_the_place_of_advice_to_go_on() {
 fn verdicts_stand_in_the_first_lines() {
     let mut knocked = cannot_tell(comparison());
     knocked.remaining.event = Some("a jump of 9.9 N within a sweep".to_owned());
+    let mut asked = cannot_tell(comparison());
+    asked.data.findings = vec![Mismatch {
+        kind: "pressure-unit",
+        decided: true,
+        rmse_n: 400.0,
+        meant_rmse_n: Some(6.0),
+        says: "is this psi read as kPa?".to_owned(),
+        instead: "correct the unit".to_owned(),
+    }];
     for (diagnosis, begins) in [
         (
             missing(comparison()),
@@ -130,6 +139,7 @@ fn verdicts_stand_in_the_first_lines() {
             ],
         ),
         (cannot_tell(comparison()), &["cannot tell: these data are too few or too noisy for a verdict"]),
+        (asked, &["cannot tell: these readings are asked about before anything is looked for in them"]),
         (knocked, &["cannot tell: something happened during the test, and no effect is named across it"]),
     ] {
         assert_eq!(headlines(&diagnosis), begins);
