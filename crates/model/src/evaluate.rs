@@ -16,11 +16,11 @@ use crate::lattice::{FEWEST_NODES, Lattice, Span};
 use crate::model::{AtRest, Base, Chosen, Model};
 use crate::prediction::{Partly, Prediction};
 use crate::record::Record;
-use crate::row::NORMAL;
+use crate::row::{NORMAL, Place};
 use crate::segment::{Task, segment};
 use crate::solved::Asked;
 use crate::strands::{self, Strands};
-use crate::warm::{Held, Slots, Warm};
+use crate::warm::{Held, RowAnswers, Slots, Warm};
 
 /// The results that [`Model::evaluate`] returns besides the force.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -36,6 +36,8 @@ pub struct Wanted {
 const CHUNK: [usize; 2] = [256, 8];
 /// A held lattice is assumed to serve at least this many evaluations.
 const HELD_FOR: usize = 4;
+/// Most rows whose answers are held: 7 MB.
+const MOST_ANSWERS: usize = 20_000;
 
 /// Everything that is the same for all rows of one muscle in one evaluation.
 pub(crate) struct Run<'a> {
@@ -49,6 +51,8 @@ pub(crate) struct Run<'a> {
     shapes: Vec<usize>,
     pub(crate) equilibrium: Option<Equilibrium>,
     pub(crate) lattice: Option<Arc<Lattice>>,
+    /// Answers of an earlier evaluation of this muscle.
+    pub(crate) answers: Option<Arc<RowAnswers>>,
     /// Number of searches for rows outside the lattice.
     pub(crate) alone: AtomicUsize,
     /// Whether searches start from earlier equilibria and are as exact as a fit needs.
@@ -154,20 +158,30 @@ impl Model {
         let segments = runs.iter().map(|run| run.segments(record)).max_by_key(Vec::len).unwrap_or_default();
         let keeps = warm.is_some() && all_or_none;
         slots.fit(segments.iter().map(|rows| if keeps { rows.len() } else { 1 }));
+        let passes = Self::passes(theta, wanted, &runs[0].shapes);
+        let may_answer = record.len() <= MOST_ANSWERS && self.law().is_none();
+        let holds = slots.holds && slots.answers.is_none() && may_answer;
         let task = Task {
             record,
-            passes: Self::passes(theta, wanted, &runs[0].shapes),
+            answers: may_answer && (holds || passes.len() > 1),
+            passes,
             columns: wanted.parameters.len(),
             counts: &counts,
             keeps,
         };
         let mut all = Prediction::zero(record.len(), wanted);
-        let failed: Vec<Vec<(usize, RowError)>> = segments
+        let (failed, answered): (Vec<_>, Vec<_>) = segments
             .par_iter()
             .zip(all.parts(&segments, task.columns))
             .zip(&mut slots.rows)
             .map(|((rows, part), slots)| segment(&runs, &task, rows.clone(), part, slots))
-            .collect();
+            .unzip();
+        if holds {
+            let parts =
+                (0..self.bodies.len()).map(|body| self.parts_of(body, theta)).collect::<Result<_, _>>()?;
+            let (shapes, rows) = (runs[0].shapes.clone(), answered.concat());
+            slots.answers = Some(Arc::new(RowAnswers { parts, shapes, rows }));
+        }
         slots.alone = runs.iter().map(|run| run.alone.load(Ordering::Relaxed)).collect();
         Ok((self.folded(all, asked, wanted), failed.into_iter().flatten().collect()))
     }
@@ -210,6 +224,7 @@ impl Model {
             shapes: Vec::new(),
             equilibrium: None,
             lattice: None,
+            answers: None,
             alone: AtomicUsize::new(0),
             within_fit: false,
             all_or_none: false,
@@ -234,6 +249,7 @@ impl Model {
         };
         let equilibrium = Equilibrium::new(shaped).map_err(no_problem)?;
         // The stated lengths are kept: a change by an effect would move them without a derivative.
+        run.answers = slots.answers.clone().filter(|answers| answers.serve(body, &parts, &run.shapes));
         run.setting = run.setting.with(&parts);
         run.strands = Strands::of(&parts);
         if equilibrium.is_costly() && record.len() > FEWEST_NODES {
@@ -294,7 +310,8 @@ impl Model {
             columns: Vec::new(),
         };
         let mut memory = run.memory();
-        match run.row(moment, &pass, &mut memory, &mut None) {
+        let (start, answered) = (&mut None, &mut None);
+        match run.row(moment, &pass, &mut memory, &mut Place { row: 0, start, answered }) {
             Ok(row) => Ok(AtRest {
                 equilibrium_n: row.equilibrium.value(),
                 force_n: row.force.value(),

@@ -5,17 +5,29 @@ use bulge_effects::{Action, Balance, Give, Input, Jet, Moment};
 use bulge_fibre::Start;
 use bulge_numerics::{Dual, Real};
 
-use crate::answer::Carried;
+use crate::answer::{Answer, Carried};
+use crate::base::Equilibrium;
 use crate::evaluate::{Pass, Run};
 use crate::failure::RowError;
 use crate::lattice;
 use crate::model::Base;
+use crate::warm::{Answered, known};
 
 /// The largest number of Newton steps for a contraction that depends on the force.
 const MOST_GIVE_STEPS: usize = 50;
 /// Nodes and weights of the Gauss-Hermite rule of degree 5 for a standard normal number.
 pub(crate) const NORMAL: [(f64, f64); 3] =
     [(0.0, 2.0 / 3.0), (1.732_050_807_568_877_2, 1.0 / 6.0), (-1.732_050_807_568_877_2, 1.0 / 6.0)];
+
+/// Where a row keeps what it found.
+pub(crate) struct Place<'a> {
+    /// Its row in the record.
+    pub(crate) row: usize,
+    /// The start of its search, and then the end.
+    pub(crate) start: &'a mut Option<Start>,
+    /// Its last answer; passes and evaluations with the same question need no search.
+    pub(crate) answered: &'a mut Answered,
+}
 
 /// The force of one row at three stages.
 pub(crate) struct Row {
@@ -25,16 +37,16 @@ pub(crate) struct Row {
 }
 
 impl Run<'_> {
-    /// The force of one row. The search for its equilibrium starts from `slot` and leaves its end there.
+    /// The force of one row. The search for its equilibrium starts from `place` and leaves its end there.
     pub(crate) fn row(
         &self,
         moment: &Moment,
         pass: &Pass,
         memory: &mut [Vec<Jet>],
-        slot: &mut Option<Start>,
+        place: &mut Place<'_>,
     ) -> Result<Row, RowError> {
         let input = self.input(moment, pass, memory);
-        let (found, contraction) = self.balance(moment, &input, pass, slot)?;
+        let (found, contraction) = self.balance(moment, &input, pass, place)?;
         let balance = Balance {
             pressure: input.pressure,
             contraction,
@@ -76,7 +88,7 @@ impl Run<'_> {
         moment: &Moment,
         input: &Input,
         pass: &Pass,
-        slot: &mut Option<Start>,
+        place: &mut Place<'_>,
     ) -> Result<(Carried, Jet), RowError> {
         let pressure = input.pressure * input.area / input.wall;
         let gives = [input.give_force, input.give_tension];
@@ -84,7 +96,7 @@ impl Run<'_> {
         if !gives.iter().all(Give::is_none) {
             let mut at = input.contraction.value();
             for _ in 0..MOST_GIVE_STEPS {
-                let found = self.averaged(moment, [pressure, Jet::from(at)], input, pass, slot)?;
+                let found = self.averaged(moment, [pressure, Jet::from(at)], input, pass, place)?;
                 let loads = [found.force, found.tension];
                 let mut gap = Jet::from(at) - input.contraction;
                 let mut slope = 1.0;
@@ -101,7 +113,7 @@ impl Run<'_> {
                 at = e.value();
             }
         }
-        let found = self.averaged(moment, [pressure, e], input, pass, slot)?;
+        let found = self.averaged(moment, [pressure, e], input, pass, place)?;
         Ok((found, e))
     }
 
@@ -112,16 +124,16 @@ impl Run<'_> {
         [pressure, e]: [Jet; 2],
         input: &Input,
         pass: &Pass,
-        slot: &mut Option<Start>,
+        place: &mut Place<'_>,
     ) -> Result<Carried, RowError> {
         let stiffen = |found: Carried| found.stiffened(input.wall);
         let spread = input.spread;
         if spread.value() == 0.0 {
-            return self.base(moment, [pressure, e], pass, slot).map(stiffen);
+            return self.base(moment, [pressure, e], pass, place).map(stiffen);
         }
         let mut sum: Option<Carried> = None;
         for (z, weight) in NORMAL {
-            let part = self.base(moment, [pressure, e + spread * z], pass, slot)?.scaled(weight);
+            let part = self.base(moment, [pressure, e + spread * z], pass, place)?.scaled(weight);
             sum = Some(sum.map_or(part, |sum| sum.plus(part)));
         }
         sum.map(stiffen).ok_or(RowError::NotFinite)
@@ -133,7 +145,7 @@ impl Run<'_> {
         moment: &Moment,
         [pressure, e]: [Jet; 2],
         pass: &Pass,
-        slot: &mut Option<Start>,
+        place: &mut Place<'_>,
     ) -> Result<Carried, RowError> {
         match (&self.model.base, &self.equilibrium) {
             (Base::Law { law }, _) => {
@@ -155,13 +167,11 @@ impl Run<'_> {
             }
             (Base::Equilibrium, Some(equilibrium)) => {
                 let (p, at) = (pressure.value(), e.value());
-                // An equilibrium in closed form that starts from another one has derivatives that are good
-                // enough for a fit only.
-                let mut none = None;
-                let slot = if self.within_fit || equilibrium.is_costly() { slot } else { &mut none };
-                let answer =
-                    lattice::answer(self.lattice.as_deref(), equilibrium, [p, at], slot, &self.alone)
-                        .map_err(|source| RowError::Solver { pressure: p, contraction: at, source })?;
+                let kept = self.answers.as_ref().and_then(|answers| answers.rows.get(place.row));
+                let answer = match known(Some(place.answered), [p, at]).or_else(|| known(kept, [p, at])) {
+                    Some(answer) => *answer,
+                    None => self.answer(equilibrium, [p, at], place)?,
+                };
                 let lanes = &pass.shape_lanes;
                 Ok(Carried {
                     force: answer.force.carry(pressure, e, lanes),
@@ -177,6 +187,29 @@ impl Run<'_> {
             }
             (Base::Equilibrium, None) => Err(RowError::NotFinite),
         }
+    }
+
+    /// The answer at a pressure and a contraction, by the lattice or by a search.
+    fn answer(
+        &self,
+        equilibrium: &Equilibrium,
+        [pressure, contraction]: [f64; 2],
+        place: &mut Place<'_>,
+    ) -> Result<Answer, RowError> {
+        // An equilibrium in closed form that starts from another one has derivatives that are good enough for a fit
+        // only.
+        let mut none = None;
+        let start = if self.within_fit || equilibrium.is_costly() { &mut *place.start } else { &mut none };
+        let answer = lattice::answer(
+            self.lattice.as_deref(),
+            equilibrium,
+            [pressure, contraction],
+            start,
+            &self.alone,
+        )
+        .map_err(|source| RowError::Solver { pressure, contraction, source })?;
+        *place.answered = Some(([pressure, contraction], answer));
+        Ok(answer)
     }
 
     fn law_slope(&self, moment: &Moment, pressure: f64, e: f64) -> f64 {

@@ -9,6 +9,8 @@ use crate::evaluate::{Pass, Run};
 use crate::failure::RowError;
 use crate::prediction::Part;
 use crate::record::Record;
+use crate::row::Place;
+use crate::warm::Answered;
 
 /// The work that is the same for every segment.
 pub(crate) struct Task<'a> {
@@ -19,20 +21,26 @@ pub(crate) struct Task<'a> {
     /// Whether each row keeps its equilibrium for the next evaluation in its own slot. Otherwise a segment
     /// has one slot.
     pub(crate) keeps: bool,
+    /// Whether each row keeps its answer for the next pass. Otherwise a segment has room for one.
+    pub(crate) answers: bool,
 }
 
-/// Fills the part of one segment. Returns the rows that count and have no force, with the reasons.
+/// Fills the part of one segment. Returns the rows that count and have no force, with the reasons, and what the
+/// rows were answered.
 pub(crate) fn segment(
     runs: &[Run<'_>],
     task: &Task<'_>,
     rows: Range<usize>,
     mut part: Part<'_>,
     slots: &mut [Option<Start>],
-) -> Vec<(usize, RowError)> {
+) -> (Vec<(usize, RowError)>, Vec<Answered>) {
     let mut failed = BTreeMap::new();
+    let mut answered: Vec<Answered> = vec![None; if task.answers { rows.len() } else { 1 }];
     // Rows that don't count matter only through the memory that they pass to rows that do.
     let remembers = runs[0].remembers();
-    let Some(last) = rows.clone().rev().find(|row| (task.counts)(*row)) else { return Vec::new() };
+    let Some(last) = rows.clone().rev().find(|row| (task.counts)(*row)) else {
+        return (Vec::new(), answered);
+    };
     let rows = rows.start..last + 1;
     for (number, pass) in task.passes.iter().enumerate() {
         let mut memory = runs[0].memory();
@@ -56,17 +64,23 @@ pub(crate) fn segment(
                 slots[slot] = same.and_then(|(before, _)| slots[before].clone());
             }
             before = Some((slot, run.body));
-            match run.row(moment, pass, &mut memory, &mut slots[slot]) {
+            if !task.answers {
+                // The row before may be one of another muscle.
+                answered[0] = None;
+            }
+            let own = if task.answers { i } else { 0 };
+            let mut place = Place { row, start: &mut slots[slot], answered: &mut answered[own] };
+            match run.row(moment, pass, &mut memory, &mut place) {
                 Ok(row) if counts => part.fill(i, number, pass, task.columns, row.reading),
                 Err(error) if counts => {
                     failed.entry(row).or_insert(error);
                     if run.all_or_none {
-                        return failed.into_iter().collect();
+                        return (failed.into_iter().collect(), answered);
                     }
                 }
                 Ok(_) | Err(_) => {}
             }
         }
     }
-    failed.into_iter().collect()
+    (failed.into_iter().collect(), answered)
 }

@@ -10,6 +10,7 @@
 use bulge_fibre::{Parts, Start};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
+use crate::answer::Answer;
 use crate::lattice::{Lattice, Span};
 use crate::solved::Starts;
 
@@ -34,8 +35,37 @@ pub(crate) struct Slots {
     pub(crate) held: Vec<Option<Arc<Held>>>,
     /// Number of searches outside the lattice in the last evaluation, for each of the model's muscles.
     pub(crate) alone: Vec<usize>,
+    /// Answers of the rows when equilibria were last held, if these rows are not too many.
+    pub(crate) answers: Option<Arc<RowAnswers>>,
     /// Whether the held lattices come from another model. They then serve only the same muscle.
     is_shared: bool,
+}
+
+/// The answer of a row, with the pressure and the contraction at which it was asked last.
+pub(crate) type Answered = Option<([f64; 2], Answer)>;
+
+/// Answers of the rows of an evaluation. They serve evaluations of the same muscles, such as those of models that
+/// add a friction or a sensor's error.
+#[derive(Debug)]
+pub(crate) struct RowAnswers {
+    /// Parts of each of the model's muscles.
+    pub(crate) parts: Vec<Parts>,
+    /// Parameters that change the shape, in the order of the derivatives.
+    pub(crate) shapes: Vec<usize>,
+    pub(crate) rows: Vec<Answered>,
+}
+
+impl RowAnswers {
+    /// Whether the answers are those of a muscle, with derivatives by these parameters.
+    pub(crate) fn serve(&self, body: usize, parts: &Parts, shapes: &[usize]) -> bool {
+        (shapes.is_empty() || shapes == self.shapes) && self.parts.get(body) == Some(parts)
+    }
+}
+
+/// An answer that was asked at exactly this pressure and contraction.
+pub(crate) fn known(answered: Option<&Answered>, at: [f64; 2]) -> Option<&Answer> {
+    let (there, answer) = answered?.as_ref()?;
+    (there.map(f64::to_bits) == at.map(f64::to_bits)).then_some(answer)
 }
 
 /// A solved lattice whose derivatives give the lattices of neighbouring shapes.
@@ -103,17 +133,17 @@ impl Warm {
     /// Holds the equilibria of the next evaluation. Later evaluations are computed from their derivatives, to
     /// first order in the shape parameters, until the next call or [`Warm::release`].
     ///
-    /// This applies only if equilibria are found by shooting and interpolated. Otherwise nothing is held; see
-    /// [`Warm::is_held`].
+    /// This applies only if equilibria are found by shooting and interpolated; see [`Warm::is_held`]. What else is
+    /// held, the answers of up to 20 000 rows, serves the same muscle only.
     pub fn hold(&self) {
         let mut slots = self.lock();
-        (slots.holds, slots.held) = (true, Vec::new());
+        (slots.holds, slots.held, slots.answers) = (true, Vec::new(), None);
     }
 
     /// Solves the equilibria anew in each evaluation.
     pub fn release(&self) {
         let mut slots = self.lock();
-        (slots.holds, slots.held) = (false, Vec::new());
+        (slots.holds, slots.held, slots.answers) = (false, Vec::new(), None);
     }
 
     /// Whether evaluations are computed to first order from held equilibria.
@@ -126,8 +156,11 @@ impl Warm {
     /// or of models that add effects to it. The lattices serve models that leave the muscle unchanged.
     #[must_use]
     pub fn shared(&self) -> Self {
-        let held = self.lock().held.clone();
-        let slots = Slots { held, is_shared: true, ..Slots::default() };
+        let (held, answers) = {
+            let slots = self.lock();
+            (slots.held.clone(), slots.answers.clone())
+        };
+        let slots = Slots { held, answers, is_shared: true, ..Slots::default() };
         Self { counts: self.counts.clone(), slots: Mutex::new(slots) }
     }
 

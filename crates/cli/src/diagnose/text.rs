@@ -236,7 +236,11 @@ fn limits(out: &mut String, diagnosis: &Diagnosis) {
         let of_all = if all > named.len() { format!("; all {all}: --json") } else { String::new() };
         // These are limits of what is more than the effects named.
         let beside = if diagnosis.missing.is_empty() { "" } else { " beside what is missing" };
-        paragraph(out, "  ", &format!("not found{beside}, and would show from: {}{of_all}", named.join(", ")));
+        paragraph(
+            out,
+            "  ",
+            &format!("not found{beside}, and would show from: {}{of_all}", named.join(", ")),
+        );
     }
     if let Some(unseen) = diagnosis.remaining.unseen_below_n {
         let says = format!(

@@ -254,9 +254,15 @@ impl Geometry {
                 )
             }
             (Some(other), _) if other.differs => {
-                format!("{default}: {data}; were what is by default exact, the answer would be {}{}", other.says(), ruler())
+                format!(
+                    "{default}: {data}; were what is by default exact, the answer would be {}{}",
+                    other.says(),
+                    ruler()
+                )
             }
-            (Some(_), _) => format!("{default}: {data}; were what is by default exact, the answer would be the same"),
+            (Some(_), _) => {
+                format!("{default}: {data}; were what is by default exact, the answer would be the same")
+            }
             (None, None) => format!("{default}: {data}"),
         }
     }

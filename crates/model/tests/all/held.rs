@@ -139,3 +139,39 @@ fn rows_next_to_the_end_of_equilibria_are_those_solved_alone() {
     // Rows up to the zero of the force are interpolated. The rest, next to the end, is solved row by row.
     assert!(worst < 1e-4 * full && 2 * interpolated > errors.len(), "{worst} N, {interpolated}");
 }
+
+/// What was answered serves models that ask the same question: an effect that doesn't change the shape finds the
+/// forces that it would find alone, bit for bit where nothing is interpolated, and a changed shape is solved.
+#[test]
+fn answers_serve_the_same_muscle_only() {
+    let file = "name = \"b\"\nkind = \"braided\"\nlength = \"300 mm\"\nradius = \"10 mm\"\nwall = \"1.8 mm\"\n\
+                braid_angle = \"28.6 deg\"\nends = \"cylinder\"\n\n[specimens.2]\nradius = \"9 mm\"\n";
+    let catalogue = Catalogue::builtin();
+    let muscle = from_toml(file, "braid").unwrap();
+    let base = Model::new(&muscle).for_specimens(&["1".to_owned(), "2".to_owned()]).unwrap();
+    let with = |name: &str, value: f64| base.with(catalogue.find(name).unwrap(), Some(&[value])).unwrap();
+    // The same readings of both specimens, row by row.
+    let at = |i: u32| Moment {
+        specimen: i % 2,
+        ..Moment::at_rest(2e5 + 1e5 * f64::from(i / 40), 0.01 + 0.004 * f64::from(i % 40 / 2))
+    };
+    let record =
+        Record::from_moments((0..120).map(at).collect(), vec![0.0; 120], vec![0..60, 60..120]).unwrap();
+    let warm = Warm::new();
+    warm.hold();
+    let first = base.evaluate_warm(&record, &[], &Wanted::default(), &warm).unwrap().force;
+    assert!((first[0] / first[1] - 1.0).abs() > 0.1, "the specimens differ");
+    let models = [
+        with("coulomb-friction", 8.0),
+        with("pressure-offset", 500.0),
+        with("bladder-elasticity", 2e5),
+        with("radius-error", 0.0102),
+    ];
+    for model in &models {
+        let wanted = Wanted { parameters: vec![0], readings: true };
+        let theta = model.start();
+        let shared = model.evaluate_warm(&record, &theta, &wanted, &warm.shared()).unwrap();
+        let alone = model.evaluate_warm(&record, &theta, &wanted, &Warm::new()).unwrap();
+        assert_eq!(shared, alone, "{}", model.parameters()[0].effect);
+    }
+}
