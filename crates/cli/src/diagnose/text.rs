@@ -29,6 +29,10 @@ pub(super) fn text(diagnosis: &Diagnosis, call: &Call) -> String {
     let mut out = String::new();
     measured(&mut out, diagnosis);
     verdict(&mut out, diagnosis);
+    if diagnosis.ladder.is_empty() {
+        // Nothing was fitted: the first lines say why, warnings and all.
+        return out;
+    }
     ladder(&mut out, diagnosis);
     places(&mut out, diagnosis);
     let _ = writeln!(out, "\n  what remains: {}", remains_says(diagnosis));

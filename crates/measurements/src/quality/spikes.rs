@@ -26,6 +26,8 @@ const MOST_SHOWN: usize = 3;
 /// Number of passes: neighbouring spikes hide each other, so found ones are bridged and the search is
 /// repeated.
 const PASSES: usize = 3;
+/// Steps towards a tip are at most this many times the ones before: a curve that bends as a square root does has 2.4.
+const GROWS: f64 = 3.0;
 /// If more than one turning point in this many has a spike, it is the shape of the curve.
 const COMES_BACK: usize = 5;
 /// Where one side is missing: times the largest step between other neighbours of the path. What settles with a time constant of
@@ -182,7 +184,7 @@ fn along(
             found.extend(in_run(&values[run.clone()], least).iter().map(|row| run.start + row));
         }
     }
-    leave_tips(data, &mut found);
+    leave_tips(data, values, &mut found);
     if MOST * found.len() > values.len() { Vec::new() } else { found }
 }
 
@@ -192,10 +194,19 @@ fn least(resolution: &Resolution, share: f64) -> f64 {
 }
 
 /// A spike that recurs at the turning points is a tip of the curve, both sides of which are seen in few rows
-/// only.
-fn leave_tips(data: &Data, found: &mut Vec<usize>) {
+/// only. So is one to which the steps of both sides grow.
+fn leave_tips(data: &Data, values: &[f64], found: &mut Vec<usize>) {
     let turning = data.direction_in_doubt();
     let turns = |row: &usize| turning.binary_search(row).is_ok();
+    let grows = |[far, near, tip]: [f64; 3]| {
+        let [before, last] = [near - far, tip - near];
+        last * before > 0.0 && last.abs() <= GROWS * before.abs()
+    };
+    found.retain(|row| {
+        let sides = [[row.wrapping_sub(2), row.wrapping_sub(1), *row], [row + 2, row + 1, *row]];
+        let at = |row: usize| values.get(row).copied().unwrap_or(f64::NAN);
+        !(turns(row) && sides.into_iter().all(|side| grows(side.map(at))))
+    });
     let at_turns = found.iter().filter(|row| turns(row)).count();
     if at_turns > 1 && COMES_BACK * at_turns > turning.len() {
         found.retain(|row| !turns(row));

@@ -388,6 +388,40 @@ fn heavy_tails_are_hardly_spikes() {
     assert!(called < 60, "{called} of 12000");
 }
 
+/// Weights on a muscle that is filled and emptied twice: the lightest is lifted from the lowest pressure on, as a square root,
+/// so that a cusp stands at one turning point of many. A disturbed reading there stands out of it.
+#[test]
+fn the_cusp_of_one_sweep_is_no_spike() {
+    let lifted = |disturbed: Option<usize>| {
+        let mut noise = Noise::new(5);
+        let (mut p, mut c, mut f) = (Vec::new(), Vec::new(), Vec::new());
+        for i in 0..480 {
+            let (weight, part) = (i / 120, (i % 120) as f64 / 60.0);
+            let way = 1.0 - (2.0 * (part % 1.0) - 1.0).abs();
+            let from = if weight == 0 { 0.0 } else { -0.5 * weight as f64 };
+            p.push(0.2e5 + 3.6e5 * way);
+            c.push(0.25 * ((way - from) / (1.0 - from)).sqrt() + 1e-5 * noise.normal());
+            f.push(50.0 * (1 + weight) as f64 + 0.3 * noise.normal());
+        }
+        if let Some(row) = disturbed {
+            c[row] += 0.2;
+        }
+        let mut columns = Columns::new(p, Trace::Contraction(c), f);
+        columns.time_s = Some((0..480).map(|i| 0.5 * i as f64 + 60.0 * (i / 120) as f64).collect());
+        let data = Data::from_columns(columns).unwrap();
+        let spikes: Vec<usize> = data
+            .disturbed()
+            .iter()
+            .filter(|found| found.why.contains("spike"))
+            .flat_map(|found| found.rows.clone())
+            .collect();
+        spikes
+    };
+    assert_eq!(lifted(None), [0_usize; 0]);
+    assert_eq!(lifted(Some(180)), [180]);
+    assert_eq!(lifted(Some(60)), [60]);
+}
+
 #[test]
 fn tips_of_loops_are_no_spikes_and_spikes_beside_them_are() {
     let mut noise = Noise::new(5);
