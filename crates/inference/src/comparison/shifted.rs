@@ -19,6 +19,7 @@ use bulge_muscles::units::significant;
 use std::ops::Range;
 
 use crate::chebyshev::chebyshev;
+use crate::comparison::document::LeftOut;
 use crate::comparison::rows::Used;
 use crate::noise::orthonormal::Basis;
 use crate::vector::{add, dot, range};
@@ -62,6 +63,9 @@ const PARTS: usize = 16;
 /// Gains below this, in variances of a reading, are insignificant.
 const CHANCE: f64 = 30.0;
 
+/// Beginning of the reason.
+const SHIFTED: &str = "shifted:";
+
 /// A sweep and its offset.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Shift {
@@ -77,7 +81,7 @@ impl Used {
             let Some(found) = shifted(record, &self.mask, residuals, sd_n) else { break };
             let name = data.sweeps().get(found.sweep).map_or("", |sweep| sweep.name.as_str());
             let why = format!(
-                "shifted: all of sweep `{name}` lies {} N {} where the other sweeps lead ({} times the noise of {} N): was the load cell zeroed anew before it?",
+                "{SHIFTED} all of sweep `{name}` lies {} N {} where the other sweeps lead ({} times the noise of {} N): was the load cell zeroed anew before it?",
                 significant(found.offset_n.abs(), 3),
                 if found.offset_n > 0.0 { "above" } else { "below" },
                 significant(found.offset_n.abs() / sd_n, 2),
@@ -85,6 +89,15 @@ impl Used {
             );
             self.leave_out(data, record.sweeps()[found.sweep].clone(), why);
         }
+    }
+}
+
+impl Used {
+    /// The first sweep, if it was left out as shifted: run-in, creep and warming up make the first sweep differ, too.
+    pub(crate) fn first_is_shifted(&self, data: &Data) -> Option<&LeftOut> {
+        let first = data.sweeps().first()?;
+        let reason = (*self.reason.get(first.rows.start)?)?;
+        self.left_out.get(usize::try_from(reason).ok()?).filter(|left| left.why.starts_with(SHIFTED))
     }
 }
 

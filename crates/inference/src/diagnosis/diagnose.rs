@@ -18,7 +18,7 @@ use crate::diagnosis::averaged_data::{
 };
 use crate::diagnosis::classes::Class;
 use crate::diagnosis::confidence::{Confidence, confidence};
-use crate::diagnosis::document::Diagnosis;
+use crate::diagnosis::document::{Diagnosis, Verdict};
 use crate::diagnosis::either::quieter;
 use crate::diagnosis::event::{Anew, event};
 use crate::diagnosis::fits::Fits;
@@ -311,7 +311,9 @@ fn concluded(
         next,
         event: None,
     };
-    found.event = anew.and_then(|anew| event(&found, &analysis.data, &averaged_data.averaged.groups, anew));
+    found.event = anew
+        .and_then(|anew| event(&found, &analysis.data, &averaged_data.averaged.groups, anew))
+        .or_else(|| changed_after_the_first_sweep(&found, analysis));
     let effects: Vec<Arc<dyn Effect>> = options.base.effects.iter().chain(found.shown()).cloned().collect();
     let answer = compare_after(first, analysis, &effects, found.last().confirmed.numbers())?;
     progress.at(1.0, "done");
@@ -320,6 +322,19 @@ fn concluded(
     let mut diagnosis = document(analysis.muscle, &found, answer, &bent);
     diagnosis.geometry = geometry(analysis, found.regardless());
     Ok(diagnosis)
+}
+
+/// What is said if nothing is missing without the first sweep, which was left out. The other sweeps don't show what
+/// came to its end with it.
+fn changed_after_the_first_sweep(found: &Findings<'_>, analysis: &Analysis<'_>) -> Option<String> {
+    let left = analysis.used.first_is_shifted(&analysis.data)?;
+    (found.verdict().0 == Verdict::Adequate).then(|| {
+        format!(
+            "without its first sweep (line {}) nothing is missing, and that one is shifted as a whole: the load cell was zeroed after it, or the muscle changed \
+             (run-in, creep, warming up). Measure its set point once more at the end",
+            left.lines
+        )
+    })
 }
 
 /// Each named effect with its rivals, and how often such a claim is right.

@@ -6,8 +6,8 @@
 use crate::support::{diagnosing, effects, names, noisy, options, truth};
 use bulge_effects::{Catalogue, Moment};
 use bulge_inference::{
-    Block, Comparing, Comparison, DiagnoseOptions, Noise, Options, Protocol, ReadingNoise, Rows, compare,
-    compare_with_rows, diagnose, simulate,
+    Block, Comparing, Comparison, DiagnoseOptions, Noise, Options, Protocol, ReadingNoise, Rows, Verdict,
+    compare, compare_with_rows, diagnose, simulate,
 };
 use bulge_measurements::Data;
 use bulge_model::{Model, Prediction, Record, Wanted};
@@ -460,6 +460,20 @@ fn a_sweep_that_is_off_as_a_whole_is_named_by_comparison_and_diagnosis_and_is_no
     assert!(measured(|_, _, force| force).len() == data.len() && compared.ladder[1].rmse_n < 2.2);
     let clean = climbed(&measured(|_, _, force| force), &own, &[]);
     assert!(clean.data.left_out.is_empty(), "{:?}", clean.data.left_out);
+}
+
+/// With the friction known nothing else is missing, but in a first sweep that is off something may have come to its end.
+#[test]
+fn without_a_first_sweep_that_is_off_nothing_is_called_adequate() {
+    let own =
+        muscle("[instruments]\nforce = { noise = \"2 N\" }\n\n[effects.coulomb-friction]\nforce = \"10 N\"");
+    for (shifted, verdict) in [("1", Verdict::CannotTell), ("3", Verdict::Adequate)] {
+        let data = measured(|sweep, _, force| if sweep == shifted { force + 12.0 } else { force });
+        let found = diagnose(&data, &own, &diagnosing(&["coulomb-friction"])).unwrap();
+        assert_eq!(found.verdict, verdict, "{}", found.says);
+        assert_eq!(found.says.contains("Measure its set point once more"), shifted == "1", "{}", found.says);
+        assert!(found.missing.is_empty() && found.data.left_out[0].rows == 60);
+    }
 }
 
 #[test]
