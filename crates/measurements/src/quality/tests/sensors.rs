@@ -396,18 +396,18 @@ fn the_cusp_of_one_sweep_is_no_spike() {
         let mut noise = Noise::new(5);
         let (mut p, mut c, mut f) = (Vec::new(), Vec::new(), Vec::new());
         for i in 0..480 {
-            let (weight, part) = (i / 120, (i % 120) as f64 / 60.0);
+            let (weight, part) = (i / 120, f64::from(i % 120) / 60.0);
             let way = 1.0 - (2.0 * (part % 1.0) - 1.0).abs();
-            let from = if weight == 0 { 0.0 } else { -0.5 * weight as f64 };
+            let from = if weight == 0 { 0.0 } else { -0.5 * f64::from(weight) };
             p.push(0.2e5 + 3.6e5 * way);
             c.push(0.25 * ((way - from) / (1.0 - from)).sqrt() + 1e-5 * noise.normal());
-            f.push(50.0 * (1 + weight) as f64 + 0.3 * noise.normal());
+            f.push(50.0 * f64::from(1 + weight) + 0.3 * noise.normal());
         }
         if let Some(row) = disturbed {
             c[row] += 0.2;
         }
         let mut columns = Columns::new(p, Trace::Contraction(c), f);
-        columns.time_s = Some((0..480).map(|i| 0.5 * i as f64 + 60.0 * (i / 120) as f64).collect());
+        columns.time_s = Some((0..480).map(|i| 0.5 * f64::from(i) + 60.0 * f64::from(i / 120)).collect());
         let data = Data::from_columns(columns).unwrap();
         let spikes: Vec<usize> = data
             .disturbed()
