@@ -349,7 +349,7 @@ mod tests {
 
     fn lines(diagnosis: &Diagnosis) -> Vec<String> {
         let text = text(diagnosis, &call());
-        assert!(text.lines().count() <= 49 && !text.contains("NaN"), "{text}");
+        assert!(text.lines().count() <= 50 && !text.contains("NaN"), "{text}");
         text.lines().map(str::to_owned).collect()
     }
 

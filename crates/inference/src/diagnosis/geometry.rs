@@ -227,7 +227,7 @@ impl Geometry {
             return String::new();
         }
         let data = match (moved.is_empty(), self.as_stated_rmse_n) {
-            (true, _) => "the data move none of the numbers with a width".to_owned(),
+            (true, _) => "the data move none of them".to_owned(),
             (false, Some(error)) => {
                 format!(
                     "the data want {} (as stated the base is off by {} N)",
@@ -238,7 +238,7 @@ impl Geometry {
             (false, None) => format!("the data want {}", moved.join(", ")),
         };
         if taken.is_empty() {
-            return format!("within the stated widths {data}");
+            return format!("of the numbers that the file states with a width {data}");
         }
         let default = format!("{} by default (state `+- ...`, `+- 0` if exact)", stated.join(", "));
         let ruler = || self.ruler().map_or_else(String::new, |ruler| format!(": {ruler} settles that"));

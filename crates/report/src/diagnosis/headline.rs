@@ -160,7 +160,7 @@ pub fn bending_says(missing: &Missing) -> Option<String> {
         return Some("its formula holds as it is".to_owned());
     };
     Some(format!(
-        "these data bend its formula by {}: {} RMS, most at {} bar and a contraction of {}, where the formula says {} and the data {}",
+        "these data bend its formula by {}: {} RMS, most at {} bar and a contraction of {}, where the formula says {} and its bent form {}",
         chance(error.share),
         newton(error.rms_n),
         three(at.pressure_pa / 1e5),
