@@ -6,12 +6,11 @@
 
 use crate::search::{Goal, Seen};
 use crate::{
-    Approach, Convergence, FibreError, Formula, FormulaInput, Given, Jet, Linear, Linearised, Parts, Problem,
-    Repeated, Response, Start, isobars, work,
+    Approach, Convergence, FibreError, Formula, FormulaInput, Given, Jet, Linear, Linearised, MeridianPoint,
+    Parts, Problem, Repeated, Response, Start, isobars, work,
 };
-use bulge_muscles::{Muscle, Parameter, Pressure, from_toml};
+use bulge_muscles::{Parameter, Pressure, from_toml};
 use bulge_numerics::tape::{Builder, Function, Operator, Place};
-use std::cell::RefCell;
 use std::fmt::Write;
 use std::sync::Arc;
 
@@ -129,8 +128,11 @@ const MUSCLES: [(&str, &str); 25] = [
          effects = { lobes = { circumference = \"234 mm\" } }\n",
     ),
 ];
+/// What a formula changes.
+type Change = fn(&mut Parts<Jet>);
+
 /// Formulas that a braid has besides: names, and what they change.
-const FORMULAS: [(&str, fn(&mut Parts<Jet>)); 4] = [
+const FORMULAS: [(&str, Change); 4] = [
     ("own rubber", |parts| parts.energy = Some(energy(1500.0, neo_hookean))),
     ("own exponential", |parts| parts.energy = Some(energy(1500.0, exponential))),
     ("sling", |parts| parts.energy = Some(energy(2000.0, sling))),
@@ -145,10 +147,6 @@ const CLOSE: f64 = 1e-8;
 const LEAST: f64 = 1e-7;
 /// Other parts of the kept work that are no change: a step of an integration that another processor takes.
 const OTHER: f64 = 5e-3;
-
-fn muscle(keys: &str) -> Muscle {
-    from_toml(&format!("name = \"m\"\n{keys}"), "m.toml").unwrap()
-}
 
 /// What was asked, values, and the evaluations of all that was tried on the way ([`work`]).
 struct Line {
@@ -256,103 +254,154 @@ fn area() -> Formula<Jet> {
     Formula { tape, even: None, gaps: None, parameters: vec![Jet::variable(1e-3, 2)] }
 }
 
-/// All that is asked about a muscle at a pressure, with a formula or without.
-fn lines(name: &str, keys: &str, change: fn(&mut Parts<Jet>), bar: f64) -> Vec<Line> {
-    let muscle = muscle(keys);
+/// What is asked about a muscle at a pressure, with a formula or without.
+struct Questions {
+    name: String,
+    bar: f64,
+    problem: Problem,
+    moving: Parts<Jet>,
+    lines: Vec<Line>,
+}
+
+const AUTO: Approach = Approach::Auto;
+
+/// All that is asked.
+fn lines(name: &str, keys: &str, change: Change, bar: f64) -> Vec<Line> {
+    let muscle = from_toml(&format!("name = \"m\"\n{keys}"), "m.toml").unwrap();
     let mut moving = Parts::seeded(&muscle, &[Parameter::Length, Parameter::Radius]);
     change(&mut moving);
     let problem = Problem::new(moving.values(), Pressure::bar(bar)).unwrap();
-    let auto = Approach::Auto;
-    let lines = RefCell::new(Vec::new());
-    let add = |what: &str, answer: &dyn Fn() -> Result<Vec<f64>, FibreError>| {
-        let (found, work) = work::of(answer);
-        let mut asked = format!("{name}, {bar} bar, {what}");
+    let mut questions = Questions { name: name.to_owned(), bar, problem, moving, lines: Vec::new() };
+    questions.equilibria();
+    questions.ranges();
+    questions.paths();
+    questions.derivatives();
+    questions.shape();
+    questions.lines
+}
+
+impl Questions {
+    fn add(&mut self, what: &str, answer: impl FnOnce(&Self) -> Result<Vec<f64>, FibreError>) {
+        let (found, work) = work::of(|| answer(self));
+        let mut asked = format!("{}, {} bar, {what}", self.name, self.bar);
         if let Err(error) = &found {
             // The kind of the error, without its numbers.
             let kind = format!("{error:?}");
             asked = format!("{asked}: {}", kind.split([' ', '(']).next().unwrap_or_default());
         }
-        lines.borrow_mut().push(Line { asked, values: summed(&found.unwrap_or_default()), work });
-    };
-    let response = |what: &str, answer: &dyn Fn() -> Result<Response, FibreError>| {
-        add(what, &|| answer().map(|found| values_of(what, &found)));
-        answer().ok()
-    };
-    for contraction in CONTRACTIONS {
-        let found = response(&format!("contraction {contraction}"), &|| problem.follow(contraction, auto));
-        let Some(found) = found.filter(|found| found.force_n > 0.0) else { continue };
-        response(&format!("force of {contraction}"), &|| {
-            problem.solve(Given::Force(0.9 * found.force_n), auto)
+        self.lines.push(Line { asked, values: summed(&found.unwrap_or_default()), work });
+    }
+
+    fn response(
+        &mut self,
+        what: &str,
+        answer: impl FnOnce(&Problem) -> Result<Response, FibreError>,
+    ) -> Option<Response> {
+        let mut kept = None;
+        self.add(what, |questions| {
+            let found = answer(&questions.problem)?;
+            kept = Some(found);
+            Ok(values_of(what, &found))
         });
-        response(&format!("volume of {contraction}"), &|| {
-            problem.solve(Given::Volume(1.02 * found.volume_m3), auto)
+        kept
+    }
+
+    fn equilibria(&mut self) {
+        for at in CONTRACTIONS {
+            let found = self.response(&format!("contraction {at}"), |problem| problem.follow(at, AUTO));
+            let Some(found) = found.filter(|found| found.force_n > 0.0) else { continue };
+            let (force, volume) = (Given::Force(0.9 * found.force_n), Given::Volume(1.02 * found.volume_m3));
+            self.response(&format!("force of {at}"), |problem| problem.solve(force, AUTO));
+            self.response(&format!("volume of {at}"), |problem| problem.solve(volume, AUTO));
+        }
+        self.response("no force", |problem| problem.solve(Given::Force(0.0), AUTO));
+        self.response("shooting", |problem| problem.follow(0.1, Approach::Shooting));
+    }
+
+    fn ranges(&mut self) {
+        let of_isobar = |problem: &Problem, contractions: &[f64]| {
+            let isobar = problem.isobar(contractions, AUTO)?;
+            let of = |point: &Response| [point.contraction, point.force_n, point.volume_m3];
+            Ok(isobar.points.iter().flat_map(of).chain(isobar.contraction_limit).collect())
+        };
+        self.add("end", |Self { problem, .. }| {
+            Ok(vec![problem.contraction_limit(AUTO)?, problem.range_end(AUTO)?.contraction()])
+        });
+        self.add("longest", |Self { problem, .. }| Ok(problem.longest().into_iter().collect()));
+        self.add("isobar", |Self { problem, .. }| of_isobar(problem, &[-0.02, 0.01, 0.05, 0.1, 0.2, 0.3]));
+        self.add("isobar backwards", |Self { problem, .. }| of_isobar(problem, &[0.3, 0.2, 0.1, 0.05]));
+        self.add("isobars", |Self { moving, bar, .. }| {
+            let pressures = [*bar, 1.5 * bar].map(Pressure::bar);
+            let found = isobars(moving.values(), &pressures, &[0.02, 0.1], AUTO)?;
+            let of = |point: &Response| [point.force_n, point.stiffness_isothermal_n_per_m];
+            Ok(found.iter().flat_map(|isobar| &isobar.points).flat_map(of).collect())
         });
     }
-    response("no force", &|| problem.solve(Given::Force(0.0), auto));
-    response("shooting", &|| problem.follow(0.1, Approach::Shooting));
-    add("end", &|| Ok(vec![problem.contraction_limit(auto)?, problem.range_end(auto)?.contraction()]));
-    add("longest", &|| Ok(problem.longest().into_iter().collect()));
-    let of_isobar = |contractions: &[f64]| {
-        let isobar = problem.isobar(contractions, auto)?;
-        let of = |point: &Response| [point.contraction, point.force_n, point.volume_m3];
-        Ok(isobar.points.iter().flat_map(of).chain(isobar.contraction_limit).collect())
-    };
-    add("isobar", &|| of_isobar(&[-0.02, 0.01, 0.05, 0.1, 0.2, 0.3]));
-    add("isobar backwards", &|| of_isobar(&[0.3, 0.2, 0.1, 0.05]));
-    add("isobars", &|| {
-        let pressures = [bar, 1.5 * bar].map(Pressure::bar);
-        let found = isobars(moving.values(), &pressures, &[0.02, 0.1], auto)?;
-        let of = |point: &Response| [point.force_n, point.stiffness_isothermal_n_per_m];
-        Ok(found.iter().flat_map(|isobar| &isobar.points).flat_map(of).collect())
-    });
-    for (what, goal) in [
-        ("contraction", Goal::Contraction(0.1)),
-        ("force", Goal::Force(10.0)),
-        ("volume", Goal::Volume(problem.follow(0.06, auto).map_or(1e-4, |found| found.volume_m3))),
-    ] {
-        // The last resort of a search, which is hardly ever needed.
-        add(&format!("a path to the {what}"), &|| {
-            let found = problem.on_a_path(problem.scheme(auto)?, goal, true, &Seen::NOTHING);
-            Ok(found.map_or(Vec::new(), |found| values_of(what, &found.response)))
-        });
-    }
-    add("gradient", &|| {
-        let gradient = problem.gradient(0.08, auto)?;
-        let by_part = gradient.by_part.iter().flat_map(|(_, by)| *by);
-        Ok(gradient.by_contraction.into_iter().chain(gradient.by_pressure).chain(by_part).collect())
-    });
-    let linear = |found: &Linearised| {
-        let linear = [found.force_n, found.equator_force_n, found.mid_radius_m, found.volume_polygon_m3];
-        let numbers =
-            |l: &Linear| [l.value, l.by_contraction, l.by_pressure, l.by_lane[0], l.by_lane[1], l.by_lane[2]];
-        linear.iter().flat_map(numbers).collect::<Vec<_>>()
-    };
-    add("linearised", &|| problem.linearised(0.08, &moving, auto).map(|found| linear(&found)));
-    let start: Option<Start> = problem.linearised(0.08, &moving, auto).ok().and_then(Linearised::into_start);
-    add("linearised beside", &|| {
-        problem.linearised_from(start.as_ref(), 0.085, &moving, auto).map(|found| linear(&found))
-    });
-    if let Ok(repeated) = Repeated::new(moving.clone()) {
-        let mut near = None;
-        for i in 0..3 {
-            let at = (Pressure::bar(bar * (1.0 + 0.1 * f64::from(i))), 0.05 + 0.02 * f64::from(i));
-            let found = repeated.linearised_from(near.as_ref(), at.0, at.1).ok();
-            add(&format!("repeated {i}"), &|| {
-                repeated.linearised_from(near.as_ref(), at.0, at.1).map(|found| linear(&found))
+
+    /// The last resort of a search, which is hardly ever needed.
+    fn paths(&mut self) {
+        let volume = self.problem.follow(0.06, AUTO).map_or(1e-4, |found| found.volume_m3);
+        let goals = [
+            ("contraction", Goal::Contraction(0.1)),
+            ("force", Goal::Force(10.0)),
+            ("volume", Goal::Volume(volume)),
+        ];
+        for (what, goal) in goals {
+            self.add(&format!("a path to the {what}"), |Self { problem, .. }| {
+                let found = problem.on_a_path(problem.scheme(AUTO)?, goal, true, &Seen::NOTHING);
+                Ok(found.map_or(Vec::new(), |found| values_of(what, &found.response)))
             });
-            near = found.and_then(Linearised::into_start);
         }
     }
-    add("shape", &|| {
-        let shape = problem.shape(Given::Contraction(0.08), auto, 9)?;
-        let of = |p: &crate::MeridianPoint| [p.x_m, p.r_m, p.slope_rad, p.braid_angle_rad, p.fibre_tension_n];
-        let mut values: Vec<f64> = shape.meridian.iter().flat_map(of).collect();
-        if let Some(numbers) = problem.pleated_numbers(&shape.response) {
-            values.extend([numbers.m, numbers.phi_r, numbers.force_f, numbers.volume_v]);
+
+    fn derivatives(&mut self) {
+        self.add("gradient", |Self { problem, .. }| {
+            let gradient = problem.gradient(0.08, AUTO)?;
+            let by_part = gradient.by_part.iter().flat_map(|(_, by)| *by);
+            Ok(gradient.by_contraction.into_iter().chain(gradient.by_pressure).chain(by_part).collect())
+        });
+        let linear = |found: Linearised| {
+            let linear = [found.force_n, found.equator_force_n, found.mid_radius_m, found.volume_polygon_m3];
+            let numbers = |l: &Linear| {
+                let [length, radius, own, ..] = l.by_lane;
+                [l.value, l.by_contraction, l.by_pressure, length, radius, own]
+            };
+            linear.iter().flat_map(numbers).collect::<Vec<_>>()
+        };
+        self.add("linearised", |Self { problem, moving, .. }| {
+            problem.linearised(0.08, moving, AUTO).map(linear)
+        });
+        let there = self.problem.linearised(0.08, &self.moving, AUTO);
+        let start: Option<Start> = there.ok().and_then(Linearised::into_start);
+        self.add("linearised beside", |Self { problem, moving, .. }| {
+            problem.linearised_from(start.as_ref(), 0.085, moving, AUTO).map(linear)
+        });
+        let Ok(repeated) = Repeated::new(self.moving.clone()) else { return };
+        let mut near: Option<Start> = None;
+        for i in 0..3 {
+            let pressure = Pressure::bar(self.bar * (1.0 + 0.1 * f64::from(i)));
+            let contraction = 0.05 + 0.02 * f64::from(i);
+            let mut next = None;
+            self.add(&format!("repeated {i}"), |_| {
+                let found = repeated.linearised_from(near.as_ref(), pressure, contraction)?;
+                next = found.start().cloned();
+                Ok(linear(found))
+            });
+            near = next;
         }
-        Ok(values)
-    });
-    lines.into_inner()
+    }
+
+    fn shape(&mut self) {
+        self.add("shape", |Self { problem, .. }| {
+            let shape = problem.shape(Given::Contraction(0.08), AUTO, 9)?;
+            let of = |p: &MeridianPoint| [p.x_m, p.r_m, p.slope_rad, p.braid_angle_rad, p.fibre_tension_n];
+            let mut values: Vec<f64> = shape.meridian.iter().flat_map(of).collect();
+            if let Some(numbers) = problem.pleated_numbers(&shape.response) {
+                values.extend([numbers.m, numbers.phi_r, numbers.force_f, numbers.volume_v]);
+            }
+            Ok(values)
+        });
+    }
 }
 
 #[test]
