@@ -1,6 +1,6 @@
 //! Evaluation of a model along a history: the force of every row, with exact derivatives.
 
-use bulge_effects::{self as effects, Action, Input, Jet, LANES, Moment, Setting, Stage};
+use bulge_effects::{self as effects, Action, Input, Jet, Moment, Setting, Stage};
 use bulge_fibre::Parts;
 use bulge_numerics::{Dual, Real};
 use rayon::prelude::*;
@@ -14,6 +14,7 @@ use crate::error::ModelError;
 use crate::failure::{RowError, failure};
 use crate::lattice::{FEWEST_NODES, Lattice, Span};
 use crate::model::{AtRest, Base, Chosen, Model};
+use crate::pass::Pass;
 use crate::prediction::{Partly, Prediction};
 use crate::record::Record;
 use crate::row::{NORMAL, Place};
@@ -59,17 +60,6 @@ pub(crate) struct Run<'a> {
     pub(crate) within_fit: bool,
     /// Whether a segment stops at its first row without a state.
     pub(crate) all_or_none: bool,
-}
-
-/// The variable that each lane carries in one pass.
-pub(crate) struct Pass {
-    pub(crate) theta: Vec<Jet>,
-    pub(crate) pressure_lane: Option<usize>,
-    pub(crate) contraction_lane: Option<usize>,
-    /// Lane of each shape parameter.
-    pub(crate) shape_lanes: Vec<Option<usize>>,
-    /// (lane, place among the wanted parameters)
-    pub(crate) columns: Vec<(usize, usize)>,
 }
 
 impl Model {
@@ -158,7 +148,7 @@ impl Model {
         let segments = runs.iter().map(|run| run.segments(record)).max_by_key(Vec::len).unwrap_or_default();
         let keeps = warm.is_some() && all_or_none;
         slots.fit(segments.iter().map(|rows| if keeps { rows.len() } else { 1 }));
-        let passes = Self::passes(theta, wanted, &runs[0].shapes);
+        let passes = Pass::all(theta, wanted, &runs[0].shapes);
         let may_answer = record.len() <= MOST_ANSWERS && self.law().is_none();
         let holds = slots.holds && slots.answers.is_none() && may_answer;
         let task = Task {
@@ -262,36 +252,6 @@ impl Model {
         }
         run.equilibrium = Some(equilibrium);
         Ok(run)
-    }
-
-    fn passes(theta: &[f64], wanted: &Wanted, shapes: &[usize]) -> Vec<Pass> {
-        // Variables in order: pressure and contraction if wanted, then the parameters.
-        let readings = if wanted.readings { 2 } else { 0 };
-        let all = readings + wanted.parameters.len();
-        let mut passes = Vec::new();
-        for first in (0..all.max(1)).step_by(LANES) {
-            let lane_of = |variable: usize| {
-                (variable >= first && variable < first + LANES && variable < all).then(|| variable - first)
-            };
-            let lane = |parameter: usize| {
-                let place = wanted.parameters.iter().position(|other| *other == parameter)?;
-                lane_of(readings + place)
-            };
-            let seeded = |(i, value): (usize, &f64)| match lane(i) {
-                Some(lane) => Jet::variable(*value, lane),
-                None => Jet::from(*value),
-            };
-            passes.push(Pass {
-                theta: theta.iter().enumerate().map(seeded).collect(),
-                pressure_lane: if wanted.readings { lane_of(0) } else { None },
-                contraction_lane: if wanted.readings { lane_of(1) } else { None },
-                shape_lanes: shapes.iter().map(|parameter| lane(*parameter)).collect(),
-                columns: (0..wanted.parameters.len())
-                    .filter_map(|place| lane_of(readings + place).map(|lane| (lane, place)))
-                    .collect(),
-            });
-        }
-        passes
     }
 
     /// The force at a single moment at rest.

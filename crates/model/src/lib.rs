@@ -23,6 +23,7 @@ mod lattice;
 mod model;
 mod muscle_with_effects;
 mod parameter;
+mod pass;
 mod prediction;
 mod record;
 mod restriction;

@@ -5,7 +5,8 @@ use bulge_numerics::Real;
 use std::ops::Range;
 
 use crate::error::ModelError;
-use crate::evaluate::{Pass, Wanted};
+use crate::evaluate::Wanted;
+use crate::pass::Pass;
 
 /// The force of every row.
 #[derive(Debug, Clone, PartialEq)]

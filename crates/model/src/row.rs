@@ -7,10 +7,11 @@ use bulge_numerics::{Dual, Real};
 
 use crate::answer::{Answer, Carried};
 use crate::base::Equilibrium;
-use crate::evaluate::{Pass, Run};
+use crate::evaluate::Run;
 use crate::failure::RowError;
 use crate::lattice;
 use crate::model::Base;
+use crate::pass::Pass;
 use crate::warm::{Answered, known};
 
 /// The largest number of Newton steps for a contraction that depends on the force.

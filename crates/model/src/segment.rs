@@ -5,8 +5,9 @@ use bulge_fibre::Start;
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use crate::evaluate::{Pass, Run};
+use crate::evaluate::Run;
 use crate::failure::RowError;
+use crate::pass::Pass;
 use crate::prediction::Part;
 use crate::record::Record;
 use crate::row::Place;
