@@ -111,8 +111,24 @@ fn tension<D: Real>(net: &Net<D>, sigma: D, contraction: f64) -> Result<(D, u32)
 
 #[cfg(test)]
 mod tests {
-    use crate::{Approach, Problem};
+    use crate::{Approach, FibreError, Problem};
     use bulge_muscles::{Ends, Parameter, Pressure, preset};
+
+    /// Straight fibres along the axis are l0/cos(alpha0) long.
+    #[test]
+    fn fibres_that_do_not_stretch_are_only_so_long() {
+        let braid = preset("dmsp-20-250").unwrap().with_ends(Ends::Cylinder);
+        let angle = braid.get(Parameter::BraidAngle).unwrap();
+        let longest = 1.0 - 1.0 / angle.cos();
+        let at = |contraction: f64| {
+            Problem::new(&braid, Pressure::bar(3.0)).unwrap().follow(contraction, Approach::Auto)
+        };
+        assert!(at(0.999 * longest).is_ok());
+        let Err(FibreError::TooLong { limit, .. }) = at(1.001 * longest) else {
+            panic!("longer than its fibres")
+        };
+        assert!((limit - longest).abs() < 1e-12, "{limit} {longest}");
+    }
 
     /// Inextensible fibres take one step, or two where the first guess is far off, and a last evaluation; elastic ones one more.
     #[test]

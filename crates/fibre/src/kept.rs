@@ -15,7 +15,7 @@ use std::fmt::Write;
 use std::sync::Arc;
 
 /// Names with keys of muscle files.
-const MUSCLES: [(&str, &str); 25] = [
+const MUSCLES: [(&str, &str); 27] = [
     ("pleated", "kind = \"pleated\"\nlength = \"110 mm\"\nradius = \"16 mm\"\nfibres = 40\n"),
     (
         "pleated elastic",
@@ -92,6 +92,15 @@ const MUSCLES: [(&str, &str); 25] = [
     (
         "pleated lobes",
         "kind = \"pleated\"\nlength = \"110 mm\"\nradius = \"16 mm\"\nfibres = 12\neffects = { lobes = { circumference = \"330 mm\" } }\n",
+    ),
+    (
+        "pleated narrow lobes",
+        "kind = \"pleated\"\nlength = \"110 mm\"\nradius = \"16 mm\"\nfibres = 12\neffects = { lobes = { circumference = \"112 mm\" } }\n",
+    ),
+    (
+        "pleated lobes in cloth",
+        "kind = \"pleated\"\nlength = \"110 mm\"\nradius = \"16 mm\"\nfibres = 12\n\
+         effects = { lobes = { circumference = \"330 mm\" }, limited-unfolding = { hoop_stiffness = \"81 kN/m\", unfolded_radius = \"28 mm\" } }\n",
     ),
     (
         "pleated twist",
@@ -307,6 +316,10 @@ impl Questions {
             kept = Some(found);
             Ok(values_of(what, &found))
         });
+        if let (Some(line), Some(found)) = (self.lines.last_mut(), kept) {
+            // What the answer says of its last search counts again.
+            line.work += u64::from(found.convergence.evaluations + found.convergence.iterations);
+        }
         kept
     }
 
@@ -337,6 +350,11 @@ impl Questions {
         self.add("longest", |Self { problem, .. }| Ok(problem.longest().into_iter().collect()));
         self.add("isobar", |Self { problem, .. }| of_isobar(problem, &[-0.02, 0.01, 0.05, 0.1, 0.2, 0.3]));
         self.add("isobar backwards", |Self { problem, .. }| of_isobar(problem, &[0.3, 0.2, 0.1, 0.05]));
+        if let Some(longest) = self.problem.longest() {
+            self.add("isobar drawn out", |Self { problem, .. }| {
+                of_isobar(problem, &[0.99 * longest, 0.9 * longest, 0.5 * longest, 0.01])
+            });
+        }
         self.add("isobars", |Self { moving, bar, .. }| {
             let pressures = [*bar, 1.5 * bar].map(Pressure::bar);
             let found = isobars(moving.values(), &pressures, &[0.02, 0.1], AUTO)?;
@@ -368,6 +386,7 @@ impl Questions {
             Ok(gradient.by_contraction.into_iter().chain(gradient.by_pressure).chain(by_part).collect())
         });
         let linear = |found: Linearised| {
+            assert!(found.convergence.first_integral < 1e-8 && found.convergence.residual < 1e-8);
             let linear = [found.force_n, found.equator_force_n, found.mid_radius_m, found.volume_polygon_m3];
             let numbers = |l: &Linear| {
                 let [length, radius, own, ..] = l.by_lane;
@@ -401,7 +420,11 @@ impl Questions {
     fn shape(&mut self) {
         self.add("shape", |Self { problem, .. }| {
             let shape = problem.shape(Given::Contraction(0.08), AUTO, 9)?;
-            let of = |p: &MeridianPoint| [p.x_m, p.r_m, p.slope_rad, p.braid_angle_rad, p.fibre_tension_n];
+            let of = |p: &MeridianPoint| {
+                let fibre =
+                    [p.braid_angle_rad, p.fibre_tension_n, p.fibre_strain, p.fibre_length_m, p.turn_rad];
+                [p.x_m, p.r_m, p.slope_rad, p.membrane_force_n_per_m].into_iter().chain(fibre)
+            };
             let mut values: Vec<f64> = shape.meridian.iter().flat_map(of).collect();
             if let Some(numbers) = problem.pleated_numbers(&shape.response) {
                 values.extend([numbers.m, numbers.phi_r, numbers.force_f, numbers.volume_v]);

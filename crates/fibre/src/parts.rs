@@ -457,3 +457,32 @@ impl<D: Real> Parts<D> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::{FibreError, Problem};
+    use bulge_muscles::{Pressure, from_toml};
+
+    /// Straight fibres have a closed form for muscles that are longer than an integration follows.
+    #[test]
+    fn misaligned_fibres_have_ranges_of_their_own() {
+        let of = |length: &str, effects: &str| {
+            let text = format!(
+                "name = \"m\"\nkind = \"pleated\"\nlength = \"{length}\"\nradius = \"16 mm\"\nfibres = 40\n{effects}"
+            );
+            Problem::new(&from_toml(&text, "m.toml").unwrap(), Pressure::bar(2.0))
+        };
+        let turned =
+            |degrees: u32| format!("effects = {{ fibre-misalignment = {{ angle = \"{degrees} deg\" }} }}\n");
+        let refused = |found: Result<Problem, FibreError>| match found {
+            Err(FibreError::OutOfRange { what, .. }) => what,
+            other => panic!("{other:?}"),
+        };
+        assert!(
+            of("3.2 m", "").is_ok() && of("110 mm", &turned(4)).is_ok() && of("1.5 m", &turned(4)).is_ok()
+        );
+        assert_eq!(refused(of("3.2 m", &turned(4))), "slenderness l0/R (with misaligned fibres)");
+        assert_eq!(refused(of("20 m", "")), "slenderness l0/R");
+        assert_eq!(refused(of("110 mm", &turned(60))), "misalignment in degrees");
+    }
+}
