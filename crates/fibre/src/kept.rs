@@ -15,7 +15,7 @@ use std::fmt::Write;
 use std::sync::Arc;
 
 /// Names with keys of muscle files.
-const MUSCLES: [(&str, &str); 27] = [
+const MUSCLES: [(&str, &str); 28] = [
     ("pleated", "kind = \"pleated\"\nlength = \"110 mm\"\nradius = \"16 mm\"\nfibres = 40\n"),
     (
         "pleated elastic",
@@ -96,6 +96,11 @@ const MUSCLES: [(&str, &str); 27] = [
     (
         "pleated narrow lobes",
         "kind = \"pleated\"\nlength = \"110 mm\"\nradius = \"16 mm\"\nfibres = 12\neffects = { lobes = { circumference = \"112 mm\" } }\n",
+    ),
+    (
+        "pleated deep lobes",
+        "kind = \"pleated\"\nlength = \"110 mm\"\nradius = \"16 mm\"\nfibres = 12\n\
+         effects = { lobes = { circumference = \"125 mm\" }, pleat-depth = { depth = \"2 mm\" } }\n",
     ),
     (
         "pleated lobes in cloth",
@@ -229,6 +234,14 @@ fn sling(tape: &mut Builder) -> Place {
         tape.whole_power(most, 2)
     });
     tape.operate(Operator::Add, first, second)
+}
+
+/// max(0, l2 - 1.05), whose slope jumps.
+fn jump(tape: &mut Builder) -> Place {
+    let [_, around, _] = inputs(tape);
+    let [zero, taut] = [0.0, 1.05].map(|value| tape.constant(value));
+    let gap = tape.operate(Operator::Subtract, around, taut);
+    tape.call(Function::Max, &[zero, gap])
 }
 
 /// An energy of the wall, k f(l1, l2) in N/m, with the derivatives that a net needs.
@@ -432,6 +445,18 @@ impl Questions {
             Ok(values)
         });
     }
+}
+
+/// No equilibrium is found where the slope of a formula jumps, around the axis alone here; the error says so.
+#[test]
+fn a_slope_that_jumps_is_told() {
+    let keys = MUSCLES.iter().find(|(name, _)| *name == "braid").unwrap().1;
+    let muscle = from_toml(&format!("name = \"m\"\n{keys}"), "m.toml").unwrap();
+    let mut parts = Parts::of(&muscle).still();
+    parts.energy = Some(energy(2000.0, jump));
+    let error = Problem::new(parts.values(), Pressure::bar(2.5)).unwrap().follow(0.08, AUTO).unwrap_err();
+    let FibreError::FormulaJumps { around, .. } = error else { panic!("{error}") };
+    assert!((around - 1.05).abs() < 1e-6, "{around}");
 }
 
 #[test]
