@@ -129,24 +129,4 @@ mod tests {
         };
         assert!((limit - longest).abs() < 1e-12, "{limit} {longest}");
     }
-
-    /// Inextensible fibres take one step, or two where the first guess is far off, and a last evaluation; elastic ones one more.
-    #[test]
-    fn few_steps_of_newton() {
-        let braid =
-            preset("dmsp-20-250").unwrap().with_ends(Ends::Cylinder).with(Parameter::Wall, 0.002).unwrap();
-        let rubber = braid.clone().with(Parameter::C10, 2e5).unwrap();
-        let rope = rubber.clone().with(Parameter::Fibres, 40.0).unwrap();
-        let [elastic, soft] = [4e4, 4e3].map(|n| rope.clone().with(Parameter::FibreStiffness, n).unwrap());
-        for (muscle, most) in [(braid, 2), (rubber, 3), (elastic, 4), (soft, 4)] {
-            let mut found = Vec::new();
-            for bar in [1.0, 3.0, 6.0] {
-                for contraction in [0.0, 0.1, 0.25] {
-                    let problem = Problem::new(&muscle, Pressure::bar(bar)).unwrap();
-                    found.push(problem.follow(contraction, Approach::Auto).unwrap().convergence.iterations);
-                }
-            }
-            assert!(found.iter().all(|count| *count <= most), "{most}: {found:?}");
-        }
-    }
 }
