@@ -3,6 +3,7 @@
 mod diagnose;
 mod fits;
 mod hidden_effects;
+mod kept;
 mod ladder;
 mod noise_law;
 mod papers;

@@ -1,0 +1,388 @@
+//! Whole answers about small tests of very different muscles and rigs, number by number, as kept in `kept/NAME.json`.
+//! That they are right is what the other tests verify; here every change of a number is seen, and its size.
+//!
+//! `BULGE_KEEP=1 cargo test -p bulge-inference --test all kept` writes the files anew.
+
+#![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+
+use crate::support::{diagnosing, effects, options, truth};
+use bulge_effects::{Catalogue, Moment};
+use bulge_inference::{
+    Block, DiagnoseOptions, NextLimits, Path, Protocol, ReadingNoise, ReadingSteps, RigErrors,
+    compare_with_rows, diagnose, extended, fit_effects, plan, posterior, predict, simulate,
+};
+use bulge_measurements::{Channel, Columns, Data, Trace};
+use bulge_muscles::{Muscle, from_toml, preset, to_toml};
+use serde::Serialize;
+use serde_json::ser::{PrettyFormatter, Serializer};
+use serde_json::{Map, Value, json};
+use std::path::PathBuf;
+
+/// Relative accuracy of kept numbers: fits on another processor, whose elementary functions differ in their last digits, agree to it.
+const CLOSE: f64 = 1e-4;
+/// Numbers below this fraction of the largest beside them are differences of larger ones.
+const LEAST: f64 = 1e-6;
+/// Longer arrays are kept as a few numbers.
+const MOST: usize = 12;
+
+/// Fails if an answer isn't the kept one.
+fn keep(name: &str, answer: &Value) {
+    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(format!("tests/all/kept/{name}.json"));
+    let found = short(answer);
+    if std::env::var_os("BULGE_KEEP").is_some() {
+        let mut text = Vec::new();
+        let mut narrow = Serializer::with_formatter(&mut text, PrettyFormatter::with_indent(b""));
+        found.serialize(&mut narrow).unwrap();
+        text.push(b'\n');
+        std::fs::write(path, text).unwrap();
+        return;
+    }
+    let kept: Value = serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap();
+    let mut differ = Vec::new();
+    differences("", &kept, &found, &mut differ);
+    assert!(
+        differ.is_empty(),
+        "{name}: {} differ:\n{}",
+        differ.len(),
+        differ[..differ.len().min(20)].join("\n")
+    );
+}
+
+/// The answer with six digits, of long arrays some entries, and of long arrays of numbers their size, ends, and a sum that tells their order.
+fn short(value: &Value) -> Value {
+    match value {
+        Value::Number(number) => match number.as_f64() {
+            Some(float) if number.is_f64() => format!("{float:.5e}").parse::<f64>().unwrap().into(),
+            _ => value.clone(),
+        },
+        Value::Array(all) if all.len() > MOST && all.iter().all(Value::is_number) => {
+            let numbers: Vec<f64> = all.iter().filter_map(Value::as_f64).collect();
+            let mean = numbers.iter().sum::<f64>() / numbers.len() as f64;
+            let rms = (numbers.iter().map(|x| x * x).sum::<f64>() / numbers.len() as f64).sqrt();
+            let in_order = numbers.iter().enumerate().map(|(i, x)| x * (0.7 * i as f64).sin()).sum::<f64>()
+                / numbers.len() as f64;
+            short(&json!([numbers.len(), numbers[0], numbers[numbers.len() - 1], mean, rms, in_order]))
+        }
+        Value::Array(all) => all.iter().step_by(all.len().div_ceil(MOST).max(1)).map(short).collect(),
+        Value::Object(all) => all
+            .iter()
+            .filter(|(key, _)| !matches!(key.as_str(), "version" | "files" | "sha256"))
+            .map(|(key, value)| (key.clone(), short(value)))
+            .collect::<Map<_, _>>()
+            .into(),
+        other => other.clone(),
+    }
+}
+
+fn differences(place: &str, kept: &Value, found: &Value, differ: &mut Vec<String>) {
+    match (kept, found) {
+        (Value::Object(a), Value::Object(b)) if a.keys().eq(b.keys()) => {
+            a.iter().for_each(|(key, one)| differences(&format!("{place}.{key}"), one, &b[key], differ));
+        }
+        (Value::Array(a), Value::Array(b)) if a.len() == b.len() => {
+            let largest = a.iter().filter_map(Value::as_f64).fold(0.0, |most, x: f64| x.abs().max(most));
+            for (i, (one, other)) in a.iter().zip(b).enumerate() {
+                if let (Some(x), Some(y)) = (one.as_f64(), other.as_f64()) {
+                    if !alike(x, y, LEAST * largest) {
+                        differ.push(format!("{place}[{i}]: {x} was kept, not {y}"));
+                    }
+                } else {
+                    differences(&format!("{place}[{i}]"), one, other, differ);
+                }
+            }
+        }
+        (Value::Number(a), Value::Number(b)) if alike(a.as_f64().unwrap(), b.as_f64().unwrap(), 1e-9) => {}
+        (Value::String(a), Value::String(b)) if said_alike(a, b) => {}
+        _ if kept == found => {}
+        _ => differ.push(format!("{place}: {kept} was kept, not {found}")),
+    }
+}
+
+fn alike(kept: f64, found: f64, least: f64) -> bool {
+    (kept - found).abs() <= (CLOSE * kept.abs().max(found.abs())).max(least)
+}
+
+/// The same sentence, with numbers that differ by one in their last digit.
+fn said_alike(kept: &str, found: &str) -> bool {
+    let words = |text: &str| -> Vec<String> {
+        text.split(|letter: char| letter.is_whitespace() || ",;:()%".contains(letter))
+            .map(str::to_owned)
+            .collect()
+    };
+    let (kept, found) = (words(kept), words(found));
+    kept.len() == found.len()
+        && kept.iter().zip(&found).all(|(one, other)| {
+            one == other
+                || one.parse::<f64>().ok().zip(other.parse::<f64>().ok()).is_some_and(|(x, y)| {
+                    let digits = one.split_once('.').map_or(0, |(_, after)| after.len());
+                    (x - y).abs() <= 1.01 * 0.1_f64.powi(i32::try_from(digits).unwrap())
+                })
+        })
+}
+
+const BRAID: &str = r#"
+name = "braid"
+kind = "braided"
+length = "250 mm"
+radius = "10 mm"
+braid_angle = "25 deg"
+ends = "ENDS"
+wall = "1.8 mm"
+
+[instruments]
+force = { noise = "1 N", zero = "2 N", gain = "0.3 %" }
+pressure = { noise = "100 Pa", zero = "1 kPa", gain = "0.2 %" }
+length = { noise = "10 um", zero = "0.1 mm", gain = "0.2 %" }
+"#;
+
+fn braid(ends: &str) -> Muscle {
+    from_toml(&BRAID.replace("ENDS", ends), "braid.toml").unwrap()
+}
+
+fn loops(rows: u32, cycles: u32) -> Block {
+    Block { rows, cycles, ..Block::loops(vec![2e5, 3e5, 4e5], [0.02, 0.16], 30.0) }
+}
+
+fn noise(force_n: f64) -> ReadingNoise {
+    ReadingNoise { force_n, ..ReadingNoise::default() }
+}
+
+fn measured(muscle: &Muscle, hidden: &[(&str, &[f64])], protocol: &Protocol) -> Data {
+    let (model, theta) = truth(muscle, hidden);
+    simulate(&model, &theta, protocol, 7).unwrap().data
+}
+
+fn keep_diagnosis(name: &str, data: &Data, muscle: &Muscle, options: &DiagnoseOptions) {
+    keep(name, &serde_json::to_value(diagnose(data, muscle, options).unwrap()).unwrap());
+}
+
+/// A hidden effect in one block, with white noise of 1 N.
+fn keep_hidden(name: &str, muscle: &Muscle, hidden: &[(&str, &[f64])], block: Block) {
+    let protocol = Protocol { noise: noise(1.0), ..Protocol::new(vec![block]) };
+    keep_diagnosis(name, &measured(muscle, hidden, &protocol), muscle, &diagnosing(&[]));
+}
+
+#[test]
+fn friction_of_a_cylinder() {
+    keep_hidden("friction", &braid("cylinder"), &[("coulomb-friction", &[8.0])], loops(24, 2));
+}
+
+#[test]
+fn rubber_and_friction_of_a_clamped_braid() {
+    let hidden: [(&str, &[f64]); 2] = [("bladder-elasticity", &[1e5]), ("pressure-friction", &[2e-5])];
+    keep_hidden("clamped", &braid("clamped"), &hidden, loops(20, 1));
+}
+
+#[test]
+fn a_pleated_muscle_on_a_grid() {
+    let muscle = preset("ppam-2-r16").unwrap();
+    let map = Block { repeats: 3, ..Block::map(vec![1e5, 2e5, 3e5], [0.05, 0.3], 9) };
+    let protocol = Protocol {
+        noise: noise(2.0),
+        steps: ReadingSteps { force_n: 0.5, pressure_pa: 100.0, length_m: 1e-4 },
+        ..Protocol::new(vec![map])
+    };
+    let data = measured(&muscle, &[("fibre-stretch", &[2e-5])], &protocol);
+    keep_diagnosis("pleated", &data, &muscle, &diagnosing(&[]));
+}
+
+#[test]
+fn held_lengths_and_correlated_noise() {
+    let block = Block { rows: 24, ..Block::isometric([1e5, 5e5], vec![0.02, 0.08, 0.14], 30.0) };
+    let noise = ReadingNoise {
+        force_n: 1.0,
+        correlated_n: 2.0,
+        correlation_time_s: 4.0,
+        pressure_pa: 300.0,
+        length_m: 2e-5,
+        ..ReadingNoise::default()
+    };
+    let protocol = Protocol { noise, rig: RigErrors::Drawn, ..Protocol::new(vec![block]) };
+    let muscle = braid("cylinder");
+    let data = measured(&muscle, &[("end-taper", &[])], &protocol);
+    keep_diagnosis("held", &data, &muscle, &diagnosing(&[]));
+}
+
+#[test]
+fn stairs_that_creep_and_warm_up() {
+    let block = Block { path: Path::Stairs { steps: 4, hold_s: 2.0 }, ..loops(32, 2) };
+    let protocol =
+        Protocol { noise: noise(1.0), warming_k: 12.0, pause_s: 20.0, ..Protocol::new(vec![block]) };
+    let muscle = braid("cylinder");
+    let data = measured(&muscle, &[("creep", &[4.0])], &protocol);
+    let among = Some(["temperature", "creep", "self-heating", "force-lag"].map(str::to_owned).to_vec());
+    keep_diagnosis("warm", &data, &muscle, &DiagnoseOptions { among, ..diagnosing(&[]) });
+}
+
+#[test]
+fn specimens_in_which_nothing_is_missing() {
+    let block = Block { specimens: 3, path: Path::Sine, ..loops(16, 1) };
+    let noise = ReadingNoise { tails: Some(4.0), offset_n: 2.0, ..noise(1.0) };
+    let protocol = Protocol { noise, ..Protocol::new(vec![block]) };
+    let muscle = braid("cylinder");
+    let limits = NextLimits::default();
+    let options = DiagnoseOptions { tolerance_n: Some(1.0), limits, ..diagnosing(&[]) };
+    keep_diagnosis("specimens", &measured(&muscle, &[], &protocol), &muscle, &options);
+}
+
+/// Readings of a cylinder, with more force at each row.
+fn with_more(block: Block, more: impl Fn(usize, &Moment) -> f64) -> Columns {
+    let muscle = braid("cylinder");
+    let protocol = Protocol { noise: noise(1.0), ..Protocol::new(vec![block]) };
+    let (model, theta) = truth(&muscle, &[]);
+    let found = simulate(&model, &theta, &protocol, 11).unwrap();
+    let (data, moments) = (&found.data, found.exact.moments());
+    let force =
+        data.force().iter().zip(moments).enumerate().map(|(row, (force, moment))| force + more(row, moment));
+    Columns { force_n: force.collect(), ..data.columns().as_ref().clone() }
+}
+
+fn keep_columns(name: &str, columns: Columns, with: &[&str]) {
+    keep_diagnosis(name, &Data::from_columns(columns).unwrap(), &braid("cylinder"), &diagnosing(with));
+}
+
+#[test]
+fn a_force_that_no_effect_explains() {
+    let more = |_, moment: &Moment| 25.0 * (150.0 * moment.contraction).sin();
+    keep_columns("unknown", with_more(loops(40, 1), more), &[]);
+}
+
+#[test]
+fn a_smooth_force_that_no_effect_explains() {
+    let more = |_, moment: &Moment| 4e-7 * moment.pressure.powf(1.5) * (40.0 * moment.contraction).cos();
+    keep_columns("smooth", with_more(loops(30, 2), more), &[]);
+}
+
+#[test]
+fn a_force_that_oscillates() {
+    let more = |_, moment: &Moment| 8.0 * (1.7 * moment.time).sin();
+    keep_columns("oscillation", with_more(loops(50, 1), more), &[]);
+}
+
+#[test]
+fn friction_of_another_form_with_a_spike() {
+    let more = |row, moment: &Moment| {
+        if row == 57 { 900.0 } else { -9.0 * moment.direction * (1.0 + 2.0 * moment.contraction) }
+    };
+    keep_columns("bent", with_more(loops(40, 1), more), &["end-taper"]);
+}
+
+#[test]
+fn a_load_cell_that_jumps() {
+    keep_columns("jump", with_more(loops(40, 1), |row, _| if row > 70 { 18.0 } else { 0.0 }), &[]);
+}
+
+#[test]
+fn rows_that_are_something_else() {
+    let more = |row, _: &Moment| if (50..58).contains(&row) { 25.0 + row as f64 } else { 0.0 };
+    keep_columns("odd", with_more(loops(40, 1), more), &[]);
+}
+
+#[test]
+fn a_force_that_comes_late() {
+    let block = Block { rows: 40, ..Block::isometric([1e5, 5e5], vec![0.02, 0.08, 0.14], 30.0) };
+    let data = Data::from_columns(with_more(block, |_, _| 0.0)).unwrap().moved(Channel::Force, -3);
+    keep_diagnosis("late", &data, &braid("cylinder"), &diagnosing(&[]));
+}
+
+#[test]
+fn rubber_that_softens() {
+    let hidden: [(&str, &[f64]); 2] = [("bladder-elasticity", &[2e5]), ("stress-softening", &[0.4, 1.5])];
+    keep_hidden("softening", &braid("cylinder"), &hidden, loops(12, 5));
+}
+
+#[test]
+fn exchanged_specimens() {
+    let tables = "\n[specimens.1]\nradius = \"10 mm\"\n[specimens.2]\nradius = \"10.4 mm\"\n[specimens.3]\nradius = \"9.7 mm\"\n";
+    let muscle = from_toml(&format!("{}{tables}", BRAID.replace("ENDS", "cylinder")), "braid.toml").unwrap();
+    let parts: Vec<Columns> = ["1", "3", "2"]
+        .iter()
+        .map(|name| {
+            let protocol = Protocol { noise: noise(1.0), ..Protocol::new(vec![loops(20, 1)]) };
+            measured(&muscle.of_specimen(name).unwrap(), &[], &protocol).columns().as_ref().clone()
+        })
+        .collect();
+    let all = |column: &dyn Fn(&Columns) -> Vec<f64>| parts.iter().flat_map(column).collect::<Vec<f64>>();
+    let of_length = all(&|part| part.motion.values().to_vec());
+    let motion = match parts[0].motion {
+        Trace::Contraction(_) => Trace::Contraction(of_length),
+        Trace::Length(_) => Trace::Length(of_length),
+    };
+    let mut columns =
+        Columns::new(all(&|part| part.pressure_pa.clone()), motion, all(&|part| part.force_n.clone()));
+    columns.time_s = Some(all(&|part| part.time_s.clone().unwrap()));
+    columns.specimen = Some((0..columns.force_n.len()).map(|row| ["1", "2", "3"][row / 60]).collect());
+    keep_diagnosis("exchanged", &Data::from_columns(columns).unwrap(), &muscle, &diagnosing(&[]));
+}
+
+#[test]
+fn a_radius_that_is_off() {
+    let other =
+        from_toml(&BRAID.replace("ENDS", "clamped").replace("10 mm", "10.6 mm"), "braid.toml").unwrap();
+    let protocol = Protocol { noise: noise(1.0), ..Protocol::new(vec![loops(20, 1)]) };
+    keep_diagnosis("radius", &measured(&other, &[], &protocol), &braid("clamped"), &diagnosing(&[]));
+}
+
+#[test]
+fn many_rows() {
+    let hidden: [(&str, &[f64]); 2] = [("viscous-damping", &[200.0]), ("force-lag", &[0.2])];
+    let block = Block { path: Path::Sine, ..loops(400, 2) };
+    let protocol = Protocol {
+        noise: ReadingNoise { correlated_n: 1.0, correlation_time_s: 1.0, pressure_pa: 500.0, ..noise(2.0) },
+        ..Protocol::new(vec![block])
+    };
+    let muscle = braid("cylinder");
+    keep_diagnosis("many", &measured(&muscle, &hidden, &protocol), &muscle, &diagnosing(&[]));
+}
+
+#[test]
+fn pounds_for_newtons() {
+    let mut columns = with_more(loops(40, 1), |_, _| 0.0);
+    columns.force_n.iter_mut().for_each(|force| *force /= 4.448_222);
+    let data = Data::from_columns(columns).unwrap();
+    let muscle = braid("cylinder");
+    let (comparison, rows) = compare_with_rows(&data, &muscle, &options(&["coulomb-friction"])).unwrap();
+    keep("pounds", &json!({ "comparison": comparison, "model": rows.model_n }));
+}
+
+#[test]
+fn another_length() {
+    let mut columns = with_more(loops(30, 1), |_, _| 0.0);
+    let contraction = Data::from_columns(columns.clone()).unwrap().contraction(0.25);
+    columns.motion = Trace::Length(contraction.iter().map(|c| 0.25 * (1.0 - c)).collect());
+    let muscle =
+        from_toml(&BRAID.replace("ENDS", "cylinder").replace("250 mm", "238 mm"), "braid.toml").unwrap();
+    keep_diagnosis("length", &Data::from_columns(columns).unwrap(), &muscle, &diagnosing(&[]));
+}
+
+#[test]
+fn a_fit_and_what_it_predicts() {
+    let muscle = braid("clamped");
+    let protocol = Protocol { noise: noise(1.0), ..Protocol::new(vec![loops(16, 1)]) };
+    let hidden: [(&str, &[f64]); 2] = [("coulomb-friction", &[8.0]), ("frame-compliance", &[2e-7, 1.0])];
+    let data = measured(&muscle, &hidden, &protocol);
+    let chosen = options(&["coulomb-friction", "frame-compliance"]);
+    let (fitting, posterior) = posterior(&data, &muscle, &chosen, 3).unwrap();
+    let alone = fit_effects(&data, &muscle, &chosen).unwrap();
+    let learnt = extended(&alone.model, &alone.fit).unwrap();
+    let predicted = predict(&data, &learnt.muscle, &Catalogue::builtin(), &[3]).unwrap();
+    keep(
+        "fit",
+        &json!({ "fit": fitting.fit, "before": fitting.before_rmse_n, "after": fitting.rmse_n, "posterior": posterior, "learnt": to_toml(&learnt.muscle), "predicted": predicted }),
+    );
+}
+
+#[test]
+fn what_a_test_would_show() {
+    let muscle = braid("cylinder");
+    let protocol = Protocol {
+        noise: ReadingNoise { correlated_n: 1.0, correlation_time_s: 3.0, ..noise(1.0) },
+        rig: RigErrors::Drawn,
+        ..Protocol::new(vec![loops(20, 2)])
+    };
+    let known = [(effects(&["coulomb-friction"])[0].clone(), vec![5.0])];
+    keep(
+        "plan",
+        &serde_json::to_value(plan(&muscle, &known, &Catalogue::builtin(), &protocol).unwrap()).unwrap(),
+    );
+}
