@@ -16,6 +16,8 @@ const BINS: usize = 12;
 const MUCH: f64 = 0.3;
 /// Largest p-value at which it is mentioned.
 const CLEAR: f64 = 0.01;
+/// Part of the most that effects explain which are the same but for rounding.
+const ALIKE: f64 = 1.0 - 1e-6;
 
 /// Sentences about the remaining misfit.
 pub(crate) fn hints(record: &Record, linear: &LinearisedModel, located: &[Located]) -> Vec<String> {
@@ -128,8 +130,10 @@ fn exponent(record: &Record, misfit: &[f64]) -> Option<String> {
 /// The effect that explains most, and where it fails.
 fn nearest(record: &Record, linear: &LinearisedModel) -> Option<String> {
     let whole = linear.structure() - linear.smooth.len() as f64;
-    let gain = |c: &&Candidate| c.explains(&linear.z).gain;
-    let best = linear.candidates.iter().max_by(|a, b| gain(a).total_cmp(&gain(b)))?;
+    let gain = |c: &Candidate| c.explains(&linear.z).gain;
+    let most = linear.candidates.iter().map(gain).fold(0.0, f64::max);
+    // The first of those that are the same on these data, whatever their last digits.
+    let best = linear.candidates.iter().find(|c| gain(c) >= ALIKE * most)?;
     let explained = best.explains(&linear.z);
     if whole <= 0.0 || explained.gain <= 1.0 {
         return None;
