@@ -70,6 +70,7 @@ def main():
     parser.add_argument("--anew", action="store_true", help="forget the sample that there is")
     parser.add_argument("--again", action="store_true", help="run only those that survived before")
     parser.add_argument("--budget", type=float, help="seconds of tests for a mutant: more may survive, which --again looks at with all tests")
+    parser.add_argument("--tests", default="", help="regular expression: run only tests whose names contain it, such as new ones with --again")
     arguments = parser.parse_args()
     if shutil.which("cargo-mutants") is None:
         parser.error("cargo-mutants isn't installed: cargo install cargo-mutants --locked")
@@ -79,7 +80,7 @@ def main():
     before = kept.get(arguments.crate)
     if arguments.again and before is None:
         parser.error(f"`{arguments.crate}` has not been sampled yet: leave out --again")
-    crate = Crate(arguments.crate, arguments.budget or float("inf"))
+    crate = Crate(arguments.crate, arguments.tests, arguments.budget or float("inf"))
     if arguments.again:
         # Lines move; what is done to which function stays.
         names = {mutant["name"] for mutant in crate.mutants}
@@ -118,8 +119,8 @@ def _without_place(name):
 class Crate:
     """A crate in a clone of HEAD, what its tests take without a fault, and its mutants."""
 
-    def __init__(self, name, budget_s):
-        self.budget_s = budget_s
+    def __init__(self, name, only, budget_s):
+        self.only, self.budget_s = re.compile(only), budget_s
         self.tree = ROOT / "target/mutation/tree"
         if not self.tree.exists():
             subprocess.run(["git", "clone", "--quiet", "--shared", ROOT, self.tree], check=True)
@@ -161,7 +162,9 @@ class Crate:
         for program in self._built():
             listed = subprocess.run([program, "--list", "--format", "terse"], cwd=self.folder, check=True, capture_output=True, text=True).stdout
             ignored = subprocess.run([program, "--list", "--format", "terse", "--ignored"], cwd=self.folder, check=True, capture_output=True, text=True).stdout
-            named += [(program, line.removesuffix(": test")) for line in sorted({*listed.splitlines()} - {*ignored.splitlines()}) if line.endswith(": test")]
+            lines = sorted({*listed.splitlines()} - {*ignored.splitlines()})
+            names = [line.removesuffix(": test") for line in lines if line.endswith(": test")]
+            named += [(program, name) for name in names if self.only.search(name)]
 
         def alone(name):
             calls = self.tree / "target/mutant-calls" / name[1].replace("::", "-")

@@ -13,6 +13,7 @@ use crate::{
     Parts, Problem, Repeated, Response, Start, isobars, work,
 };
 use bulge_muscles::{Parameter, Pressure, from_toml};
+use bulge_numerics::last_digits;
 use bulge_numerics::tape::{Builder, Function, Operator, Place};
 use std::fmt::Write;
 use std::sync::Arc;
@@ -338,16 +339,6 @@ fn a_slope_that_jumps_is_told() {
     assert!((around - 1.05).abs() < 1e-6, "{around}");
 }
 
-/// A number that tells the elementary functions of processors apart: those with fused operations have other last
-/// digits.
-fn elementary_functions() -> u64 {
-    let at = |i: u32| {
-        let x = 1e-3 * f64::from(i);
-        [x.sin(), x.cos(), x.tan(), x.atan(), x.exp(), x.ln(), x.sinh(), x.sqrt()]
-    };
-    (1..3000).flat_map(at).fold(0, |sum: u64, value| sum.rotate_left(5) ^ value.to_bits())
-}
-
 #[test]
 fn kept_equilibria_and_their_cost() {
     let plain = MUSCLES.iter().flat_map(|(name, keys)| BARS.map(|bar| lines(name, keys, |_| (), bar)));
@@ -359,7 +350,7 @@ fn kept_equilibria_and_their_cost() {
     let found: Vec<Line> = plain.chain(own).flatten().collect();
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/src/kept.tsv");
     if std::env::var_os("BULGE_KEEP").is_some() {
-        let mut text = format!("elementary functions\t{:016x}\n", elementary_functions());
+        let mut text = format!("elementary functions\t{:016x}\n", last_digits());
         for line in &found {
             let values: Vec<String> = line.values.iter().map(|value| format!("{value:.9}")).collect();
             writeln!(text, "{}\t{}\t{}", line.asked, line.work, values.join(" ")).unwrap();
@@ -370,7 +361,7 @@ fn kept_equilibria_and_their_cost() {
     let (first, kept) = kept.split_once('\n').unwrap();
     assert_eq!(kept.lines().count(), found.len());
     // Steps depend on last digits: with those of another processor a search may take more or fewer.
-    let same_digits = first.ends_with(&format!("{:016x}", elementary_functions()));
+    let same_digits = first.ends_with(&format!("{:016x}", last_digits()));
     let other = if same_digits { OTHER } else { OTHER_DIGITS };
     let mut differ = Vec::new();
     for (line, kept) in found.iter().zip(kept.lines()) {

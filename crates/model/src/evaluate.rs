@@ -22,6 +22,7 @@ use crate::segment::{Task, segment};
 use crate::solved::Asked;
 use crate::strands::{self, Strands};
 use crate::warm::{Held, RowAnswers, Slots, Warm};
+use crate::work;
 
 /// The results that [`Model::evaluate`] returns besides the force.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -139,6 +140,7 @@ impl Model {
         slots: &mut Slots,
     ) -> Result<(Prediction, Vec<(usize, RowError)>), ModelError> {
         let (theta, asked, wanted) = (&*self.with_ties(theta), wanted, &*self.wanted_with_ties(wanted));
+        work::count(record.len(), wanted.parameters.len());
         let counts = |row: usize| warm.is_none_or(|warm| warm.counts(row));
         let mut runs = self.runs(record, theta, &wanted.parameters, &counts, slots)?;
         for run in &mut runs {

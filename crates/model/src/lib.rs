@@ -33,6 +33,7 @@ mod solved;
 mod specimen;
 mod strands;
 mod warm;
+mod work;
 
 pub use equilibrium::{Equilibrium, EquilibriumDocument};
 pub use error::ModelError;
@@ -46,3 +47,4 @@ pub use record::Record;
 pub use restriction::{NumberName, Restriction, Says};
 pub use specimen::specimen;
 pub use warm::Warm;
+pub use work::forces_asked;

@@ -10,6 +10,7 @@ mod dual;
 mod elementary;
 pub mod elliptic;
 pub mod gauss;
+mod last_digits;
 pub mod least_squares;
 pub mod minimum;
 mod random;
@@ -19,5 +20,6 @@ pub mod tape;
 
 pub use dop853::Dop853;
 pub use dual::Dual;
+pub use last_digits::last_digits;
 pub use random::Random;
 pub use real::Real;

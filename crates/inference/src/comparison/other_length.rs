@@ -11,7 +11,7 @@ use std::ops::RangeInclusive;
 
 use bulge_measurements::{Data, Trace};
 use bulge_muscles::units::significant;
-use bulge_muscles::{Muscle, Quantity};
+use bulge_muscles::{Muscle, Parameter, Quantity};
 use bulge_numerics::minimum::golden;
 
 use crate::comparison::document::Mismatch;
@@ -21,6 +21,8 @@ use crate::comparison::mismatch::{LEFT, Trial};
 const PER_CENT: RangeInclusive<i32> = 75..=133;
 /// Factors closer to one are effects: fittings that slip, a sensor's zero, fibres longer than stated.
 const NOTICEABLE: f64 = 0.02;
+/// Lengths closer to the stated one than this many of its widths agree with it, and the fit finds them.
+const WITHIN: f64 = 3.0;
 /// Fraction of the error that is left from which nothing else is looked for: noise, but not another angle or radius,
 /// whose curves differ.
 const LEFT_SURELY: f64 = 0.06;
@@ -56,7 +58,8 @@ pub(crate) fn question(
     let bracket = [near - 0.01, near + 0.01];
     let (factor, after) =
         golden(error(trial, near), bracket, ENOUGH, |place| *place, |factor| error(trial, factor));
-    ((factor - 1.0).abs() > NOTICEABLE && after <= LEFT * before).then(|| Mismatch {
+    let width = muscle.width(Parameter::Length).unwrap_or(0.0) / l0;
+    ((factor - 1.0).abs() > NOTICEABLE.max(WITHIN * width) && after <= LEFT * before).then(|| Mismatch {
         kind: "muscle-length",
         decided: after <= LEFT_SURELY * before,
         rmse_n: before,

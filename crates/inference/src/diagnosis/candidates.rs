@@ -214,7 +214,7 @@ fn signed_least_squares(columns: &[&[f64]], signs: &[Sign], z: &[f64]) -> (f64, 
                 };
                 let active: Vec<usize> = (0..columns.len()).filter(is_in).collect();
                 let Some((gain, sizes)) = least_squares(columns, &active, z) else { continue };
-                let allowed = sizes.iter().zip(signs).all(|(size, sign)| *size == 0.0 || may(*sign, *size));
+                let allowed = sizes.iter().zip(signs).all(|(size, sign)| may(*sign, *size));
                 if allowed && gain > best.0 {
                     best = (gain, sizes);
                     if out == 0 {

@@ -449,3 +449,23 @@ pub struct NextExperiment {
     /// them.
     pub protocol: Option<Box<Protocol>>,
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_step_of_the_ladder_knows_all_its_effects() {
+        let step = |added: Option<&str>| LadderStep {
+            added: added.map(str::to_owned),
+            bent: false,
+            rmse_n: 1.0,
+            held_out_rmse_n: None,
+            adequate: false,
+        };
+        let names = |added| step(added).effects().map(str::to_owned).collect::<Vec<_>>();
+        assert!(names(None).is_empty());
+        assert_eq!(names(Some("creep")), ["creep"]);
+        assert_eq!(names(Some(&format!("creep{TOGETHER}end-slip"))), ["creep", "end-slip"]);
+    }
+}

@@ -154,3 +154,41 @@ fn nearest(record: &Record, linear: &LinearisedModel) -> Option<String> {
         bar(moment.pressure)
     ))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::exponent;
+    use bulge_effects::Moment;
+    use bulge_model::Record;
+
+    /// A misfit of one shape over the contraction that goes with a power of the pressure.
+    fn of_power(power: f64) -> String {
+        let states = [1e5, 2e5, 4e5].into_iter().flat_map(|p| (0..30).map(move |i| (p, 0.01 * f64::from(i))));
+        let moments: Vec<Moment> = states.map(|(p, e)| Moment::at_rest(p, e)).collect();
+        let misfit: Vec<f64> = moments
+            .iter()
+            .map(|m| (m.pressure / 1e5).powf(power) * (1.0 + (9.0 * m.contraction).sin()))
+            .collect();
+        let record = Record::from_moments(moments, misfit.clone(), vec![0..30, 30..60, 60..90]).unwrap();
+        exponent(&record, &misfit).unwrap()
+    }
+
+    #[test]
+    fn the_power_of_the_pressure_is_told() {
+        for (power, says) in [
+            (0.0, "about the same at all pressures"),
+            (0.34, "about the same at all pressures"),
+            (0.36, "to the power 0.36"),
+            (0.64, "to the power 0.64"),
+            (0.66, "about with the pressure"),
+            (1.34, "about with the pressure"),
+            (1.36, "to the power 1.4"),
+            (1.66, "about with the square"),
+            (2.49, "about with the square"),
+            (3.0, "to the power 3"),
+            (-2.0, "to the power -2"),
+        ] {
+            assert!(of_power(power).contains(says), "{power}: {}", of_power(power));
+        }
+    }
+}

@@ -75,13 +75,11 @@ pub(crate) fn with_nuisances(model: &Model, catalogue: &Catalogue) -> Result<Pre
         prepared.priors.extend(std::iter::repeat_n(None, added));
         prepared.nuisance.extend(std::iter::repeat_n(true, added));
         let is_it = |p: &bulge_model::ModelParameter| p.effect == width.effect && p.name == width.parameter;
-        // Specimens with different values have a parameter each, with the same relative standard deviation.
-        for (prior, number) in
+        // An error of the mounting is another one for each specimen.
+        for (prior, _) in
             prepared.priors.iter_mut().zip(prepared.model.parameters()).filter(|(_, p)| is_it(p))
         {
-            let (mean, sd) = width.prior;
-            let ratio = if mean > 0.0 && number.off > 0.0 { number.off / mean } else { 1.0 };
-            *prior = Some((mean * ratio, sd * ratio));
+            *prior = Some(width.prior);
         }
     }
     Ok(prepared)
@@ -189,6 +187,18 @@ mod tests {
         let [length, radius, angle] = geometry;
         let wall = [("wall-thickness", 0.002, 0.15 * 0.002), ("bladder-elasticity", 3e5, 0.15 * 3e5)];
         are(&priors(&stated.with_usual_widths().0), &[length, radius, angle, wall[0], wall[1]]);
+    }
+
+    /// An error of the mounting is another one for each specimen, and a radius is that of all.
+    #[test]
+    fn specimens_that_differ_have_errors_of_mounting_each() {
+        let file = "name = \"m\"\nkind = \"braided\"\nlength = \"250 mm +- 0\"\nradius = \"10 mm +- 0.2 mm\"\nbraid_angle = \"25 deg +- 0\"\n[instruments]\nforce = { zero = \"2 N\" }\n[specimens.A]\n[specimens.B]\nradius = \"12 mm\"\n";
+        let muscle = from_toml(file, "m").unwrap();
+        let model = Model::new(&muscle).for_specimens(&["A".to_owned(), "B".to_owned()]).unwrap();
+        let prepared = with_nuisances(&model, &Catalogue::builtin()).unwrap();
+        let mut found: Vec<(f64, f64)> = prepared.priors.iter().flatten().copied().collect();
+        found.sort_by(|a, b| a.0.total_cmp(&b.0));
+        assert_eq!(found, [(0.0, 2.0), (0.0, 2.0), (0.01, 2e-4)]);
     }
 
     #[test]

@@ -197,6 +197,41 @@ mod tests {
         assert!(input_noise(&[1.0; 20], &[], &[], [&[1.0; 20], &[1.0; 20]], &[1.0; 20], &[]).is_none());
     }
 
+    /// The readings of each row tell their scatter if more than half of the rows have several; the residuals of
+    /// these rows show none.
+    #[test]
+    fn scatter_within_rows_counts_where_most_rows_have_it() {
+        let n = 400;
+        let (slope, flat, fours) = (steep(n), vec![1.0; n], vec![4.0; n]);
+        let no_slope = scatter(n, 0.0, false);
+        let noise = scatter(4 * n, 0.0, false);
+        let found = |rows: usize| {
+            let of_row = |row: usize| {
+                let sd = 0.8 * slope[row];
+                let own: Vec<f64> = noise[4 * row..4 * row + 4].iter().map(|x| sd * x).collect();
+                let mean = own.iter().sum::<f64>() / 4.0;
+                Scatter { sum: own.iter().map(|x| (x - mean).powi(2)).sum(), freedom: 3.0 }
+            };
+            let within: Vec<Option<Scatter>> =
+                (0..n).map(|row| (row % n < rows).then(|| of_row(row))).collect();
+            input_noise(&no_slope, &[], &columns(n), [&flat, &slope], &fours, &within)
+        };
+        assert!(found(n / 2).is_none());
+        let most = found(n / 2 + 1).unwrap();
+        assert!((0.7..0.9).contains(&(2.0 * (most[n / 3]).sqrt() / slope[n / 3])), "{}", most[n / 3]);
+    }
+
+    #[test]
+    fn few_rows_tell_no_input_noise() {
+        let tell = |n: usize| {
+            let slope: Vec<f64> = (0..n).map(|i| if i % 6 == 0 { 40.0 } else { 0.1 }).collect();
+            let alternating: Vec<f64> =
+                (0..n).map(|i| if i % 12 < 6 { slope[i] } else { -slope[i] }).collect();
+            input_noise(&alternating, &[], &[], [&vec![0.0; n], &slope], &vec![1.0; n], &[]).is_some()
+        };
+        assert_eq!([20, FEWEST - 1, FEWEST, 240].map(tell), [false, false, true, true]);
+    }
+
     #[test]
     fn slow_noise_is_no_noise_of_the_inputs() {
         let n = 2400;

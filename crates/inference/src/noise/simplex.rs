@@ -102,6 +102,22 @@ mod tests {
         assert!(value < 1e-10 && (point[0] - 1.0).abs() < 1e-4, "{point:?} {value}");
     }
 
+    /// Corners beside the start, and a start on its bound, whose corner lies inside.
+    #[test]
+    fn the_first_corners_lie_one_step_away_within_the_bounds() {
+        let asked = std::cell::RefCell::new(Vec::new());
+        let bowl = |x: &[f64]| {
+            asked.borrow_mut().push(x.to_vec());
+            x.iter().map(|x| x * x).sum()
+        };
+        let few =
+            Search { bounds: &[(-5.0, 5.0), (-5.0, 2.0)], step: 0.5, evaluations: 400, tolerance: 1e-3 };
+        minimise(bowl, &[1.0, 2.0], few);
+        let asked = asked.into_inner();
+        assert_eq!(asked[..3], [vec![1.0, 2.0], vec![1.5, 2.0], vec![1.0, 1.5]]);
+        assert_eq!(asked.len(), 33);
+    }
+
     #[test]
     fn bounds_hold_and_single_numbers_are_found() {
         let (point, _) = minimise(|x| (x[0] - 3.0).powi(2), &[0.0], search(&[(-1.0, 2.0)]));

@@ -5,8 +5,8 @@
 
 use crate::support::{diagnosing, effects, names, noisy, options, truth};
 use bulge_inference::{
-    BentCurve, Block, DiagnoseOptions, Diagnosis, Options, Path, Protocol, ReadingNoise, Verdict, diagnose,
-    simulate,
+    BentCurve, Block, DiagnoseOptions, Diagnosis, Missing, Options, Path, Protocol, ReadingNoise, Verdict,
+    diagnose, simulate,
 };
 use bulge_measurements::{Channel, Columns, Data, Trace};
 use bulge_model::{Model, Record, Wanted};
@@ -80,6 +80,14 @@ fn the_hidden_effect_is_named_with_its_number() {
                 "{effect}: {value} against {number:?}"
             );
         }
+        // A claim is in doubt if its mechanism is, or the evidence of the effect is small.
+        let claim = |confidence_mechanism, log_evidence| Missing {
+            confidence_mechanism,
+            log_evidence,
+            ..first.clone()
+        };
+        let doubts = [(0.51, 13.6), (0.49, 13.6), (0.51, 13.4)].map(|(c, e)| claim(c, e).is_doubtful());
+        assert_eq!(doubts, [false, true, true]);
         let [before, after] = [0, 1].map(|i| found.ladder[i].rmse_n);
         assert!(after < before && after < 1.1 * found.noise_floor_n, "{effect}: {before} to {after}");
     }
@@ -651,6 +659,9 @@ fn a_wrong_length_of_the_file_is_told() {
         let right: f64 = findings[0].says.split(' ').nth(5).unwrap().parse().unwrap();
         assert!((right - 250.0).abs() < 0.3, "{}", findings[0]);
     }
+    // 250 mm lies within three widths of the first, and beyond those of the second.
+    assert!(of("235 mm +- 5.2 mm").unwrap().data.findings.is_empty());
+    assert_eq!(of("235 mm +- 4.8 mm").unwrap().data.findings[0].kind, "muscle-length");
     let error = of("150 mm").unwrap_err().to_string();
     assert!(error.contains("% of the 150.0 mm of c; check `length` in the muscle file"), "{error}");
 }
