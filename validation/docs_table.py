@@ -5,6 +5,7 @@
     python validation/docs_table.py forms [--check]          # the same for the forms suite: with the whole catalogue, and with the truth as the only candidate
     python validation/docs_table.py ratios [--check]         # from benches/ratios.json, which benches/ratios.py measures
     python validation/docs_table.py mutation [--check]       # from validation/mutation.json, which validation/mutation.py measures
+    python validation/docs_table.py coverage [--check]       # from validation/coverage.json, which validation/coverage.py measures
     python validation/docs_table.py fuzz [--check]           # from fuzz/counts.tsv, to which fuzz/run adds
 
 A table stands between `<!-- table: NAME ... -->` and `<!-- end of table -->`; all else in the file is kept. `--check` writes nothing: its status is 1 if
@@ -100,7 +101,7 @@ FORMS_FRONT = (
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("what", choices=("verification", "diagnosis", "forms", "ratios", "mutation", "fuzz"))
+    parser.add_argument("what", choices=("verification", "diagnosis", "forms", "ratios", "mutation", "coverage", "fuzz"))
     parser.add_argument("--check", action="store_true", help="compare the pages, and write nothing")
     parser.add_argument("--root", type=Path, default=ROOT, help="folder of README.md and docs")
     arguments = parser.parse_args()
@@ -117,6 +118,11 @@ def main():
         if not kept.exists():
             parser.error(f"{kept} is not there: run validation/mutation.py for each crate")
         tables = {"mutation": mutation(json.loads(kept.read_text(encoding="utf-8")))}
+    elif arguments.what == "coverage":
+        kept = ROOT / "validation/coverage.json"
+        if not kept.exists():
+            parser.error(f"{kept} is not there: run validation/coverage.py")
+        tables = {"coverage": coverage(json.loads(kept.read_text(encoding="utf-8"))["inference"])}
     elif arguments.what == "fuzz":
         tables = {"fuzz": fuzz((ROOT / "fuzz/counts.tsv").read_text(encoding="utf-8"))}
     elif arguments.what == "forms":
@@ -172,6 +178,21 @@ def mutation(crates):
         share = f"{100 * (built - survive) / built:.1f} % [{low:.0f}, {high:.0f}]"
         cells = [crate, str(counts["mutants"]), str(counts["sample"]), str(counts["unviable"]), str(survive), share]
         lines.append("| " + " | ".join(cells) + " |")
+    return "\n".join(lines)
+
+
+def coverage(modules):
+    """What the tests of inference run, folder by folder."""
+    lines = ["| modules | lines | of them run | regions | of them run | least covered module, lines |", "|---|---|---|---|---|---|"]
+    share = lambda counts, what: counts[what] / max(1, counts[f"all_{what}"])
+    folders = sorted({name.split("/")[0] if "/" in name else "" for name in modules})
+    for folder in [*folders, None]:
+        own = {name: counts for name, counts in modules.items() if folder is None or (name.split("/")[0] if "/" in name else "") == folder}
+        sums = {key: sum(counts[key] for counts in own.values()) for key in ("lines", "all_lines", "regions", "all_regions")}
+        least = min(own, key=lambda name: share(own[name], "lines"))
+        cells = ["**all**" if folder is None else f"`{folder}`" if folder else "others"]
+        cells += [str(sums["all_lines"]), f"{100 * share(sums, 'lines'):.1f} %", str(sums["all_regions"]), f"{100 * share(sums, 'regions'):.1f} %"]
+        lines.append("| " + " | ".join([*cells, f"`{least}`, {100 * share(own[least], 'lines'):.1f} %"]) + " |")
     return "\n".join(lines)
 
 

@@ -143,7 +143,11 @@ fn diagnosed(
     }
     let first = analysis.begin()?;
     let mut base = analysis.climb(options.base.effects.len(), Some(&first.climbed))?;
-    let silent = || DiagnoseOptions { progress: Progress::default(), ..options.clone() };
+    // Of these answers only the verdict and the names are looked at.
+    let silent = || {
+        let base = Options { rivals: false, held_out: false, ..options.base.clone() };
+        DiagnoseOptions { base, progress: Progress::default(), ..options.clone() }
+    };
     let without = |rows: &[usize]| {
         let mut options = silent();
         options.base.excluded.extend_from_slice(rows);
@@ -295,7 +299,9 @@ fn concluded(
         judged = classes(context, model, &search);
     }
     progress.at(0.75, "the next experiment");
-    let next = next_experiment(context, &judged, &Limits::of(&averaged_data.record, options.limits));
+    let is_whole = anew.is_some();
+    let limits = || Limits::of(&averaged_data.record, options.limits);
+    let next = if is_whole { next_experiment(context, &judged, &limits()) } else { None };
     progress.at(0.85, "the ladder");
     let classes: Vec<(Class, Confidence)> =
         judged.into_iter().map(|judged| (judged.class, judged.confidence)).collect();
@@ -318,7 +324,9 @@ fn concluded(
     let answer = compare_after(first, analysis, &effects, found.last().confirmed.numbers())?;
     progress.at(1.0, "done");
     let above_n = answer.0.ladder.last().map_or(f64::INFINITY, |rung| rung.rmse_n);
-    let bent = bent_rungs(analysis, found.shown_stage(), &averaged_data.averaged.groups, above_n)?;
+    let groups = &averaged_data.averaged.groups;
+    let bent =
+        if is_whole { bent_rungs(analysis, found.shown_stage(), groups, above_n)? } else { Vec::new() };
     let mut diagnosis = document(analysis.muscle, &found, answer, &bent);
     diagnosis.geometry = geometry(analysis, found.regardless());
     Ok(diagnosis)

@@ -646,7 +646,7 @@ fn a_wrong_length_of_the_file_is_told() {
     columns.motion = Trace::Length(contraction.iter().map(|c| 0.25 * (1.0 - c)).collect());
     let data = Data::from_columns(columns).unwrap();
     let of = |length: &str| {
-        let muscle = from_toml(&CYLINDER.replace("250 mm", length), "c.toml").unwrap();
+        let muscle = from_toml(&CYLINDER.replace("250 mm +- 0", length), "c.toml").unwrap();
         diagnose(&data, &muscle, &diagnosing(&[]))
     };
     assert!(of("250 mm").unwrap().data.findings.is_empty());

@@ -504,7 +504,9 @@ fn too_few_rows() {
     let mut columns = with_more(loops(4, 1), |_, _| 0.0);
     let first: [&mut Vec<f64>; 3] =
         [&mut columns.pressure_pa, &mut columns.force_n, columns.time_s.as_mut().unwrap()];
-    first.into_iter().for_each(|values| values.truncate(3));
+    for values in first {
+        values.truncate(3);
+    }
     columns.motion = Trace::Contraction(vec![0.02, 0.09, 0.16]);
     columns.sweep = None;
     keep_columns("few", columns, &[]);

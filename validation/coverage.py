@@ -1,0 +1,70 @@
+"""Coverage: which lines of a crate its own tests run.
+
+    python validation/coverage.py [inference]                    # measures, and keeps what it found in validation/coverage.json
+    python validation/docs_table.py coverage [--check]           # the table in docs/hardening.md
+
+Lines and regions (of which a line with a condition has several) are those of cargo-llvm-cov (`cargo install cargo-llvm-cov --locked`). Modules of tests within a
+file don't count. Building and testing take ten minutes on two cores.
+"""
+
+import argparse
+import json
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+KEPT = ROOT / "validation/coverage.json"
+TARGET = ROOT / "target/coverage"
+TESTS = "#[cfg(test)]\nmod tests {"
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("crate", nargs="?", default="inference", help="without `bulge-`")
+    crate = parser.parse_args().crate
+    if shutil.which("cargo-llvm-cov") is None:
+        parser.error("cargo-llvm-cov isn't installed: cargo install cargo-llvm-cov --locked")
+    if not (ROOT / "crates" / crate).is_dir():
+        parser.error(f"there is no crate `{crate}` below crates/")
+    exported = TARGET / "export.json"
+    TARGET.mkdir(parents=True, exist_ok=True)
+    words = ["cargo", "llvm-cov", "--package", f"bulge-{crate}", "--lib", "--tests", "--json", "--output-path", exported, "--target-dir", TARGET]
+    subprocess.run(words, cwd=ROOT, check=True)
+    source = ROOT / "crates" / crate / "src"
+    found = {}
+    for file in json.loads(exported.read_text(encoding="utf-8"))["data"][0]["files"]:
+        path = Path(file["filename"])
+        if path.is_relative_to(source):
+            name = path.relative_to(source).as_posix()
+            found[name] = _counts(path.read_text(encoding="utf-8"), file["segments"])
+    kept = {**(json.loads(KEPT.read_text(encoding="utf-8")) if KEPT.exists() else {}), crate: found}
+    KEPT.write_text(json.dumps(dict(sorted(kept.items())), indent=1, sort_keys=True) + "\n", encoding="utf-8")
+    for name, counts in sorted(found.items(), key=lambda entry: entry[1]["lines"] / max(1, entry[1]["all_lines"])):
+        print(f"{100 * counts['lines'] / max(1, counts['all_lines']):6.1f} % of {counts['all_lines']:4} lines  {name}: not {counts['not']}")
+    return 0
+
+
+def _counts(text, segments):
+    """Lines and regions that ran, of those before the tests, and the lines that did not."""
+    end = text[: text.index(TESTS)].count("\n") + 1 if TESTS in text else text.count("\n") + 1
+    # A segment is valid until the next one begins: line, column, count, whether it has one, whether a region begins there, whether it is a gap.
+    regions = [segment for segment in segments if segment[3] and segment[4] and not segment[5] and segment[0] <= end]
+    lines = {}
+    for (line, _, count, has_count, _, is_gap), following in zip(segments, [*segments[1:], [end, 0]], strict=True):
+        if has_count and not is_gap:
+            for at in range(line, min(following[0] + (following[1] > 1), end + 1)):
+                lines[at] = max(lines.get(at, 0), count)
+    missed = sorted(line for line, count in lines.items() if count == 0)
+    return {
+        "lines": len(lines) - len(missed),
+        "all_lines": len(lines),
+        "regions": sum(segment[2] > 0 for segment in regions),
+        "all_regions": len(regions),
+        "not": missed,
+    }
+
+
+if __name__ == "__main__":
+    sys.exit(main())
