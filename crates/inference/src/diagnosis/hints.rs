@@ -107,13 +107,12 @@ fn exponent(record: &Record, misfit: &[f64]) -> Option<String> {
     }
     // Regression line through the logarithms.
     let points: Vec<(f64, f64)> = levels.mean.iter().zip(&multiples).map(|(p, m)| (p.ln(), m.ln())).collect();
-    let n = points.len() as f64;
-    let (x, y) = points.iter().fold((0.0, 0.0), |(x, y), p| (x + p.0 / n, y + p.1 / n));
+    let x = points.iter().map(|p| p.0).sum::<f64>() / points.len() as f64;
     let spread: f64 = points.iter().map(|p| (p.0 - x).powi(2)).sum();
     if spread <= 0.0 {
         return None;
     }
-    let power = points.iter().map(|p| (p.0 - x) * (p.1 - y)).sum::<f64>() / spread;
+    let power = points.iter().map(|p| (p.0 - x) * p.1).sum::<f64>() / spread;
     let says = match power {
         p if p.abs() < 0.35 => {
             "it is about the same at all pressures (rubber, offsets of the load cell)".to_owned()

@@ -122,6 +122,21 @@ mod tests {
         }
     }
 
+    /// Without times there is no frequency, and in few rows no line.
+    #[test]
+    fn rows_without_a_time_and_few_rows_have_none() {
+        let still: Vec<Moment> = record().moments().iter().map(|m| Moment { since: 0.0, ..*m }).collect();
+        let still = Record::from_moments(still, vec![0.0; 900], vec![0..900]).unwrap();
+        assert!(oscillation(&still, &left(&still, 4.0, 2.3, 5)).is_none());
+        let few = |rows: usize| {
+            let moments = record().moments()[..rows].to_vec();
+            let record =
+                Record::from_moments(moments, vec![0.0; rows], std::iter::once(0..rows).collect()).unwrap();
+            oscillation(&record, &left(&record, 9.0, 1.0, 5))
+        };
+        assert!(few(FEWEST - 1).is_none() && few(4 * FEWEST).is_some());
+    }
+
     #[test]
     fn noise_has_no_line_more_often_than_it_may() {
         let record = record();

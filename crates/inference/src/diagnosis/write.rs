@@ -30,7 +30,7 @@ use crate::diagnosis::stage::Stage;
 use crate::diagnosis::verdict::furthest;
 use crate::fit::interval;
 use crate::fit::problem::{FitProblem, free};
-use crate::vector::{range, rms};
+use crate::vector::{coarse, range, rms};
 use bulge_numerics::least_squares::Side;
 
 /// The family of hysteresis with a transition after each reversal; the next constant is the effect without
@@ -218,7 +218,7 @@ impl Findings<'_> {
             names.push(own.to_owned());
         }
         let mut near: Vec<&Rival> = class.rivals.iter().filter(|rival| rival.in_class).collect();
-        near.sort_by(|a, b| b.log_evidence.total_cmp(&a.log_evidence));
+        near.sort_by(|a, b| coarse(b.log_evidence).total_cmp(&coarse(a.log_evidence)));
         let mut forms = Vec::new();
         let mut families = vec![own];
         for rival in near {
@@ -264,7 +264,7 @@ impl Findings<'_> {
         // The form under whose name the claim stands is no rival of it.
         let others = class.rivals.iter().filter(|rival| rival.effect.card().name != label);
         let mut rivals: Vec<RivalResult> = others.map(|rival| rival_result(rival, class)).collect();
-        rivals.sort_by(|a, b| a.behind.total_cmp(&b.behind));
+        rivals.sort_by(|a, b| coarse(a.behind).total_cmp(&coarse(b.behind)));
         Missing {
             effect: label,
             class: names,
@@ -411,7 +411,7 @@ impl Findings<'_> {
                 why: screened.untestable.clone(),
             });
         }
-        found.sort_by(|a, b| b.log_evidence.total_cmp(&a.log_evidence));
+        found.sort_by(|a, b| coarse(b.log_evidence).total_cmp(&coarse(a.log_evidence)));
         found
     }
 }

@@ -172,8 +172,7 @@ fn width(problem: &FitProblem<'_>, fitted: &Fitted, place: usize) -> f64 {
     let width = if problem.is_logarithmic(place) && low > 0.0 {
         (high / low).ln()
     } else {
-        let slope = problem.shown_slopes(&problem.coordinates_here())[place];
-        (high - low) / slope
+        (high - low) * problem.unit(place)
     };
     (0.1 * width).abs()
 }

@@ -140,19 +140,18 @@ impl<'a> FitProblem<'a> {
         &self.free
     }
 
-    /// Coordinates of the parameters that the problem was made with.
-    pub(crate) fn coordinates_here(&self) -> Vec<f64> {
-        self.coordinates(&self.base)
+    /// The unit in which a free parameter is shown, in SI.
+    pub(crate) fn unit(&self, place: usize) -> f64 {
+        self.model.parameters()[self.free[place]].factor
     }
 
     /// Derivatives of the free parameters, in the units in which they are shown, by their coordinates.
     pub(crate) fn shown_slopes(&self, coordinates: &[f64]) -> Vec<f64> {
-        let numbers = self.model.parameters();
-        let slope = |(place, index): (usize, &usize)| {
+        let slope = |place: usize| {
             let si = if self.logarithmic[place] { coordinates[place].exp() } else { 1.0 };
-            si / numbers[*index].factor
+            si / self.unit(place)
         };
-        self.free.iter().enumerate().map(slope).collect()
+        (0..self.free.len()).map(slope).collect()
     }
 
     /// Whether the coordinate of a free parameter is its logarithm.
