@@ -126,7 +126,7 @@ mod tests {
     #[test]
     fn rows_without_a_time_and_few_rows_have_none() {
         let still: Vec<Moment> = record().moments().iter().map(|m| Moment { since: 0.0, ..*m }).collect();
-        let still = Record::from_moments(still, vec![0.0; 900], vec![0..900]).unwrap();
+        let still = Record::from_moments(still, vec![0.0; 900], std::iter::once(0..900).collect()).unwrap();
         assert!(oscillation(&still, &left(&still, 4.0, 2.3, 5)).is_none());
         let few = |rows: usize| {
             let moments = record().moments()[..rows].to_vec();
