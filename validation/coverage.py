@@ -9,6 +9,7 @@ file don't count. Building and testing take ten minutes on two cores.
 
 import argparse
 import json
+import os
 import shutil
 import subprocess
 import sys
@@ -30,8 +31,8 @@ def main():
         parser.error(f"there is no crate `{crate}` below crates/")
     exported = TARGET / "export.json"
     TARGET.mkdir(parents=True, exist_ok=True)
-    words = ["cargo", "llvm-cov", "--package", f"bulge-{crate}", "--lib", "--tests", "--json", "--output-path", exported, "--target-dir", TARGET]
-    subprocess.run(words, cwd=ROOT, check=True)
+    words = ["cargo", "llvm-cov", "--package", f"bulge-{crate}", "--lib", "--tests", "--json", "--output-path", exported]
+    subprocess.run(words, cwd=ROOT, check=True, env={**os.environ, "CARGO_LLVM_COV_TARGET_DIR": str(TARGET)})
     source = ROOT / "crates" / crate / "src"
     found = {}
     for file in json.loads(exported.read_text(encoding="utf-8"))["data"][0]["files"]:

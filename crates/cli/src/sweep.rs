@@ -109,7 +109,7 @@ impl SweepCommand {
             bytes / 1e9,
             points.div_ceil(plan.chunk.into()),
         );
-        Err(Failure::Value { option: "SWEEP.toml", what })
+        Err(Failure::Library { says: format!("{}: {what}", self.sweep.display()), status: 1 })
     }
 
     fn points(&self, plan: &Plan) -> Result<Summary, Failure> {

@@ -163,10 +163,12 @@ pub fn run(
     let canonical = plan.canonical()?;
     let key = hash(canonical.as_bytes());
     let folder = Folder::new(path);
+    // Before anything is created.
+    options.merge.iter().try_for_each(|from| is_of_this_sweep(from, (&canonical, &key)))?;
     let (_lock, lost) = open(&folder, path, (&canonical, &key), options)?;
     let damaged = Mutex::new(Vec::from_iter(lost));
     for from in &options.merge {
-        merge(&folder, from, (&canonical, &key), all, &damaged)?;
+        merge(&folder, from, &key, all, &damaged)?;
     }
     let run = Run {
         plan,
@@ -441,19 +443,23 @@ fn open(
     Ok((lock, lost))
 }
 
+/// Refuses a folder whose chunks can't be taken over.
+fn is_of_this_sweep(from: &Path, plan: (&str, &str)) -> Result<(), SweepError> {
+    match Holds::of(&Folder::new(from), from, plan)? {
+        Holds::Nothing => Err(SweepError::folder(from, "holds no sweep: it has no plan.json")),
+        Holds::ThisSweep | Holds::ChunksWithoutPlan(_) => Ok(()),
+    }
+}
+
 /// Takes over all finished, undamaged chunks from another folder of the same sweep.
 fn merge(
     folder: &Folder,
     from: &Path,
-    plan: (&str, &str),
+    key: &str,
     all: u64,
     damaged: &Mutex<Vec<String>>,
 ) -> Result<(), SweepError> {
     let other = Folder::new(from);
-    if let Holds::Nothing = Holds::of(&other, from, plan)? {
-        return Err(SweepError::folder(from, "holds no sweep: it has no plan.json"));
-    }
-    let (_, key) = plan;
     for chunk in 0..all {
         let standing =
             |folder: &Folder| folder.standing(chunk, key, false).map_err(at(&folder.promise(chunk)));

@@ -62,6 +62,10 @@ pub(super) struct Export {
 
 impl Export {
     pub(super) fn run(&self) -> Result<String, Failure> {
+        if let Some(out) = &self.out {
+            files::are_apart(&[("--out", out)], &[("the table", &self.file)])?;
+            files::can_be_written(out)?;
+        }
         let bytes = read(&self.file)?;
         let table = Table::from_bytes(&bytes)?;
         let text = match self.to {

@@ -499,3 +499,12 @@ fn the_shell_is_served() {
     assert!(Path::new(&family).exists());
     refused(&["keys", "muscle"], 2, &["braided", "pleated", "joint"]);
 }
+
+#[test]
+fn a_table_is_not_written_over_itself() {
+    let folder = Folder::new("export");
+    let table = folder.write("t.bulge", "what stood there");
+    let parts = ["--out: ", "is the table, which is read; give the name of another file"];
+    refused(&["table", "export", &table, "--to", "c", "--out", &table], 1, &parts);
+    assert_eq!(std::fs::read_to_string(&table).unwrap(), "what stood there");
+}

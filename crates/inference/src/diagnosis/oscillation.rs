@@ -36,9 +36,6 @@ pub(crate) fn oscillation(record: &Record, left: &[f64]) -> Option<f64> {
     let first = clock.iter().copied().fold(f64::INFINITY, f64::min);
     let whole = clock.iter().copied().fold(f64::NEG_INFINITY, f64::max) - first;
     let step = median(&mut steps);
-    if whole <= 0.0 || step <= 0.0 {
-        return None;
-    }
     let unit = 1.0 / (FINER as f64 * whole);
     // Up to half the sampling frequency, with a limit proportional to the number of readings, because pauses
     // make the duration long.

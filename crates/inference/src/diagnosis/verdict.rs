@@ -282,7 +282,7 @@ impl Findings<'_> {
     }
 
     /// Noise that readings share with their neighbours or within a sweep \[N\].
-    fn slow_n(&self) -> f64 {
+    pub(crate) fn slow_n(&self) -> f64 {
         self.context.law.correlated_n.hypot(self.context.law.offset_n)
     }
 

@@ -176,6 +176,8 @@ fn too_few_rows_name_nothing() {
         let found = diagnosed(&csv(rows));
         assert_eq!(found.verdict, Verdict::CannotTell, "{rows} rows: {}", found.says);
         assert!(found.missing.is_empty() && !found.says.is_empty());
+        let comparison = &found.comparison;
+        assert_eq!((comparison.schema, comparison.muscle.as_str()), ("bulge.comparison/1", "braid"));
     }
 }
 

@@ -545,7 +545,7 @@ fn too_few_rows() {
 /// So many rows that fits and held-out pressures begin with some of them.
 #[test]
 fn a_long_record() {
-    let more = |_, moment: &Moment| -9.0 * moment.direction;
+    let more = |_, moment: &Moment| -4e-5 * moment.pressure * moment.direction;
     let data = Data::from_columns(with_more(loops(700, 4), more)).unwrap();
     let options = options(&["coulomb-friction", "end-taper"]);
     let muscle = braid("cylinder");

@@ -10,7 +10,7 @@ use bulge_inference::{
     compare, compare_with_rows, diagnose, simulate,
 };
 use bulge_measurements::Data;
-use bulge_model::{Model, Prediction, Record, Wanted};
+use bulge_model::{Model, Prediction, Record, Wanted, forces_asked};
 use bulge_muscles::{Muscle, from_toml};
 use std::fmt::Write;
 use std::sync::Arc;
@@ -38,6 +38,42 @@ fn loops(more: impl Fn(usize, f64) -> f64) -> Data {
 
 fn climbed(data: &Data, muscle: &Muscle, with: &[&str]) -> Comparison {
     compare(data, muscle, &options(with)).unwrap()
+}
+
+/// Rungs are kept: what was asked before costs nothing, after many other questions too.
+#[test]
+fn what_was_asked_before_is_not_computed_again() {
+    let thread = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    thread.install(|| {
+        let data = loops(|row, direction| -7.0 * direction + alternating(row));
+        let muscle = muscle("[instruments]\nforce = { noise = \"2 N\" }");
+        let base = options(&[]);
+        let comparing = Comparing::new(&data, &muscle, &base).unwrap();
+        let all = [
+            "coulomb-friction",
+            "pressure-friction",
+            "force-friction",
+            "viscous-damping",
+            "creep",
+            "force-lag",
+            "end-taper",
+            "end-factor",
+            "radius-error",
+            "fibre-stretch",
+            "displacement-gain",
+            "pressure-offset",
+            "bladder-axial",
+            "pressure-gain",
+            "force-offset",
+        ];
+        let ask = |name: &str| {
+            let before = forces_asked();
+            comparing.with(&effects(&[name]), &[]).unwrap();
+            forces_asked() - before
+        };
+        assert!(all.map(ask).into_iter().all(|cost| cost > 0));
+        assert_eq!(all.map(ask), [0; 15]);
+    });
 }
 
 /// A disturbed reading is left out and doesn't set the full scale.

@@ -532,8 +532,11 @@ fn folders_merge_into_one() {
     let empty = TempDir::new().unwrap();
     for (from, says) in [(&other, "- \"value\": 13.0"), (&empty, "holds no sweep")] {
         let options = RunOptions { merge: vec![from.path().to_owned()], ..RunOptions::default() };
-        let error = go(&plan, TempDir::new().unwrap().path(), &options).unwrap_err().to_string();
+        let folder = TempDir::new().unwrap();
+        let error = go(&plan, folder.path(), &options).unwrap_err().to_string();
         assert!(error.contains(says) && error.contains(&from.path().display().to_string()), "{error}");
+        // A refused folder leaves nothing behind.
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
     }
 }
 
