@@ -1,10 +1,10 @@
 """Coverage: which lines of a crate its own tests run.
 
-    python validation/coverage.py [inference]                    # measures, and keeps what it found in validation/coverage.json
+    python validation/coverage.py [inference] [--tests kept]     # measures, and keeps what it found in validation/coverage.json
     python validation/docs_table.py coverage [--check]           # the table in docs/hardening.md
 
 Lines and regions (of which a line with a condition has several) are those of cargo-llvm-cov (`cargo install cargo-llvm-cov --locked`). Modules of tests within a
-file don't count. Building and testing take ten minutes on two cores.
+file don't count. Instrumented tests take four times as long: half an hour for all of inference; those that `--tests` names give a lower bound.
 """
 
 import argparse
@@ -24,15 +24,21 @@ TESTS = "#[cfg(test)]\nmod tests {"
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("crate", nargs="?", default="inference", help="without `bulge-`")
-    crate = parser.parse_args().crate
+    parser.add_argument("--tests", nargs="*", default=[], help="of the programs of tests, run only tests whose names contain one of these")
+    arguments = parser.parse_args()
+    crate = arguments.crate
     if shutil.which("cargo-llvm-cov") is None:
         parser.error("cargo-llvm-cov isn't installed: cargo install cargo-llvm-cov --locked")
     if not (ROOT / "crates" / crate).is_dir():
         parser.error(f"there is no crate `{crate}` below crates/")
     exported = TARGET / "export.json"
     TARGET.mkdir(parents=True, exist_ok=True)
-    words = ["cargo", "llvm-cov", "--package", f"bulge-{crate}", "--lib", "--tests", "--json", "--output-path", exported]
-    subprocess.run(words, cwd=ROOT, check=True, env={**os.environ, "CARGO_LLVM_COV_TARGET_DIR": str(TARGET)})
+    package = ["--package", f"bulge-{arguments.crate}"]
+    _llvm_cov("clean", "--profraw-only")
+    # Tests of the library, and those of the programs of tests.
+    _llvm_cov("--no-report", *package, "--lib")
+    _llvm_cov("--no-report", *package, "--tests", "--", *arguments.tests)
+    _llvm_cov("report", *package, "--json", "--output-path", str(exported))
     source = ROOT / "crates" / crate / "src"
     found = {}
     for file in json.loads(exported.read_text(encoding="utf-8"))["data"][0]["files"]:
@@ -45,6 +51,10 @@ def main():
     for name, counts in sorted(found.items(), key=lambda entry: entry[1]["lines"] / max(1, entry[1]["all_lines"])):
         print(f"{100 * counts['lines'] / max(1, counts['all_lines']):6.1f} % of {counts['all_lines']:4} lines  {name}: not {counts['not']}")
     return 0
+
+
+def _llvm_cov(*words):
+    subprocess.run(["cargo", "llvm-cov", *words], cwd=ROOT, check=True, env={**os.environ, "CARGO_LLVM_COV_TARGET_DIR": str(TARGET)})
 
 
 def _counts(text, segments):

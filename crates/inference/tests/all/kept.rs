@@ -17,8 +17,6 @@ use bulge_model::{Model, forces_asked};
 use bulge_muscles::{Muscle, from_toml, preset, to_toml};
 use bulge_numerics::last_digits;
 use nalgebra::DMatrix;
-use serde::Serialize;
-use serde_json::ser::{PrettyFormatter, Serializer};
 use serde_json::{Map, Value, json};
 use std::path::PathBuf;
 
@@ -46,10 +44,13 @@ fn keep(name: &str, answer: impl FnOnce() -> Value + Send) {
     let digits = format!("{:016x}", last_digits() ^ last_digits_of_products());
     let found = json!({ "answer": short(&answer), "forces_asked": asked, "last_digits": digits });
     if std::env::var_os("BULGE_KEEP").is_some() {
-        let mut text = Vec::new();
-        let mut narrow = Serializer::with_formatter(&mut text, PrettyFormatter::with_indent(b""));
-        found.serialize(&mut narrow).unwrap();
-        text.push(b'\n');
+        // A line for each part of the answer.
+        let parts =
+            found["answer"].as_object().unwrap().iter().map(|(key, value)| format!("\"{key}\": {value}"));
+        let answer = parts.collect::<Vec<_>>().join(",\n");
+        let text = format!(
+            "{{\n\"forces_asked\": {asked},\n\"last_digits\": \"{digits}\",\n\"answer\": {{\n{answer}\n}}\n}}\n"
+        );
         std::fs::write(path, text).unwrap();
         return;
     }
@@ -567,6 +568,7 @@ fn a_long_record() {
     let options = options(&["coulomb-friction", "end-taper"]);
     let muscle = braid("cylinder");
     keep("long", || {
-        serde_json::to_value(compare_with_rows(&data, &muscle, &options).unwrap().0.ladder).unwrap()
+        let (found, _) = compare_with_rows(&data, &muscle, &options).unwrap();
+        json!({ "ladder": found.ladder })
     });
 }
