@@ -44,9 +44,9 @@ const MOST_LEFT_OUT: usize = 8;
 /// Most times that an accepted effect is replaced by a better one or removed.
 const MOST_CHANGES: usize = 3;
 
-/// Part of the error that effects leave which lower nothing, where slow noise prevails. Seven of seven such names that
+/// Part of the error that effects leave which lower nothing, where slow noise prevails. Five of five such names that
 /// a stranger's tests with shifted sweeps and wandering zeros brought were wrong.
-const LOWERS: f64 = 0.98;
+const LOWERS: f64 = 0.995;
 
 /// Options of a diagnosis, besides muscle and data.
 #[derive(Debug, Clone)]
