@@ -3,14 +3,14 @@
     python validation/coverage.py [inference] [--tests kept]     # measures, and keeps what it found in validation/coverage.json
     python validation/docs_table.py coverage [--check]           # the table in docs/hardening.md
 
-Lines and regions (of which a line with a condition has several) are those of cargo-llvm-cov (`cargo install cargo-llvm-cov --locked`). Modules of tests within a
-file don't count. Instrumented tests take four times as long: half an hour for all of inference; those that `--tests` names give a lower bound.
+Lines and regions (of which a line with a condition has several) are those of LLVM's coverage (`rustup component add llvm-tools`). Modules of tests within a file
+don't count. Those that `--tests` names give a lower bound.
 """
 
 import argparse
 import json
 import os
-import shutil
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -19,6 +19,13 @@ ROOT = Path(__file__).resolve().parent.parent
 KEPT = ROOT / "validation/coverage.json"
 TARGET = ROOT / "target/coverage"
 TESTS = "#[cfg(test)]\nmod tests {"
+# Cargo calls it with the compiler and its words.
+WRAPPER = """#!/bin/sh
+case " $* " in
+*" --crate-name {crate} "*|*" --test "*) exec "$@" -Cinstrument-coverage -Cllvm-args=-do-counter-promotion ;;
+*) exec "$@" ;;
+esac
+"""
 
 
 def main():
@@ -27,21 +34,12 @@ def main():
     parser.add_argument("--tests", nargs="*", default=[], help="of the programs of tests, run only tests whose names contain one of these")
     arguments = parser.parse_args()
     crate = arguments.crate
-    if shutil.which("cargo-llvm-cov") is None:
-        parser.error("cargo-llvm-cov isn't installed: cargo install cargo-llvm-cov --locked")
     if not (ROOT / "crates" / crate).is_dir():
         parser.error(f"there is no crate `{crate}` below crates/")
-    exported = TARGET / "export.json"
-    TARGET.mkdir(parents=True, exist_ok=True)
-    package = ["--package", f"bulge-{arguments.crate}"]
-    _llvm_cov("clean", "--profraw-only")
-    # Tests of the library, and those of the programs of tests.
-    _llvm_cov("--no-report", *package, "--lib")
-    _llvm_cov("--no-report", *package, "--tests", "--", *arguments.tests)
-    _llvm_cov("report", *package, "--json", "--output-path", str(exported))
+    segments = _segments(crate, arguments.tests)
     source = ROOT / "crates" / crate / "src"
     found = {}
-    for file in json.loads(exported.read_text(encoding="utf-8"))["data"][0]["files"]:
+    for file in segments:
         path = Path(file["filename"])
         if path.is_relative_to(source):
             name = path.relative_to(source).as_posix()
@@ -53,8 +51,31 @@ def main():
     return 0
 
 
-def _llvm_cov(*words):
-    subprocess.run(["cargo", "llvm-cov", *words], cwd=ROOT, check=True, env={**os.environ, "CARGO_LLVM_COV_TARGET_DIR": str(TARGET)})
+def _segments(crate, tests):
+    """Runs the tests, and returns what LLVM's tools say about each file. Only the crate and its tests are instrumented: a counter in each loop of the crates
+    below them would make the tests eight times slower."""
+    TARGET.mkdir(parents=True, exist_ok=True)
+    for old in TARGET.glob("*.profraw"):
+        old.unlink()
+    wrapper = TARGET / "rustc"
+    wrapper.write_text(WRAPPER.format(crate=f"bulge_{crate.replace('-', '_')}"), encoding="utf-8")
+    wrapper.chmod(0o755)
+    environment = {**os.environ, "RUSTC_WORKSPACE_WRAPPER": str(wrapper), "LLVM_PROFILE_FILE": str(TARGET / "%m-%p.profraw")}
+    cargo = ["cargo", "test", "--package", f"bulge-{crate}", "--lib", "--tests", "--target-dir", str(TARGET)]
+    built = _output([*cargo, "--no-run", "--message-format=json"], env=environment)
+    programs = [message["executable"] for message in map(json.loads, built.splitlines()) if message.get("executable")]
+    subprocess.run([*cargo, "--", *tests], cwd=ROOT, check=True, env=environment)
+    host = re.search(r"^host: (.*)$", _output(["rustc", "-vV"]), re.MULTILINE)[1]
+    tools = Path(_output(["rustc", "--print", "sysroot"]).strip()) / f"lib/rustlib/{host}/bin"
+    merged = TARGET / "merged.profdata"
+    subprocess.run([tools / "llvm-profdata", "merge", "--sparse", *TARGET.glob("*.profraw"), "-o", merged], check=True)
+    objects = [word for program in programs[1:] for word in ("--object", program)]
+    exported = _output([tools / "llvm-cov", "export", "--instr-profile", merged, programs[0], *objects])
+    return json.loads(exported)["data"][0]["files"]
+
+
+def _output(command, **options):
+    return subprocess.run(command, cwd=ROOT, check=True, stdout=subprocess.PIPE, text=True, **options).stdout
 
 
 def _counts(text, segments):

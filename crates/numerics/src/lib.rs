@@ -17,6 +17,7 @@ mod random;
 mod real;
 pub mod root;
 pub mod tape;
+pub mod vector;
 
 pub use dop853::Dop853;
 pub use dual::Dual;

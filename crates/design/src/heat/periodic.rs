@@ -3,6 +3,7 @@
 use super::HeatError;
 use super::cycle::{Runner, Tally};
 use super::state::State;
+use bulge_numerics::vector::{add, dot, norm};
 
 /// Earlier cycles used by an extrapolation.
 const WINDOW: usize = 8;
@@ -182,33 +183,23 @@ fn anderson(history: &[(Vec<f64>, Vec<f64>)], damping: f64) -> Vec<f64> {
         let mut df: Vec<f64> = after.1.iter().zip(f0).map(|(a, b)| a - b).collect();
         let mut dx: Vec<f64> =
             after.0.iter().zip(x0).zip(&df).map(|((a, b), df)| a - b + damping * df).collect();
-        let size = dot(&df, &df).sqrt();
+        let size = norm(&df);
         for (q, p) in &basis {
             let share = dot(q, &df);
-            take_off(&mut df, share, q);
-            take_off(&mut dx, share, p);
+            add(&mut df, -share, q);
+            add(&mut dx, -share, p);
         }
-        let rest = dot(&df, &df).sqrt();
+        let rest = norm(&df);
         // A difference that depends linearly on newer ones would only add rounding errors.
         if rest <= 1e-6 * size {
             break;
         }
         df.iter_mut().chain(&mut dx).for_each(|value| *value /= rest);
-        take_off(&mut step, dot(&df, f), &dx);
+        add(&mut step, -dot(&df, f), &dx);
         basis.push((df, dx));
         after = (x0, f0);
     }
     let most = step.iter().fold(0.0_f64, |most, step| most.max(step.abs()));
     let factor = (LARGEST / most).min(1.0);
     x.iter().zip(step).map(|(x, step)| x + factor * step).collect()
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
-}
-
-fn take_off(from: &mut [f64], share: f64, what: &[f64]) {
-    for (from, what) in from.iter_mut().zip(what) {
-        *from -= share * what;
-    }
 }

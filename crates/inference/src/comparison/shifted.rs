@@ -22,7 +22,8 @@ use crate::chebyshev::chebyshev;
 use crate::comparison::document::LeftOut;
 use crate::comparison::rows::Used;
 use crate::noise::orthonormal::Basis;
-use crate::vector::{add, dot, range};
+use crate::vector::range;
+use bulge_numerics::vector::{add, dot};
 
 /// Most rows for fitting the surface.
 const MOST_ROWS: usize = 4_000;

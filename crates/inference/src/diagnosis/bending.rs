@@ -23,7 +23,8 @@ use crate::diagnosis::sensitivity::{Sensitivities, spread};
 use crate::diagnosis::smooth::{drives_pressure, over_range, scaled, ways_to_reversals};
 use crate::diagnosis::tangents::Tangents;
 use crate::fit::nuisance::Prepared;
-use crate::vector::{add, dot, minus};
+use crate::vector::minus;
+use bulge_numerics::vector::{add, dot};
 
 /// Size of the columns along the state: a form error of one standard deviation changes the effect by about
 /// that fraction of it.

@@ -8,7 +8,7 @@
 
 use crate::diagnosis::sensitivity::{Sensitivities, Sensitivity, Sign, Size};
 use crate::diagnosis::space::Space;
-use crate::vector::{add, dot, norm};
+use bulge_numerics::vector::{add, dot, norm};
 
 /// The prior of a size is uniform per decade from this fraction of the literature's scale
 const SMALLEST: f64 = 1e-3;
@@ -261,6 +261,7 @@ fn least_squares(columns: &[&[f64]], active: &[usize], z: &[f64]) -> Option<(f64
 #[cfg(test)]
 mod tests {
     use super::*;
+    use bulge_numerics::Random;
 
     fn size(sign: Sign) -> Size {
         Size { place: 0, copy: 0, scale: 1.0, off: 0.0, sign, plausible: 3.0, secant: None }
@@ -274,6 +275,36 @@ mod tests {
     #[track_caller]
     fn is(found: f64, expected: f64) {
         assert!((found - expected).abs() < 1e-12, "{found}");
+    }
+
+    /// The conditions of Karush, Kuhn and Tucker hold at the least squares with signs, and only there.
+    #[test]
+    fn least_squares_with_signs_is_a_minimum() {
+        let mut random = Random::new(7, 0);
+        for draw in 0..200 {
+            let mut vector = || (0..8).map(|_| random.normal()).collect::<Vec<f64>>();
+            let columns: Vec<Vec<f64>> = (0..4).map(|_| vector()).collect();
+            let z = vector();
+            let signs =
+                [[Sign::Positive, Sign::Any, Sign::Negative, Sign::Positive], [Sign::Any; 4]][draw % 2];
+            let columns: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
+            for many in 0..=4 {
+                let (columns, signs) = (&columns[..many], &signs[..many]);
+                let (gain, sizes) = signed_least_squares(columns, signs, &z);
+                let mut left = z.clone();
+                for (column, size) in columns.iter().zip(&sizes) {
+                    add(&mut left, -size, column);
+                }
+                assert!((dot(&z, &z) - dot(&left, &left) - gain).abs() < 1e-9);
+                for ((column, sign), size) in columns.iter().zip(signs).zip(&sizes) {
+                    let slope = dot(column, &left);
+                    assert!(may(*sign, *size));
+                    // Where a sign keeps a coefficient at zero, only the other one would decrease the sum.
+                    let held = size.abs() < 1e-12 && *sign != Sign::Any && !may(*sign, slope);
+                    assert!(slope.abs() < 1e-9 || held, "{many}: {size} {slope}");
+                }
+            }
+        }
     }
 
     #[test]

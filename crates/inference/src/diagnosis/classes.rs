@@ -17,7 +17,8 @@ use crate::diagnosis::hypotheses::{Hypothesis, Tried, effect_log_prior, singles}
 use crate::diagnosis::linearised_model::{Context, LinearisedModel};
 use crate::diagnosis::space::Space;
 use crate::diagnosis::stage::{Stage, tempered};
-use crate::vector::{dot, minus, norm};
+use crate::vector::minus;
+use bulge_numerics::vector::{dot, norm};
 
 /// Rivals whose linear evidence is this far below the best are not fitted.
 const FITTED: f64 = 8.0;

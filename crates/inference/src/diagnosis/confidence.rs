@@ -17,8 +17,8 @@ use crate::diagnosis::hypotheses::{Tried, effect_log_prior};
 use crate::diagnosis::linearised_model::{Context, LinearisedModel};
 use crate::diagnosis::null::{Null, Statistics};
 use crate::diagnosis::sensitivity::Screened;
-use crate::vector::{add, norm};
 use bulge_numerics::Random;
+use bulge_numerics::vector::{add, norm};
 
 /// Number of simulated data sets.
 const DRAWS: usize = 4000;

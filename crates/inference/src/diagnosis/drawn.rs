@@ -23,7 +23,8 @@ use crate::diagnosis::form_error::Bent;
 use crate::diagnosis::linearised_model::Context;
 use crate::diagnosis::setpoints::setpoints;
 use crate::error::InferenceError;
-use crate::vector::{add, minus, range, rms};
+use crate::vector::{minus, range, rms};
+use bulge_numerics::vector::add;
 
 /// Highest total degree in contraction and pressure, and highest degree in the pressure. The form errors have
 /// 4 and 2, on top of those of a formula.

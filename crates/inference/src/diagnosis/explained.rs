@@ -8,7 +8,8 @@ use crate::comparison::residuals::bin;
 use crate::diagnosis::document::{BentCurve, CurveAt, ExplainedCurve, ExplainedStep, SurfaceCurve};
 use crate::diagnosis::form_error::Bent;
 use crate::diagnosis::linearised_model::LinearisedModel;
-use crate::vector::{dot, range};
+use crate::vector::range;
+use bulge_numerics::vector::dot;
 
 /// Bins of the contraction.
 const BINS: usize = 24;

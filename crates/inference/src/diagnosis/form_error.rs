@@ -15,7 +15,7 @@ use std::sync::Arc;
 use crate::diagnosis::bending::{Bending, Kin, Kind};
 use crate::diagnosis::decision_rule::RULE;
 use crate::diagnosis::space::{Space, orthogonal};
-use crate::vector::{add, dot, norm};
+use bulge_numerics::vector::{add, dot, norm};
 
 /// Passes of the coordinate ascent.
 const ROUNDS: usize = 2;

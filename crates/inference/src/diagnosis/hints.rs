@@ -7,8 +7,9 @@ use crate::comparison::levels::Levels;
 use crate::diagnosis::candidates::Candidate;
 use crate::diagnosis::document::Located;
 use crate::diagnosis::linearised_model::LinearisedModel;
-use crate::vector::{add, range};
+use crate::vector::range;
 use bulge_muscles::units::significant;
+use bulge_numerics::vector::add;
 
 /// Bins of the contraction in which levels are compared.
 const BINS: usize = 12;

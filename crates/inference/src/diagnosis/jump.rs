@@ -146,6 +146,24 @@ mod tests {
     }
 
     #[test]
+    fn too_few_places_show_no_jump() {
+        let record = record();
+        let law = NoiseLaw::white(1.0, NoiseSource::Saturated, 1e6, String::new());
+        // Of the rows of one sweep, 2 EDGE - 1 at its ends are no places.
+        let found = |rows: usize| {
+            let moments = record.moments()[..rows].to_vec();
+            let sweeps = std::iter::once(0..rows).collect();
+            let few = Record::from_moments(moments, vec![0.0; rows], sweeps).unwrap();
+            let whitening = Whitening::new(&law, &few, &vec![true; rows], &[]).unwrap();
+            let left: Vec<f64> = (0..rows).map(|row| if row < 30 { 0.0 } else { 50.0 }).collect();
+            jump(&few, &whitening, &Space::default(), &left)
+        };
+        let jump = found(FEWEST + 2 * EDGE - 1).unwrap();
+        assert!(jump.row == 30 && (jump.newtons - 50.0).abs() < 1e-9, "{jump:?}");
+        assert!(found(FEWEST + 2 * EDGE - 2).is_none());
+    }
+
+    #[test]
     fn the_largest_of_many_is_large_more_often() {
         // Two-sided probability beyond 5: 5.733e-7.
         assert!((chance(-5.0, 1) / 5.733_031e-7 - 1.0).abs() < 1e-6);

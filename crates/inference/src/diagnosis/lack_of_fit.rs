@@ -21,7 +21,7 @@ use std::collections::BTreeMap;
 
 use crate::diagnosis::setpoints::setpoints;
 use crate::diagnosis::strokes::{Point, Stroke, strokes};
-use crate::vector::dot;
+use bulge_numerics::vector::dot;
 
 /// Numbers of cells over the range.
 const CELLS: [f64; 3] = [5.0, 16.0, 50.0];
@@ -192,9 +192,9 @@ fn combined(chances: &[f64]) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::vector::{add, norm};
     use bulge_effects::Moment;
     use bulge_numerics::Random;
+    use bulge_numerics::vector::{add, norm};
 
     /// Four cycles at each of three pressures.
     fn record() -> Record {

@@ -21,7 +21,7 @@ use crate::median::median;
 use crate::noise::law::NoiseLaw;
 use crate::noise::whitening::Whitening;
 use crate::progress::{NOBODY, Progress};
-use crate::vector::{add, dot};
+use bulge_numerics::vector::{add, dot};
 
 /// Rows whose stated standard deviation exceeds the usual one by this factor count as uncertain.
 const DOUBTFUL: f64 = 2.0;

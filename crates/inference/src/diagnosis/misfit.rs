@@ -5,8 +5,8 @@ use statrs::distribution::{ChiSquared, ContinuousCDF};
 use crate::diagnosis::document::Located;
 use crate::diagnosis::linearised_model::{Direction, LinearisedModel};
 use crate::diagnosis::smooth::Variable;
-use crate::vector::{add, dot};
 use bulge_numerics::Random;
+use bulge_numerics::vector::{add, dot};
 
 /// Draws for the interval of the misfit.
 const DRAWS: usize = 400;

@@ -17,7 +17,7 @@ use crate::fit::nuisance::Prepared;
 use crate::median::median;
 use crate::noise::inputs::{Scatter, input_noise};
 use crate::noise::law::{NoiseLaw, NoiseSource};
-use crate::vector::norm;
+use bulge_numerics::vector::norm;
 
 /// Most independent columns of the saturated model relative to the rows: for effects here, for all columns in
 /// the next constant. Fewer along a path, because a model with many parameters follows correlated noise and

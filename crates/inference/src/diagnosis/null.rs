@@ -13,8 +13,8 @@ use rayon::prelude::*;
 
 use crate::diagnosis::candidates::Candidate;
 use crate::noise::offset_belief::OffsetBelief;
-use crate::vector::{add, dot};
 use bulge_numerics::Random;
+use bulge_numerics::vector::{add, dot};
 
 /// Number of draws.
 const DRAWS: usize = 2000;

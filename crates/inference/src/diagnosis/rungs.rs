@@ -6,7 +6,7 @@ use crate::comparison::document::Rung;
 use crate::diagnosis::form_error::Bent;
 use crate::diagnosis::stage::Stage;
 use crate::error::InferenceError;
-use crate::vector::add;
+use bulge_numerics::vector::add;
 
 /// Separator between the names of effects that were added together.
 pub(crate) const TOGETHER: &str = " + ";

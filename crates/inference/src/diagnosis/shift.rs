@@ -8,7 +8,8 @@ use bulge_muscles::units::significant;
 
 use crate::diagnosis::trimmed::Linearised;
 use crate::diagnosis::write::Findings;
-use crate::vector::{count, dot, minus};
+use crate::vector::{count, minus};
+use bulge_numerics::vector::dot;
 
 /// Sum of squares that a shift of a channel explains over that of what was named, at least.
 const AS_WELL: f64 = 0.8;

@@ -6,8 +6,10 @@
 //! with z_j the coordinate of the misfit along the j-th smooth function, f_j the RMS of that function at one
 //! standard deviation, F the largest force.
 
+use crate::diagnosis::decision_rule::RULE;
 use crate::diagnosis::linearised_model::LinearisedModel;
-use crate::vector::{dot, rms};
+use crate::vector::rms;
+use bulge_numerics::vector::dot;
 
 /// Sizes A of a smooth misfit as fractions of the largest force.
 const SIZES: [f64; 6] = [3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 1e-1];
@@ -20,6 +22,11 @@ pub(crate) fn smooth_evidence(linear: &LinearisedModel) -> f64 {
     let found: Vec<(f64, f64)> =
         linear.smooth.iter().map(|d| (dot(&d.unit, &linear.z), rms(&d.values))).collect();
     evidence_of(&found, largest)
+}
+
+/// Log odds of such a misfit against none.
+pub(crate) fn log_odds(linear: &LinearisedModel) -> f64 {
+    RULE.something_else + smooth_evidence(linear)
 }
 
 /// Log evidence for functions with these coordinates and RMS values at one standard deviation, the smoothest

@@ -10,7 +10,7 @@
 
 use nalgebra::DMatrix;
 
-use crate::vector::{add, dot, norm};
+use bulge_numerics::vector::{add, dot, norm};
 
 /// A column lies within the frame if less than this fraction of it is outside.
 const WITHIN: f64 = 1e-7;

@@ -10,7 +10,7 @@ use crate::diagnosis::hypotheses::Tried;
 use crate::diagnosis::jump::Jump;
 use crate::diagnosis::linearised_model::{Context, LinearisedModel};
 use crate::diagnosis::null::Null;
-use crate::diagnosis::something_else::smooth_evidence;
+use crate::diagnosis::something_else::log_odds;
 
 /// Whether a model explains the data.
 #[derive(Debug, Clone)]
@@ -94,7 +94,7 @@ impl Stage {
 
     /// Log evidence of an unknown effect on top of the model; 0 if nothing is left to explain.
     pub(crate) fn something_else(&self) -> f64 {
-        if self.adequate { 0.0 } else { (RULE.something_else + smooth_evidence(&self.linear)).max(0.0) }
+        if self.adequate { 0.0 } else { log_odds(&self.linear).max(0.0) }
     }
 
     /// Log evidence of the model, possibly with an unknown effect on top, relative to that of another model;
@@ -138,12 +138,8 @@ impl Context<'_> {
         let names = !added.is_empty();
         let mut adequacy = Adequacy { null, names, chance, fit_fails, unsmooth: None };
         // A test may reject a model although no smooth misfit explains that: it isn't a structure.
-        let is_chance = || {
-            !added.is_empty()
-                && !adequacy.screen_fails()
-                && !fit_fails
-                && RULE.something_else + smooth_evidence(&linear) <= 0.0
-        };
+        let is_chance =
+            || !added.is_empty() && !adequacy.screen_fails() && !fit_fails && log_odds(&linear) <= 0.0;
         let holds = adequacy.holds() || is_chance();
         adequacy.unsmooth = if holds { self.unsmooth(&linear) } else { None };
         // Beside effects that explain everything else, such a misfit is no reason to add effects or form

@@ -10,7 +10,8 @@ use std::ops::Range;
 use crate::diagnosis::tangents::Tangents;
 use crate::fit::nuisance::Prepared;
 use crate::median::robust_sd;
-use crate::vector::{add, count, dot, norm};
+use crate::vector::count;
+use bulge_numerics::vector::{add, dot, norm};
 
 /// One in so many rows may be anything.
 const SPOILT: usize = 4;

@@ -5,7 +5,7 @@ use bulge_muscles::Muscle;
 use bulge_muscles::Quantity;
 use rayon::prelude::*;
 
-use crate::vector::dot;
+use bulge_numerics::vector::dot;
 
 /// Most lags over which autocorrelations are summed.
 const MOST_LAGS: usize = 2000;

@@ -11,7 +11,7 @@
 
 use std::ops::Range;
 
-use crate::vector::dot;
+use bulge_numerics::vector::dot;
 
 /// Ratios k on the grid: least, largest and number, evenly spaced on a logarithmic scale.
 const RATIOS: (f64, f64, u32) = (0.02, 200.0, 60);

@@ -1,7 +1,7 @@
 //! Orthonormal basis of the column space of a matrix at its numerical rank: pivoted Gram-Schmidt, twice, then
 //! one-sided Jacobi (Golub and Van Loan 2013, 5.2, 8.6).
 
-use crate::vector::{add, dot, norm};
+use bulge_numerics::vector::{add, dot, norm};
 
 /// Singular values below this fraction of the largest one count as 0; the columns are scaled to norm 1.
 const RANK: f64 = 1e-6;

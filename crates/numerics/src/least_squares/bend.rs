@@ -8,7 +8,7 @@ use super::linear::{decrease, turned};
 use super::residuals::Residuals;
 use super::search::{LEAST_DAMPING, Search, Trial};
 use super::step::damped;
-use super::triangle::norm;
+use crate::vector::norm;
 
 /// Longest bend relative to the step (the paper's value). If it is longer, the second derivative doesn't
 /// describe the residuals.

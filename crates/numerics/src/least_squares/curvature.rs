@@ -8,7 +8,7 @@ use super::minimum::held_at;
 use super::residuals::Residuals;
 use super::search::{Search, product};
 use super::singular::symmetric_eigen;
-use super::triangle::norm;
+use crate::vector::norm;
 
 /// Step of the differences of gradients, relative to the parameter: truncation and rounding errors are each
 /// about 1e-5 of the curvature.

@@ -5,7 +5,8 @@
 use super::LeastSquaresError;
 use super::residuals::Residuals;
 use super::singular::right_singular;
-use super::triangle::{Triangle, dot, norm};
+use super::triangle::Triangle;
+use crate::vector::{dot, norm};
 use std::ops::Range;
 
 /// Residuals at a point, linearised.

@@ -5,7 +5,7 @@ use super::linear::Linear;
 use super::residuals::{Bounds, Side};
 use super::singular::right_singular;
 use super::step::Step;
-use super::triangle::norm;
+use crate::vector::norm;
 
 /// Directions in which the residuals change by less than this fraction of the largest change are flat, with
 /// parameters scaled by the norms of their columns. No step is made along them, and they are reported.

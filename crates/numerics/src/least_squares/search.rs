@@ -9,8 +9,9 @@ use super::linear::{Linear, decrease, linearise, values};
 use super::minimum::{End, Minimum, RANK_TOLERANCE, Reason, gradient_cosine, held_at};
 use super::residuals::{Bounds, Residuals, Side};
 use super::step::{Step, StepBox, damped, of_length};
-use super::triangle::{Triangle, norm};
+use super::triangle::Triangle;
 use super::{LeastSquaresError, Options};
+use crate::vector::norm;
 
 /// A step is accepted if it achieves this fraction of the predicted decrease (Moré's value).
 const ENOUGH: f64 = 1e-4;

@@ -5,7 +5,7 @@
 //! tiny singular values of a matrix with well-scaled columns come out with relative accuracy (J. Demmel, K. Veselic, *SIAM J.
 //! Matrix Anal. Appl.* 13 (1992) 1204).
 
-use super::triangle::{dot, norm};
+use crate::vector::{dot, norm};
 
 /// Most sweeps over all pairs; a dozen is far more than matrices of some 40 columns need.
 const SWEEPS: usize = 60;

@@ -5,7 +5,8 @@
 //! J. J. Moré (*Lecture Notes in Mathematics* 630, Springer 1978, p. 105), which holds on the free variables.
 
 use super::residuals::Side;
-use super::triangle::{Triangle, dot, norm};
+use super::triangle::Triangle;
+use crate::vector::{dot, norm};
 
 /// Allowed relative difference between the length of a damped step and the radius (Moré's value).
 const RADIUS_SLACK: f64 = 0.1;

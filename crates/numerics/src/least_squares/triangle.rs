@@ -5,6 +5,8 @@
 //! There is no pivoting and no absolute threshold: scaling a column by a power of two scales that column of
 //! the triangle by the same factor, bit for bit.
 
+use crate::vector::{dot, norm};
+
 /// An upper triangle of `n` columns, stored by columns with its zeros.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Triangle {
@@ -152,25 +154,6 @@ fn reflect(tau: f64, v: &[f64], top: &mut f64, below: &mut [f64]) {
     for (x, v) in below.iter_mut().zip(v) {
         *x -= w * v;
     }
-}
-
-/// Scalar product, summed in eight interleaved parts (for vector instructions) in an order that only depends
-/// on the length.
-pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let mut parts = [0.0; 8];
-    let (mut a, mut b) = (a.chunks_exact(8), b.chunks_exact(8));
-    for (a, b) in a.by_ref().zip(b.by_ref()) {
-        for i in 0..8 {
-            parts[i] += a[i] * b[i];
-        }
-    }
-    let rest: f64 = a.remainder().iter().zip(b.remainder()).map(|(a, b)| a * b).sum();
-    ((parts[0] + parts[4]) + (parts[1] + parts[5])) + ((parts[2] + parts[6]) + (parts[3] + parts[7])) + rest
-}
-
-/// Euclidean norm.
-pub(super) fn norm(x: &[f64]) -> f64 {
-    dot(x, x).sqrt()
 }
 
 #[cfg(test)]

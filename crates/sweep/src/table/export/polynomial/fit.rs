@@ -1,6 +1,8 @@
 //! Least-squares polynomials. The Chebyshev polynomials of the range are made orthogonal on the points; the
 //! result is converted to powers.
 
+use bulge_numerics::vector::{add, dot, norm};
+
 /// A polynomial and the conditioning of its fit.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Fitted<const N: usize> {
@@ -40,12 +42,12 @@ pub(super) fn fit<const N: usize>(points: &[[f64; 2]], [from, to]: [f64; 2]) -> 
             for (row, q) in r.iter_mut().zip(&done) {
                 let along = dot(q, &column);
                 row[j] += along;
-                column.iter_mut().zip(q).for_each(|(c, q)| *c -= along * q);
+                add(&mut column, -along, q);
             }
         }
-        let norm = dot(&column, &column).sqrt();
-        r[j][j] = norm;
-        done.push(column.into_iter().map(|c| c / norm).collect());
+        let length = norm(&column);
+        r[j][j] = length;
+        done.push(column.into_iter().map(|c| c / length).collect());
     }
     let y: Vec<f64> = points.iter().map(|[_, y]| *y).collect();
     let mut of_basis = [0.0; N];
@@ -54,10 +56,6 @@ pub(super) fn fit<const N: usize>(points: &[[f64; 2]], [from, to]: [f64; 2]) -> 
     }
     let of_basis = solved(&r, of_basis);
     Fitted { coefficients: powers(of_basis, middle, half), condition: condition(&r) }
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 fn chebyshev(order: usize, t: f64) -> f64 {
