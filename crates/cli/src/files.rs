@@ -99,12 +99,18 @@ pub(crate) fn write_all(into: &Path, contents: &[(PathBuf, &str)]) -> Result<(),
 
 /// Creates a folder with its parents if it doesn't exist.
 pub(crate) fn folder(path: &Path) -> Result<(), Failure> {
-    let failed = |source| Failure::Output { path: path.to_path_buf(), source };
-    if let Some(file) = path.ancestors().find(|above| above.exists()).filter(|above| !above.is_dir()) {
-        let what = format!("{} is a file; give the name of a folder", file.display());
-        return Err(failed(io::Error::new(io::ErrorKind::NotADirectory, what)));
-    }
-    output::create_folder(path).map_err(failed)
+    can_be_folder(path)?;
+    output::create_folder(path).map_err(|source| Failure::Output { path: path.to_path_buf(), source })
+}
+
+/// Refuses a name that is that of a file, or below one.
+pub(crate) fn can_be_folder(path: &Path) -> Result<(), Failure> {
+    let Some(file) = path.ancestors().find(|above| above.exists()).filter(|above| !above.is_dir()) else {
+        return Ok(());
+    };
+    let what = format!("{} is a file; give the name of a folder", file.display());
+    let source = io::Error::new(io::ErrorKind::NotADirectory, what);
+    Err(Failure::Output { path: path.to_path_buf(), source })
 }
 
 /// A file that a command reads or writes, with its name on the command line.

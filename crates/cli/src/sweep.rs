@@ -113,6 +113,7 @@ impl SweepCommand {
     }
 
     fn points(&self, plan: &Plan) -> Result<Summary, Failure> {
+        files::can_be_folder(&self.out)?;
         let bar = Bar::new(self.json.wanted);
         let options = RunOptions {
             chunks: self.chunks.clone(),

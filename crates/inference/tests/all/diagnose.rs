@@ -580,6 +580,19 @@ fn slow_noise_far_beyond_the_data_sheet_is_not_adequate() {
         "{}",
         far.says
     );
+    // Where the data sheet allows it, the misfit that it hides must stay below 3 % of the full scale.
+    let silent = BRAID.replace("force = { noise = \"2 N\"", "force = { noise = \"60 N\"");
+    let muscle = from_toml(&silent, "braid.toml").unwrap();
+    let verdict = |correlated_n| {
+        let (model, theta) = truth(&muscle, &[]);
+        let data = simulate(&model, &theta, &protocol(2.0, correlated_n), 5).unwrap().data;
+        let full = data.force().iter().fold(0.0_f64, |most, force| most.max(force.abs()));
+        let found = diagnose(&data, &muscle, &diagnosing(&[])).unwrap();
+        (found.verdict, found.remaining.misfit_interval_n[1] / full)
+    };
+    let ((allowed, small), (hidden, large)) = (verdict(20.0), verdict(60.0));
+    assert_eq!((allowed, hidden), (Verdict::Adequate, Verdict::CannotTell));
+    assert!(small < 0.03 && large > 0.03, "{small} {large}");
 }
 
 #[test]
