@@ -595,6 +595,29 @@ fn slow_noise_far_beyond_the_data_sheet_is_not_adequate() {
     assert!(small < 0.03 && large > 0.03, "{small} {large}");
 }
 
+/// One stroke each shows slow noise once: with the law of the replicates it looks like a structure, and with its own it is
+/// as likely. Of the last set, no smooth misfit explains what a test rejects by chance.
+#[test]
+fn noise_that_is_as_likely_as_a_structure_is_noise() {
+    let file = BRAID.replace("clamped", "cylinder");
+    let muscle = from_toml(file.split("[instruments]").next().unwrap(), "braid.toml").unwrap();
+    let slow = |correlated_n, correlation_time_s, cycles, seed| {
+        let block = Block { rows: 30, cycles, ..Block::loops(vec![2e5, 3e5, 4e5], [0.02, 0.15], 30.0) };
+        let noise =
+            ReadingNoise { force_n: 1.0, correlated_n, correlation_time_s, ..ReadingNoise::default() };
+        let (model, theta) = truth(&muscle, &[]);
+        let protocol = Protocol { noise, ..Protocol::new(vec![block]) };
+        let data = simulate(&model, &theta, &protocol, seed).unwrap().data;
+        let found = diagnose(&data, &muscle, &diagnosing(&[])).unwrap();
+        assert_eq!(found.verdict, Verdict::Adequate, "{seed}: {}", found.says);
+        assert!(found.noise.law.correlated_n > 0.4 * correlated_n, "{seed}: {:?}", found.noise);
+    };
+    for seed in [0, 4, 5, 10] {
+        slow(4.0, 10.0, 1, seed);
+    }
+    slow(10.0, 100.0, 2, 12);
+}
+
 #[test]
 fn units_that_cannot_be_true_are_asked_about() {
     let asked = |change: &dyn Fn(&mut Columns)| {
