@@ -4,7 +4,7 @@
     python validation/docs_table.py coverage [--check]           # the table in docs/hardening.md
 
 Lines and regions (of which a line with a condition has several) are those of LLVM's coverage (`rustup component add llvm-tools`). Modules of tests within a file
-don't count. Those that `--tests` names give a lower bound.
+don't count. With `--tests`, the result is a lower bound.
 """
 
 import argparse
@@ -22,7 +22,7 @@ TESTS = "#[cfg(test)]\nmod tests {"
 # Cargo calls it with the compiler and its words.
 WRAPPER = """#!/bin/sh
 case " $* " in
-*" --crate-name {crate} "*|*" --test "*) exec "$@" -Cinstrument-coverage -Cllvm-args=-do-counter-promotion ;;
+*" --crate-name {crate} "*|*" --test "*) exec "$@" -Cinstrument-coverage ;;
 *) exec "$@" ;;
 esac
 """
@@ -31,48 +31,57 @@ esac
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("crate", nargs="?", default="inference", help="without `bulge-`")
-    parser.add_argument("--tests", nargs="*", default=[], help="of the programs of tests, run only tests whose names contain one of these")
+    parser.add_argument("--tests", nargs="*", default=[], help="run only tests whose names contain one of these; nothing is kept then")
     arguments = parser.parse_args()
     crate = arguments.crate
     if not (ROOT / "crates" / crate).is_dir():
         parser.error(f"there is no crate `{crate}` below crates/")
-    segments = _segments(crate, arguments.tests)
+    host = re.search(r"^host: (.*)$", _output(["rustc", "-vV"]), re.MULTILINE)[1]
+    tools = Path(_output(["rustc", "--print", "sysroot"]).strip()) / f"lib/rustlib/{host}/bin"
+    if not (tools / "llvm-cov").exists():
+        parser.error("LLVM's tools aren't installed: rustup component add llvm-tools")
+    programs, failed = _run(crate, arguments.tests)
     source = ROOT / "crates" / crate / "src"
     found = {}
-    for file in segments:
+    for file in _files(tools, programs):
         path = Path(file["filename"])
-        if path.is_relative_to(source):
+        if path.is_relative_to(source) and file["segments"]:
             name = path.relative_to(source).as_posix()
             found[name] = _counts(path.read_text(encoding="utf-8"), file["segments"])
-    kept = {**(json.loads(KEPT.read_text(encoding="utf-8")) if KEPT.exists() else {}), crate: found}
-    KEPT.write_text(json.dumps(dict(sorted(kept.items())), indent=1, sort_keys=True) + "\n", encoding="utf-8")
     for name, counts in sorted(found.items(), key=lambda entry: entry[1]["lines"] / max(1, entry[1]["all_lines"])):
         print(f"{100 * counts['lines'] / max(1, counts['all_lines']):6.1f} % of {counts['all_lines']:4} lines  {name}: not {counts['not']}")
+    if failed or not found:
+        print("not kept: a test failed, see above" if failed else "nothing was counted", file=sys.stderr)
+        return 1
+    if not arguments.tests:
+        kept = {**(json.loads(KEPT.read_text(encoding="utf-8")) if KEPT.exists() else {}), crate: found}
+        KEPT.write_text(json.dumps(dict(sorted(kept.items())), indent=1, sort_keys=True) + "\n", encoding="utf-8")
     return 0
 
 
-def _segments(crate, tests):
-    """Runs the tests, and returns what LLVM's tools say about each file. Only the crate and its tests are instrumented: a counter in each loop of the crates
-    below them would make the tests eight times slower."""
+def _run(crate, tests):
+    """Runs the tests; the programs, and whether one failed. Only the crate and its tests are instrumented: a counter in each loop of the crates below them
+    would make the tests eight times slower."""
     TARGET.mkdir(parents=True, exist_ok=True)
     for old in TARGET.glob("*.profraw"):
         old.unlink()
-    wrapper = TARGET / "rustc"
+    # Cargo builds anew what another wrapper has built, by its path.
+    wrapper = TARGET / f"rustc-{crate}"
     wrapper.write_text(WRAPPER.format(crate=f"bulge_{crate.replace('-', '_')}"), encoding="utf-8")
     wrapper.chmod(0o755)
     environment = {**os.environ, "RUSTC_WORKSPACE_WRAPPER": str(wrapper), "LLVM_PROFILE_FILE": str(TARGET / "%m-%p.profraw")}
     cargo = ["cargo", "test", "--package", f"bulge-{crate}", "--lib", "--tests", "--target-dir", str(TARGET)]
     built = _output([*cargo, "--no-run", "--message-format=json"], env=environment)
     programs = [message["executable"] for message in map(json.loads, built.splitlines()) if message.get("executable")]
-    # A test that fails has run lines as well.
-    subprocess.run([*cargo, "--no-fail-fast", "--", *tests], cwd=ROOT, check=False, env=environment)
-    host = re.search(r"^host: (.*)$", _output(["rustc", "-vV"]), re.MULTILINE)[1]
-    tools = Path(_output(["rustc", "--print", "sysroot"]).strip()) / f"lib/rustlib/{host}/bin"
+    return programs, subprocess.call([*cargo, "--no-fail-fast", "--", *tests], cwd=ROOT, env=environment) != 0
+
+
+def _files(tools, programs):
+    """What LLVM's tools say about each file."""
     merged = TARGET / "merged.profdata"
     subprocess.run([tools / "llvm-profdata", "merge", "--sparse", *TARGET.glob("*.profraw"), "-o", merged], check=True)
     objects = [word for program in programs[1:] for word in ("--object", program)]
-    exported = _output([tools / "llvm-cov", "export", "--instr-profile", merged, programs[0], *objects])
-    return json.loads(exported)["data"][0]["files"]
+    return json.loads(_output([tools / "llvm-cov", "export", "--instr-profile", merged, programs[0], *objects]))["data"][0]["files"]
 
 
 def _output(command, **options):

@@ -4,6 +4,7 @@ use crate::error::MembraneError;
 use crate::factor::Inertia;
 use crate::load::{Inflation, Load};
 use crate::solver::Solver;
+use bulge_numerics::vector::dot;
 use std::time::Instant;
 
 /// A step of Newton's method.
@@ -128,7 +129,7 @@ impl Solver {
             let v = self.totals.sweep[..free].to_vec();
             let mut w = v.clone();
             self.backsolve(&mut w);
-            let (vs, vw) = (inner(&v, &by), inner(&v, &w));
+            let (vs, vw) = (dot(&v, &by), dot(&v, &w));
             let bordered = match closure {
                 Closure::Volume { excess } => {
                     pressure = (-excess - vs) / vw;
@@ -148,7 +149,7 @@ impl Solver {
                 *by += pressure * w;
             }
         }
-        let slope = inner(gradient, &by);
+        let slope = dot(gradient, &by);
         (Step { by, pressure, slope }, negative)
     }
 
@@ -376,8 +377,4 @@ impl Solver {
         }
         Err(self.not_converged(begun, last))
     }
-}
-
-fn inner(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

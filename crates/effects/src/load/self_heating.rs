@@ -93,6 +93,7 @@ mod tests {
     use crate::effect::{Moment, Setting};
     use crate::load::temperature::Temperature;
     use crate::probe::{SETTING, input};
+    use bulge_numerics::vector::{dot, norm};
 
     #[test]
     fn it_settles_with_the_clock() {
@@ -124,12 +125,11 @@ mod tests {
             };
             (0..=600).map(row).collect::<Vec<f64>>()
         };
-        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         let likeness = |kelvin: &dyn Fn(f64) -> f64| {
             let measured = column(&Temperature, &[0.0, 0.0], 1, kelvin);
             let of_time = |time: f64| {
                 let own = column(&SelfHeating, &[0.0, time, 0.0], 0, kelvin);
-                dot(&measured, &own).abs() / (dot(&measured, &measured) * dot(&own, &own)).sqrt()
+                dot(&measured, &own).abs() / (norm(&measured) * norm(&own))
             };
             [30.0, 100.0, 300.0, 600.0, 2e3, 1e4, 1e5].map(of_time).into_iter().fold(0.0, f64::max)
         };

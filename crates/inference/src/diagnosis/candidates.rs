@@ -277,7 +277,7 @@ mod tests {
         assert!((found - expected).abs() < 1e-12, "{found}");
     }
 
-    /// The conditions of Karush, Kuhn and Tucker hold at the least squares with signs, and only there.
+    /// The conditions of Karush, Kuhn and Tucker hold at the least squares with signs.
     #[test]
     fn least_squares_with_signs_is_a_minimum() {
         let mut random = Random::new(7, 0);

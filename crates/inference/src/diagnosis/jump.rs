@@ -9,6 +9,7 @@
 //! Nikiforov 1993).
 
 use bulge_model::Record;
+use bulge_numerics::vector::dot;
 use rayon::prelude::*;
 use statrs::function::erf::erfc;
 
@@ -75,7 +76,6 @@ fn places(record: &Record) -> Vec<(usize, usize)> {
 
 /// The jump at a row, with its size in standard deviations; none if the model's parameters could absorb it.
 fn score(whitening: &Whitening, space: &Space, left: &[f64], (row, end): (usize, usize)) -> (Jump, f64) {
-    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     let mut column = vec![0.0; whitening.rows()];
     column[row..end].fill(1.0);
     let mut white = whitening.whitened(column);
@@ -149,18 +149,20 @@ mod tests {
     fn too_few_places_show_no_jump() {
         let record = record();
         let law = NoiseLaw::white(1.0, NoiseSource::Saturated, 1e6, String::new());
-        // Of the rows of one sweep, 2 EDGE - 1 at its ends are no places.
-        let found = |rows: usize| {
+        // Of the rows of a sweep, 2 EDGE - 1 at its ends are no places.
+        let whole = FEWEST / 3 + 2 * EDGE - 1;
+        let found = |last: usize| {
+            let rows = 2 * whole + last;
+            let sweeps = vec![0..whole, whole..2 * whole, 2 * whole..rows];
             let moments = record.moments()[..rows].to_vec();
-            let sweeps = std::iter::once(0..rows).collect();
             let few = Record::from_moments(moments, vec![0.0; rows], sweeps).unwrap();
             let whitening = Whitening::new(&law, &few, &vec![true; rows], &[]).unwrap();
-            let left: Vec<f64> = (0..rows).map(|row| if row < 30 { 0.0 } else { 50.0 }).collect();
+            let left: Vec<f64> = (0..rows).map(|row| if row < 2 * whole + 14 { 0.0 } else { 50.0 }).collect();
             jump(&few, &whitening, &Space::default(), &left)
         };
-        let jump = found(FEWEST + 2 * EDGE - 1).unwrap();
-        assert!(jump.row == 30 && (jump.newtons - 50.0).abs() < 1e-9, "{jump:?}");
-        assert!(found(FEWEST + 2 * EDGE - 2).is_none());
+        let jump = found(whole).unwrap();
+        assert!(jump.row == 2 * whole + 14 && (jump.newtons - 50.0).abs() < 1e-9, "{jump:?}");
+        assert!(found(whole - 1).is_none());
     }
 
     #[test]

@@ -270,7 +270,7 @@ fn confused(linear: &LinearisedModel) -> Vec<ConfusedPair> {
             });
         }
     }
-    // Effects that are the same in this test stay in the catalogue's order, whatever the last digits.
+    // Pairs that are equally alike, but for last digits, stay in the catalogue's order.
     let rounded = |pair: &ConfusedPair| (1e9 * pair.cosine).round();
     found.sort_by(|a, b| rounded(b).total_cmp(&rounded(a)));
     found.truncate(MOST_PAIRS);

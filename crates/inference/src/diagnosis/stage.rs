@@ -92,7 +92,7 @@ impl Stage {
         if all > 0.0 { ((base.confirmed.bent_cost() - exact) / all).clamp(0.0, 1.0) } else { 0.0 }
     }
 
-    /// Log evidence of an unknown effect on top of the model; 0 if nothing is left to explain.
+    /// Log odds of an unknown effect on top of the model, at least 0; 0 if nothing is left to explain.
     pub(crate) fn something_else(&self) -> f64 {
         if self.adequate { 0.0 } else { log_odds(&self.linear).max(0.0) }
     }

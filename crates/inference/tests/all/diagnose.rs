@@ -581,8 +581,8 @@ fn slow_noise_far_beyond_the_data_sheet_is_not_adequate() {
         far.says
     );
     // Where the data sheet allows it, the misfit that it hides must stay below 3 % of the full scale.
-    let silent = BRAID.replace("force = { noise = \"2 N\"", "force = { noise = \"60 N\"");
-    let muscle = from_toml(&silent, "braid.toml").unwrap();
+    let coarse = BRAID.replace("force = { noise = \"2 N\"", "force = { noise = \"60 N\"");
+    let muscle = from_toml(&coarse, "braid.toml").unwrap();
     let verdict = |correlated_n| {
         let (model, theta) = truth(&muscle, &[]);
         let data = simulate(&model, &theta, &protocol(2.0, correlated_n), 5).unwrap().data;
@@ -595,8 +595,8 @@ fn slow_noise_far_beyond_the_data_sheet_is_not_adequate() {
     assert!(small < 0.03 && large > 0.03, "{small} {large}");
 }
 
-/// One stroke each shows slow noise once: with the law of the replicates it looks like a structure, and with its own it is
-/// as likely. Of the last set, no smooth misfit explains what a test rejects by chance.
+/// Slow noise looks like a structure under the law of what a smooth surface leaves; under a law of its own both are equally
+/// likely. In the last set a test rejects the model by chance, and no smooth misfit explains that.
 #[test]
 fn noise_that_is_as_likely_as_a_structure_is_noise() {
     let file = BRAID.replace("clamped", "cylinder");
@@ -610,7 +610,12 @@ fn noise_that_is_as_likely_as_a_structure_is_noise() {
         let data = simulate(&model, &theta, &protocol, seed).unwrap().data;
         let found = diagnose(&data, &muscle, &diagnosing(&[])).unwrap();
         assert_eq!(found.verdict, Verdict::Adequate, "{seed}: {}", found.says);
-        assert!(found.noise.law.correlated_n > 0.4 * correlated_n, "{seed}: {:?}", found.noise);
+        assert!(
+            found.noise.law.correlated_n > 0.4 * correlated_n
+                && found.noise.law.correlated_n < 2.0 * correlated_n,
+            "{seed}: {:?}",
+            found.noise
+        );
     };
     for seed in [0, 4, 5, 10] {
         slow(4.0, 10.0, 1, seed);

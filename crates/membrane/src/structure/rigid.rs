@@ -11,6 +11,7 @@ use crate::dofs::{Dofs, NONE, NodeDofs, complement};
 use crate::element::{Vector, add, cross, dot, norm, scaled, sub};
 use crate::error::MembraneError;
 use crate::mesh::Mesh;
+use bulge_numerics::vector;
 
 /// The six components of a rigid motion: t and w.
 type Motion = [f64; 6];
@@ -191,7 +192,7 @@ impl<'a> Pieces<'a> {
             }
             for axis in [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]] {
                 let left = piece.left(piece.displacement(*place, axis));
-                let size = size(&left);
+                let size = vector::norm(&left);
                 // Take the first one among equals.
                 if size > FREE && most.is_none_or(|(_, most, _)| size > 1.5 * most) {
                     most = Some((node, size, left));
@@ -252,9 +253,9 @@ impl Piece {
     fn take(&mut self, mut row: Row) -> Option<Vec<f64>> {
         for known in &self.rows {
             let share = subtract(&mut row.motion, &known.motion);
-            row.fittings.iter_mut().zip(&known.fittings).for_each(|(x, known)| *x -= share * known);
+            vector::add(&mut row.fittings, -share, &known.fittings);
         }
-        let size = size(&row.motion);
+        let size = vector::norm(&row.motion);
         if size <= HELD {
             return Some(row.fittings);
         }
@@ -266,10 +267,10 @@ impl Piece {
 
     /// Whether a motion is free and moves this position.
     fn frees(&self, motion: Motion, place: Vector) -> bool {
-        let size = size(&motion);
-        let is_held = self.rows.iter().any(|row| inner(&row.motion, &motion).abs() > 1e-5 * size);
+        let size = vector::norm(&motion);
+        let is_held = self.rows.iter().any(|row| vector::dot(&row.motion, &motion).abs() > 1e-5 * size);
         let moved = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
-            .map(|axis| inner(&self.displacement(place, axis), &motion));
+            .map(|axis| vector::dot(&self.displacement(place, axis), &motion));
         !is_held && norm(moved) > FREE * size
     }
 
@@ -310,18 +311,10 @@ fn written(v: Vector, digits: i32) -> String {
     format!("({x}, {y}, {z})")
 }
 
-fn inner(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
-}
-
-fn size(motion: &Motion) -> f64 {
-    inner(motion, motion).sqrt()
-}
-
 /// Subtracts the projection on a unit vector.
 fn subtract(from: &mut [f64], unit: &[f64]) -> f64 {
-    let share = inner(from, unit);
-    from.iter_mut().zip(unit).for_each(|(x, unit)| *x -= share * unit);
+    let share = vector::dot(from, unit);
+    vector::add(from, -share, unit);
     share
 }
 

@@ -1,12 +1,12 @@
 //! One step conserves energy and mass to rounding.
 
 use super::*;
+use bulge_numerics::vector::dot;
 
 fn energy(mesh: &Mesh, state: &State) -> f64 {
-    let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-    CV * (product(&state.muscle.mass, &state.muscle.gas) + product(&state.pipe.mass, &state.pipe.gas))
-        + product(&mesh.wall_capacity, &state.muscle.wall)
-        + product(&mesh.pipe_capacity, &state.pipe.wall)
+    CV * (dot(&state.muscle.mass, &state.muscle.gas) + dot(&state.pipe.mass, &state.pipe.gas))
+        + dot(&mesh.wall_capacity, &state.muscle.wall)
+        + dot(&mesh.pipe_capacity, &state.pipe.wall)
 }
 
 #[test]
