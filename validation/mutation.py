@@ -82,10 +82,8 @@ def main():
         parser.error(f"`{arguments.crate}` has not been sampled yet: leave out --again")
     crate = Crate(arguments.crate, arguments.tests, arguments.budget or float("inf"))
     if arguments.again:
-        # Lines move; what is done to which function stays.
-        names = {mutant["name"] for mutant in crate.mutants}
-        moved = {_without_place(name) for name in before["survived"] if name not in names}
-        chosen = [mutant for mutant in crate.mutants if mutant["name"] in before["survived"] or _without_place(mutant["name"]) in moved]
+        # Lines move; what is done to which function stays, and of several such places the nearest is meant.
+        chosen = [nearest for name in before["survived"] if (nearest := _nearest(name, crate.mutants)) is not None]
         _, survived = crate.tested(chosen)
         counts = {**before, "survived": sorted(survived)}
         _keep(arguments.crate, counts)
@@ -112,8 +110,17 @@ def _keep(crate, counts):
     KEPT.write_text(json.dumps(dict(sorted(kept.items())), indent=1) + "\n", encoding="utf-8")
 
 
-def _without_place(name):
-    return re.sub(r":\d+:\d+:", ":", name)
+def _nearest(name, mutants):
+    """The mutant of this name, or the nearest one that does the same to the same function; none if there is none any more."""
+    kept, place = _parts(name)
+    same = [mutant for mutant in mutants if _parts(mutant["name"])[0] == kept]
+    return min(same, key=lambda mutant: [abs(a - b) for a, b in zip(_parts(mutant["name"])[1], place, strict=True)], default=None)
+
+
+def _parts(name):
+    """A mutant's name without its place, and that place."""
+    place = re.search(r":(\d+):(\d+):", name)
+    return name.replace(place[0], ":", 1), [int(place[1]), int(place[2])]
 
 
 class Crate:

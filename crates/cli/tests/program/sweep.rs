@@ -96,6 +96,10 @@ fn what_is_wrong_is_status_1_with_place_and_cure() {
         refused(&["sweep", &sweep, "--out", &out, &format!("--chunks={chunks}")], 2, &["100..200"]);
     }
     refused(&["sweep", &sweep, "--out", &out, "--chunks", "7..9"], 1, &["0..5"]);
+    for below in ["", "/points"] {
+        let says = format!("{sweep} is a file; give the name of a folder");
+        refused(&["sweep", &sweep, "--out", &format!("{sweep}{below}")], 1, &[&says]);
+    }
     assert_eq!(folder.names(), ["sweep.toml"]);
 }
 
