@@ -358,6 +358,17 @@ fn rows_here_and_there_that_are_something_else_are_no_physics() {
     assert!(found.missing.is_empty() && found.verdict != Verdict::Unknown, "{}", found.says);
 }
 
+/// Set `clipped-softly-force-isobaric-10` of `validation/damage`: above 86 % of the full scale the load cell gives way. No
+/// single row stands out there, stretches of rows do; without them `force-nonlinearity` is named.
+#[test]
+fn stretches_in_which_a_load_cell_gives_way_are_no_physics() {
+    let muscle = from_toml(include_str!("damaged/clipped-softly.toml"), "muscle.toml").unwrap();
+    let data = Data::from_csv(include_str!("damaged/clipped-softly.csv"), "data.csv").unwrap();
+    let found = diagnose(&data, &muscle, &diagnosing(&[])).unwrap();
+    assert_eq!((found.verdict, names(&found)), (Verdict::CannotTell, vec![]), "{}", found.says);
+    assert!(found.says.contains("some rows ask for something that the others deny"), "{}", found.says);
+}
+
 #[test]
 fn an_effect_on_both_sides_of_an_event_is_named() {
     let data = measured(&[("coulomb-friction", &[12.0])], &protocol(2.0, 0.0), 6);
