@@ -24,21 +24,45 @@ pub(crate) fn stiffening(
     contraction: f64,
     effort: &mut Effort,
 ) -> Result<Unknowns, FibreError> {
+    along(|part| net.with_walls(part), [1e-2, 0.1, 1e-9], contraction, effort)
+}
+
+/// Solves at the same contraction with stiff fibres first, then softens them in adaptive steps. Soft fibres of
+/// a braid carry the pressure where it bulges, but may not as a cylinder between its fittings, from which the
+/// starts begin. It ends where the bulge reaches 1/q: fibres that are wound closer than their length at rest
+/// allows have up to three tensions for one curvature, and no start tells which.
+pub(crate) fn softening(
+    net: &Net<f64>,
+    contraction: f64,
+    effort: &mut Effort,
+) -> Result<Unknowns, FibreError> {
+    let softer = |part: f64| Net { compliance: part * net.compliance, ..net.clone() };
+    along(softer, [0.5, 0.5, 1e-4], contraction, effort)
+}
+
+/// Solves for a part of what makes a net hard to solve, and lets it grow to the whole in adaptive steps. The
+/// part begins with `first` and shrinks by `factor` until a start converges, down to `least`.
+fn along(
+    with_part: impl Fn(f64) -> Net<f64>,
+    [first, factor, least]: [f64; 3],
+    contraction: f64,
+    effort: &mut Effort,
+) -> Result<Unknowns, FibreError> {
     let failed = |effort: &Effort| FibreError::NotConverged {
         contraction,
         residual: f64::INFINITY,
         iterations: effort.iterations,
     };
-    let mut part = 1e-2;
+    let mut part = first;
     let mut at = loop {
-        let soft = net.with_walls(part);
-        if let Some(start) = start(&soft, contraction)
-            && let Ok(found) = newton(&soft, contraction, start, ON_THE_WAY, effort)
+        let easy = with_part(part);
+        if let Some(start) = start(&easy, contraction)
+            && let Ok(found) = newton(&easy, contraction, start, ON_THE_WAY, effort)
         {
             break found;
         }
-        part *= 0.1;
-        if part < 1e-9 || effort.is_spent() {
+        part *= factor;
+        if part < least || effort.is_spent() {
             return Err(failed(effort));
         }
     };
@@ -49,7 +73,7 @@ pub(crate) fn stiffening(
         let next = (part * grow).min(1.0);
         let jump = (next / part).ln();
         let guess = Unknowns { logs: [at.logs[0] + rate[0] * jump, at.logs[1] + rate[1] * jump], ..at };
-        if let Ok(found) = newton(&net.with_walls(next), contraction, guess, ON_THE_WAY, effort) {
+        if let Ok(found) = newton(&with_part(next), contraction, guess, ON_THE_WAY, effort) {
             rate = [(found.logs[0] - at.logs[0]) / jump, (found.logs[1] - at.logs[1]) / jump];
             (at, part) = (found, next);
             grow = (1.0 + (grow - 1.0) * 1.5).min(10.0);

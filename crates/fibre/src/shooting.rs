@@ -23,7 +23,7 @@
 use bulge_numerics::{Dual, Real};
 
 use crate::FibreError;
-use crate::continuation::{continuation, stiffening};
+use crate::continuation::{continuation, softening, stiffening};
 use crate::meridian::{NoTrajectory, SHORTENING, Trajectory, VOLUME, trajectory};
 use crate::net::Net;
 use crate::quadrature;
@@ -188,21 +188,30 @@ pub(crate) fn solve(
     let cold = (ending, USUAL.first);
     let direct =
         start(net, contraction).and_then(|start| newton(net, contraction, start, cold, &mut effort).ok());
-    let found = match direct {
-        Some(found) => Ok(found),
-        None => match continuation(net, contraction, &mut effort) {
-            Err(FibreError::NotConverged { .. }) if net.cloth.is_some() || net.has_wall() => {
-                // The starts ignore bladder and cloth: soften both and let them stiffen step by step.
-                let mut more = Effort::of_at_most(ending.most);
-                let found = stiffening(net, contraction, &mut more);
-                effort.iterations += more.iterations;
-                effort.evaluations += more.evaluations;
-                found
-            }
-            other => other,
-        },
-    };
+    let mut found = direct.map_or_else(|| continuation(net, contraction, &mut effort), Ok);
+    let failed = |found: &Result<_, _>| matches!(found, Err(FibreError::NotConverged { .. }));
+    // The starts ignore bladder and cloth: soften both and let them stiffen step by step.
+    if failed(&found) && (net.cloth.is_some() || net.has_wall()) {
+        found = afresh(stiffening, net, contraction, &mut effort);
+    }
+    if failed(&found) && net.turn != 0.0 && net.compliance > 0.0 && straight_contraction(net).is_none() {
+        found = afresh(softening, net, contraction, &mut effort);
+    }
     Ok((found?, effort))
+}
+
+/// A search with an effort of its own, which is added to that of the earlier ones.
+fn afresh(
+    search: fn(&Net<f64>, f64, &mut Effort) -> Result<Unknowns, FibreError>,
+    net: &Net<f64>,
+    contraction: f64,
+    effort: &mut Effort,
+) -> Result<Unknowns, FibreError> {
+    let mut more = Effort::of_at_most(effort.most);
+    let found = search(net, contraction, &mut more);
+    effort.iterations += more.iterations;
+    effort.evaluations += more.evaluations;
+    found
 }
 
 /// Keeps a contraction away from that of an exactly straight meridian, where bulge and curvature are zero and

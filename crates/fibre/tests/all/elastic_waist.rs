@@ -19,3 +19,20 @@ fn force_agrees_with_an_independent_integration() {
         assert!((found.force_n / force - 1.0).abs() < 1e-7, "{} N instead of {force} N", found.force_n);
     }
 }
+
+/// A braid whose fibres are too soft to carry the pressure as a cylinder between its fittings (group above 1/4) bulges, and
+/// pulls. Forces and stiffnesses EA at a given radius at mid-length, from an independent integration of the equilibrium in
+/// the arc length at rest (SciPy, relative tolerance 1e-9).
+#[test]
+fn soft_fibres_bulge_where_no_cylinder_carries_the_pressure() {
+    for (radius, force, stiffness) in
+        [(0.0215, 324.537, 75.9108), (0.0225, 291.045, 68.7674), (0.0235, 257.391, 63.0976)]
+    {
+        let braid = Braided::new(Length::mm(10.0), Angle::deg(25.0)).unwrap().with_fibres(60).unwrap();
+        let muscle = Muscle::new("soft", Length::mm(200.0), Construction::Braided(braid)).unwrap();
+        let muscle = muscle.with_fibre(Fibre::new(Force::n(stiffness)).unwrap()).unwrap();
+        let found = Problem::new(&muscle, Pressure::bar(3.0)).unwrap().follow(0.05, Approach::Auto).unwrap();
+        assert!((found.mid_radius_m / radius - 1.0).abs() < 1e-5, "{} m", found.mid_radius_m);
+        assert!((found.force_n - force).abs() < 2e-3, "{} N instead of {force} N", found.force_n);
+    }
+}
