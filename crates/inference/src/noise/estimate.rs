@@ -265,7 +265,7 @@ impl<'a> Estimate<'a> {
             start = minimise(|x| value(first, x), &start, search).0;
         }
         let step = if self.first.is_some() { 0.3 } else { 0.7 };
-        let search = Search { bounds: &bounds, step, evaluations: 60 * (1 + bounds.len()), tolerance: 1e-6 };
+        let search = Search { bounds: &bounds, step, evaluations: 30 * (1 + bounds.len()), tolerance: 1e-3 };
         let (best, _) = minimise(|x| value(self.likelihood, x), &start, search);
         let components = self.components(parts, &best);
         let deviance = self.likelihood.deviance(&components)?;
