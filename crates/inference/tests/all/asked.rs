@@ -2,7 +2,7 @@
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
-use crate::support::{diagnosing, effects, noisy, options, truth};
+use crate::support::{cylinder, diagnosing, effects, noisy, options, truth};
 use bulge_effects::law::{Law, LawGeometry, LawPoint};
 use bulge_effects::{Catalogue, ParameterCard};
 use bulge_inference::{
@@ -11,14 +11,12 @@ use bulge_inference::{
     fit_effects, predict, simulate, simulate_with,
 };
 use bulge_measurements::{Columns, Data, Trace, to_csv};
-use bulge_muscles::{Fault, Muscle, from_toml, preset};
+use bulge_muscles::{Fault, Muscle};
 use std::fmt::Debug;
 use std::sync::{Arc, Mutex, atomic::AtomicUsize, atomic::Ordering};
 
-const CYLINDER: &str = "kind = \"braided\"\nlength = \"250 mm +- 0\"\nradius = \"10 mm +- 0\"\nbraid_angle = \"25 deg +- 0\"\nends = \"cylinder\"\n";
-
 fn named(name: &str) -> Muscle {
-    from_toml(&format!("name = \"{name}\"\n{CYLINDER}"), "m.toml").unwrap()
+    cylinder(name, "")
 }
 
 /// Readings that a force law gives, without noise.
@@ -242,8 +240,7 @@ fn written_columns_are_read_again() {
     let (data, muscle) = (loops_of_friction(), named("x"));
     let (comparison, rows) = compare_with_rows(&data, &muscle, &options(&["coulomb-friction"])).unwrap();
     assert!(rows.len() == data.len() && !rows.is_empty());
-    let sheet = format!("name = \"x\"\n{CYLINDER}[instruments]\nforce = {{ noise = \"1 N\" }}\n");
-    let sheet = from_toml(&sheet, "m.toml").unwrap();
+    let sheet = cylinder("x", "[instruments]\nforce = { noise = \"1 N\" }");
     let found = predict(&data, &sheet, &Catalogue::builtin(), &[]).unwrap();
     let headings = |csv: &str| csv.lines().next().unwrap().to_owned();
     let [compared, predicted] = [to_csv(&rows.columns()), to_csv(&found.written_columns())];
@@ -358,8 +355,7 @@ fn an_effect_whose_formula_holds_is_not_written() {
 /// (60 000): friction and an offset by linear least squares, and the noise as held-out error.
 #[test]
 fn long_records_give_what_is_hidden_in_them() {
-    let muscle = preset("dmsp-20-250").unwrap();
-    let muscle = named(muscle.name());
+    let muscle = named("x");
     for (rows, cycles) in [(1500, 4), (2200, 8)] {
         let block = Block {
             rows,

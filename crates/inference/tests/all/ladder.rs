@@ -3,7 +3,7 @@
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
-use crate::support::{diagnosing, effects, names, noisy, options, truth};
+use crate::support::{CYLINDER, cylinder, diagnosing, effects, names, noisy, options, truth};
 use bulge_effects::{Catalogue, Moment};
 use bulge_inference::{
     Block, Comparing, Comparison, DiagnoseOptions, Noise, Options, Protocol, ReadingNoise, Rows, Verdict,
@@ -15,10 +15,8 @@ use bulge_muscles::{Muscle, from_toml};
 use std::fmt::Write;
 use std::sync::Arc;
 
-const BRAID: &str = "name = \"x\"\nkind = \"braided\"\nlength = \"250 mm +- 0\"\nradius = \"10 mm +- 0\"\nbraid_angle = \"25 deg +- 0\"\nends = \"cylinder\"\n";
-
 fn muscle(more: &str) -> Muscle {
-    from_toml(&format!("{BRAID}{more}\n"), "m.toml").unwrap()
+    cylinder("x", more)
 }
 
 /// Loops of 40 rows at three pressures: the cylinder's force, plus `more` by row and direction.
@@ -198,7 +196,7 @@ fn what_data_lack_is_said_by_its_column() {
 #[test]
 fn a_braid_that_extends_is_noted() {
     let noted = |degrees: &str| {
-        let muscle = from_toml(&BRAID.replace("25 deg", degrees), "m.toml").unwrap();
+        let muscle = from_toml(&CYLINDER.replace("25 deg", degrees), "m.toml").unwrap();
         let warnings = climbed(&loops(|row, _| alternating(row)), &muscle, &[]).warnings;
         warnings.into_iter().find(|says| says.contains("neutral"))
     };

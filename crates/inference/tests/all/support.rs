@@ -5,8 +5,16 @@
 use bulge_effects::{Catalogue, Effect};
 use bulge_inference::{Block, DiagnoseOptions, Diagnosis, Options, Protocol, ReadingNoise};
 use bulge_model::Model;
-use bulge_muscles::Muscle;
+use bulge_muscles::{Muscle, from_toml};
 use std::sync::Arc;
+
+/// The file of a braid between cylindrical ends whose numbers are exact.
+pub(crate) const CYLINDER: &str = "name = \"x\"\nkind = \"braided\"\nlength = \"250 mm +- 0\"\nradius = \"10 mm +- 0\"\nbraid_angle = \"25 deg +- 0\"\nends = \"cylinder\"\n";
+
+/// This braid by another name, with more lines in its file.
+pub(crate) fn cylinder(name: &str, more: &str) -> Muscle {
+    from_toml(&format!("{}{more}\n", CYLINDER.replace("\"x\"", &format!("\"{name}\""))), "m.toml").unwrap()
+}
 
 pub(crate) fn effects(names: &[&str]) -> Vec<Arc<dyn Effect>> {
     let catalogue = Catalogue::builtin();
