@@ -9,7 +9,7 @@ use crate::net::Net;
 use crate::quadrature;
 use crate::shooting::{Effort, Ending, TOLERANCE, USUAL, newton, straight_contraction};
 use crate::start::{drawn_out, linear_start, start};
-use crate::unknowns::{Unknowns, is_limited};
+use crate::unknowns::{Kind, Unknowns, is_limited};
 
 /// Ending and first tolerance of the solves on the way to the equilibrium asked for.
 const ON_THE_WAY: (Ending, f64) = (USUAL, USUAL.first);
@@ -24,26 +24,27 @@ pub(crate) fn stiffening(
     contraction: f64,
     effort: &mut Effort,
 ) -> Result<Unknowns, FibreError> {
-    along(|part| net.with_walls(part), [1e-2, 0.1, 1e-9], contraction, effort)
+    along(|part| net.with_walls(part), |_, at| Some(at), [1e-2, 0.1, 1e-9], contraction, effort)
 }
 
 /// Solves at the same contraction with stiff fibres first, then softens them in adaptive steps. Soft fibres of
 /// a braid carry the pressure where it bulges, but may not as a cylinder between its fittings, from which the
-/// starts begin. It ends where the bulge reaches 1/q: fibres that are wound closer than their length at rest
-/// allows have up to three tensions for one curvature, and no start tells which.
+/// starts begin.
 pub(crate) fn softening(
     net: &Net<f64>,
     contraction: f64,
     effort: &mut Effort,
 ) -> Result<Unknowns, FibreError> {
     let softer = |part: f64| Net { compliance: part * net.compliance, ..net.clone() };
-    along(softer, [0.5, 0.5, 1e-4], contraction, effort)
+    along(softer, |net, at| at.by_tension(net), [0.5, 0.5, 1e-4], contraction, effort)
 }
 
 /// Solves for a part of what makes a net hard to solve, and lets it grow to the whole in adaptive steps. The
-/// part begins with `first` and shrinks by `factor` until a start converges, down to `least`.
+/// part begins with `first` and shrinks by `factor` until a start converges, down to `least`. `other` changes
+/// what the unknowns stand for on the way.
 fn along(
     with_part: impl Fn(f64) -> Net<f64>,
+    other: impl Fn(&Net<f64>, Unknowns) -> Option<Unknowns>,
     [first, factor, least]: [f64; 3],
     contraction: f64,
     effort: &mut Effort,
@@ -58,6 +59,7 @@ fn along(
         let easy = with_part(part);
         if let Some(start) = start(&easy, contraction)
             && let Ok(found) = newton(&easy, contraction, start, ON_THE_WAY, effort)
+            && let Some(found) = other(&easy, found)
         {
             break found;
         }
@@ -112,7 +114,8 @@ pub(crate) fn drawn_taut(net: &Net<f64>) -> Option<(f64, Unknowns)> {
     let least = 1.0 + (cylinder / alone).abs();
     let lifted = net.lift::<2>();
     TAUT.iter().filter(|factor| net.compliance * *factor * least * alone < DRAWN).find_map(|factor| {
-        let mut at = Unknowns { side: -1.0, logs: [(net.end_radius - radius).ln(), (factor * least).ln()] };
+        let mut at =
+            Unknowns { kind: Kind::Waist, logs: [(net.end_radius - radius).ln(), (factor * least).ln()] };
         for _ in 0..RADIUS_ITERATIONS {
             let middle = at.seeded(&lifted)?;
             let run = if quadrature::suits(&lifted) {
@@ -163,7 +166,7 @@ pub(crate) fn continuation(
         return Err(error);
     }
     // d(unknowns)/d ln(part) of a shallow bulge: B, k and 1/T grow with the root of the contraction.
-    let first = match (is_limited(net, at.side), net.turn == 0.0) {
+    let first = match (is_limited(net, at.kind.side()), net.turn == 0.0) {
         (true, _) if net.has_wall() => 0.0,
         (true, true) => -1.0,
         (true, false) => -0.5,

@@ -162,6 +162,46 @@ impl<D: Real> Net<D> {
     }
 }
 
+impl<D: Real> Net<D> {
+    /// The bulge of the cylinder whose elastic fibres have a tension, and -d(push - h)/dr there at this tension. The
+    /// push exceeds the hoop term of narrower radii. `None` if it doesn't at the fitting's. Lobes and cloth aren't
+    /// asked for.
+    pub(crate) fn cylinder_bulge(&self, tension: D) -> Option<(D, D)> {
+        let gap = |bulge: D| {
+            let r = self.end_radius + bulge;
+            let local = self.local(r, tension);
+            let hoop_r = local.hoop_r - local.hoop_t * local.tension_r;
+            (self.push(r) - local.hoop, hoop_r - self.section(r).area_rr)
+        };
+        // Up to the radius at which the fibres lie along the circumference, where the hoop term has no limit.
+        let room =
+            (tension * self.compliance + 1.0).value() / self.turn.value().abs() - self.end_radius.value();
+        let (mut low, mut high) = (0.0, room);
+        if high.is_nan() || high <= 0.0 || gap(D::from(0.0)).0.value() <= 0.0 {
+            return None;
+        }
+        let mut at = 0.5 * (low + high);
+        for _ in 0..200 {
+            let (value, slope) = gap(D::from(at));
+            if value.value() > 0.0 {
+                low = at;
+            } else {
+                high = at;
+            }
+            let newton = at + (value / slope).value();
+            if (newton - at).abs() <= 1e-9 * at {
+                let bulge = value / slope + at;
+                return Some((bulge, gap(bulge).1));
+            }
+            at = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
+            if high - low <= f64::EPSILON * high {
+                break;
+            }
+        }
+        None
+    }
+}
+
 /// The root of a `gap` with its slope, at a negative tension. Newton's method starts from the linear
 /// estimate.
 fn pushed<D: Real>(gap: impl Fn(D) -> (D, D), linear: D) -> Option<D> {

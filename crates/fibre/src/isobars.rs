@@ -155,7 +155,7 @@ fn extrapolate(last: [Option<(f64, Unknowns)>; 2], contraction: f64) -> Option<U
     let (x1, one) = last[1]?;
     let Some((x0, zero)) = last[0] else { return Some(one) };
     let ratio = (contraction - x1) / (x1 - x0);
-    if zero.side * one.side < 0.0 || !ratio.is_finite() || ratio.abs() > 2.0 {
+    if zero.kind != one.kind || !ratio.is_finite() || ratio.abs() > 2.0 {
         return Some(one);
     }
     Some(Unknowns {

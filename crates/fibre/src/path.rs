@@ -15,7 +15,7 @@ use crate::net::Net;
 use crate::quadrature;
 use crate::shooting::{Effort, solve_two};
 use crate::start::drawn_out;
-use crate::unknowns::{FLAT, Unknowns, is_limited};
+use crate::unknowns::{FLAT, Kind, Unknowns, is_limited};
 
 /// Limit on the evaluations of all paths of a muscle.
 const MOST_EVALUATIONS: u32 = 100_000;
@@ -123,7 +123,7 @@ impl<'a> Paths<'a> {
 fn covers(path: &[Place], side: f64, first: f64) -> bool {
     path.windows(2).any(|pair| {
         let [a, b] = [0, 1].map(|i| pair[i].unknowns);
-        a.side * side > 0.0 && (a.logs[0] > first) != (b.logs[0] > first)
+        a.kind != Kind::Soft && a.kind.side() * side > 0.0 && (a.logs[0] > first) != (b.logs[0] > first)
     })
 }
 
@@ -198,7 +198,7 @@ impl Plane<'_> {
             gradient: *length.gradient(),
             is_drawn: run.force.value() > DRAWN[0]
                 || strain > DRAWN[1]
-                || (at.side < 0.0 && length.gradient()[0] > STEEP),
+                || (at.kind == Kind::Waist && length.gradient()[0] > STEEP),
         }
     }
 
@@ -296,22 +296,26 @@ impl Plane<'_> {
     }
 
     fn is_straight(&self, place: &Place) -> bool {
-        let Unknowns { side, logs } = place.unknowns;
+        let Unknowns { kind, logs } = place.unknowns;
         if logs[1] < FLATTEST || place.contraction > 1.0 {
             return true;
         }
+        if kind == Kind::Soft {
+            return logs[1] > -STRAIGHT;
+        }
+        let side = kind.side();
         let shallow = Unknowns::new(self.net, side, [STRAIGHT, logs[1]]).logs[0];
         if is_limited(self.net, side) { logs[0] > shallow } else { logs[0] < shallow }
     }
 
     /// The next place, an arc further along a tangent. `exact`: up to rounding.
     fn step(&mut self, from: &Place, tangent: [f64; 2], arc: f64, exact: bool) -> Option<Place> {
-        let Unknowns { side, logs } = from.unknowns;
+        let Unknowns { kind, logs } = from.unknowns;
         let ahead = [logs[0] + arc * tangent[0], logs[1] + arc * tangent[1]];
         let mut at = ahead;
         let mut is_met = false;
         for _ in 0..STEPS {
-            let unknowns = Unknowns { side, logs: at };
+            let unknowns = Unknowns { kind, logs: at };
             let (run, length) = self.run(unknowns)?;
             let was_met = is_met;
             is_met = length.value().abs() < MET;

@@ -4,7 +4,7 @@ use bulge_numerics::{gauss, root::illinois};
 
 use crate::net::Net;
 use crate::shooting::straight_contraction;
-use crate::unknowns::{Unknowns, is_limited, steepest};
+use crate::unknowns::{Kind, Unknowns, is_limited, steepest};
 
 /// Largest difference of the contraction from that of a straight meridian for which the start is taken from
 /// the linear solution.
@@ -104,7 +104,7 @@ fn open_start(net: &Net<f64>, contraction: f64) -> Option<Unknowns> {
     } else {
         (tension * (rim.local(limit, tension).hoop_t + ln_curvature.exp()) / room).ln()
     };
-    Some(Unknowns { side: 1.0, logs: [first, ln_curvature] })
+    Some(Unknowns { kind: Kind::Bulge, logs: [first, ln_curvature] })
 }
 
 /// Straight fibres form a circular arc of the stretched fibre length and half-angle K. `sin(K)/K` is the end

@@ -6,19 +6,43 @@ use crate::equator::Equator;
 use crate::meridian::Middle;
 use crate::net::Net;
 
-/// The side of the fitting's radius on which the middle lies, and the two logarithms.
+/// What the two unknowns stand for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Kind {
+    /// ln B and ln k of a bulge. Where lobes or cloth limit the radius they are ln(push/(k B)) and ln k, and with
+    /// an angle besides ln(push/B) and ln k.
+    Bulge,
+    /// ln|B| and the excess of the tension of a waist.
+    Waist,
+    /// The tension of a bulge of soft fibres, and how far its radius is from that of a cylinder with the same
+    /// tension.
+    Soft,
+}
+
+impl Kind {
+    /// +1 for a bulge, -1 for a waist.
+    pub(crate) const fn side(self) -> f64 {
+        match self {
+            Self::Bulge | Self::Soft => 1.0,
+            Self::Waist => -1.0,
+        }
+    }
+}
+
+/// The two unknowns.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Unknowns {
-    /// +1: bulge, -1: waist.
-    pub(crate) side: f64,
-    /// ln|B| and ln|k|. Where lobes or cloth limit the radius they are ln(push/(k B)) and ln|k|, and with an
-    /// angle besides ln(push/B) and ln|k|.
+    pub(crate) kind: Kind,
     pub(crate) logs: [f64; 2],
 }
 
 /// ln|k| below which the middle is a cylinder up to rounding. The integration then starts at this value, see
 /// [`Middle::beyond`].
 pub(crate) const FLAT: f64 = -40.0;
+
+/// Part of the fitting's radius below which the gap to a cylinder is small. The curvature is linear in it there; the
+/// square is next to rounding.
+const SMALL: f64 = 1e-6;
 
 /// Largest part of the way to the radius of the lobes' circle that a start may cover.
 const OPEN: f64 = 0.98;
@@ -27,7 +51,8 @@ impl Unknowns {
     /// A bulge (+1) or a waist (-1) with ln|B| and the second unknown.
     pub(crate) fn new(net: &Net<f64>, side: f64, [ln_bulge, second]: [f64; 2]) -> Self {
         if !is_limited(net, side) {
-            return Self { side, logs: [ln_bulge, second] };
+            let kind = if side > 0.0 { Kind::Bulge } else { Kind::Waist };
+            return Self { kind, logs: [ln_bulge, second] };
         }
         let bulge = ln_bulge.exp().min(OPEN * net.most_bulge());
         let r = net.end_radius + bulge;
@@ -37,7 +62,19 @@ impl Unknowns {
             (false, true) => slope.ln() - second,
             (false, false) => slope.ln(),
         };
-        Self { side, logs: [first, second] }
+        Self { kind: Kind::Bulge, logs: [first, second] }
+    }
+
+    /// The same bulge by its tension. A bulge that reaches 1/q has up to three tensions for one curvature, but
+    /// each tension has one curvature at each radius, and one radius at which that is zero.
+    pub(crate) fn by_tension(&self, net: &Net<f64>) -> Option<Self> {
+        let near = Self { logs: [self.logs[0], self.logs[1].max(FLAT)], ..*self };
+        let Middle { bulge, curvature, tension, force, .. } = near.curved(net, near.logs.map(f64::from))?;
+        let (reach, slope) = net.cylinder_bulge(tension)?;
+        let (small, whole) = (curvature * force / slope, reach - bulge);
+        let gap = if small < SMALL * net.end_radius { small } else { whole };
+        let second = (gap / bulge).ln() + self.logs[1] - near.logs[1];
+        Some(Self { kind: Kind::Soft, logs: [tension.ln(), second] })
     }
 
     /// The middle of the meridian. If `D` carries derivatives, the unknowns are variables number 0 and 1.
@@ -54,7 +91,7 @@ impl Unknowns {
     ) -> Option<Middle<D>> {
         let logs = [variable(self.logs[0], 0), variable(self.logs[1], 1)];
         if self.logs[1] < FLAT {
-            let middle = Self { side: self.side, logs: [self.logs[0], FLAT] };
+            let middle = Self { kind: self.kind, logs: [self.logs[0], FLAT] };
             // The first unknown keeps its derivative; the second one lengthens the cylinder.
             let middle = middle.curved(net, [logs[0], D::from(FLAT)])?;
             return middle.beyond(net, -logs[1] + FLAT);
@@ -64,8 +101,12 @@ impl Unknowns {
 
     /// The same for a curvature that numbers can represent.
     fn curved<D: Real>(&self, net: &Net<D>, logs: [D; 2]) -> Option<Middle<D>> {
+        if self.kind == Kind::Soft {
+            return soft(net, logs);
+        }
         let (second, straight) = (logs[1].exp(), D::from(0.0));
-        if is_limited(net, self.side) {
+        let side = self.kind.side();
+        if is_limited(net, side) {
             let slope = match (net.has_wall(), net.turn.value() == 0.0) {
                 (true, _) => logs[0].exp() - (-logs[0]).exp(),
                 (false, true) => (logs[0] + logs[1]).exp(),
@@ -76,14 +117,14 @@ impl Unknowns {
             let Equator { tension, force } = net.acting_at(r.value()).at_equator(r, bulge * slope, second)?;
             return Some(Middle { bulge, curvature: second, tension, force, straight });
         }
-        let bulge = logs[0].exp() * self.side;
+        let bulge = logs[0].exp() * side;
         let r = net.end_radius + bulge;
         if r.value() <= 0.0 {
             return None;
         }
         let net = net.acting_at(r.value());
         let push = net.push(r);
-        if self.side > 0.0 {
+        if side > 0.0 {
             let Equator { tension, force } = net.at_equator(r, push, second)?;
             return Some(Middle { bulge, curvature: second, tension, force, straight });
         }
@@ -128,6 +169,22 @@ impl Unknowns {
     pub(crate) fn seeded<const N: usize>(&self, net: &Net<Dual<N>>) -> Option<Middle<Dual<N>>> {
         self.middle(net, Dual::variable)
     }
+}
+
+/// The middle of a bulge with the tension `exp(logs[0])`. The gap to the radius of the cylinder with this tension
+/// is `exp(logs[1])` times the bulge.
+fn soft<D: Real>(net: &Net<D>, logs: [D; 2]) -> Option<Middle<D>> {
+    let (tension, part) = (logs[0].exp(), logs[1].exp());
+    let (reach, slope) = net.cylinder_bulge(tension)?;
+    let bulge = reach / (part + 1.0);
+    let (r, gap) = (net.end_radius + bulge, bulge * part);
+    let local = net.local(r, tension);
+    // The push less the hoop term: the difference is linear beside the cylinder.
+    let is_small = gap.value() < SMALL * net.end_radius.value();
+    let excess = if is_small { slope * gap } else { net.push(r) - local.hoop };
+    let curvature = excess / local.force;
+    let straight = D::from(0.0);
+    (curvature.value() > 0.0).then_some(Middle { bulge, curvature, tension, force: local.force, straight })
 }
 
 /// Whether lobes or cloth limit the radius of a bulge. The first unknown then stands for the tension.

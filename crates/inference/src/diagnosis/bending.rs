@@ -12,7 +12,7 @@
 //! No real effect obeys a formula exactly: rubber has two constants, and friction rounds off at a turn. The
 //! misfit that a formula leaves must not be taken for another effect.
 
-use bulge_effects::{Catalogue, Effect, Form, Mechanism, Needs, ParameterCard, Stage};
+use bulge_effects::{Card, Catalogue, Effect, Form, Mechanism, Moment, Needs, ParameterCard, Stage};
 use bulge_model::{ModelError, Wanted};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -116,6 +116,20 @@ fn inexact(prepared: &Prepared) -> impl Iterator<Item = &Arc<dyn Effect>> {
 fn is_asked(prepared: &Prepared, name: &str) -> bool {
     let numbers = prepared.model.parameters().iter().zip(&prepared.nuisance);
     numbers.filter(|(p, _)| p.effect == name).any(|(_, nuisance)| !nuisance)
+}
+
+/// The variable that drives an effect, of a row and the force there, if one does.
+fn drive(card: &Card<'_>) -> Option<fn(&Moment, f64) -> f64> {
+    match card.mechanism {
+        Mechanism::GiveOfTheRig | Mechanism::ForceChain | Mechanism::ClothAndFibres => Some(|_, force| force),
+        Mechanism::Rate => Some(|moment, _| moment.rate.abs().sqrt()),
+        Mechanism::Rubber | Mechanism::Ends | Mechanism::Section => Some(|moment, _| moment.contraction),
+        Mechanism::PressureChain => Some(|moment, _| moment.pressure),
+        Mechanism::SofteningAndHeat if card.needs == Needs::Temperature => {
+            Some(|moment, _| moment.temperature)
+        }
+        _ => None,
+    }
 }
 
 fn driven_weight(degree: usize) -> f64 {
@@ -233,7 +247,7 @@ impl Bent<'_> {
             .collect();
         if matches!(self.effect.card().mechanism, Mechanism::DryFriction | Mechanism::Rate) {
             // The two strokes may differ.
-            let branch: Vec<f64> = set.moments().iter().map(bulge_effects::Moment::branch).collect();
+            let branch: Vec<f64> = set.moments().iter().map(Moment::branch).collect();
             columns.extend((0..=1).map(|i| times(&|row| BY_STROKE * branch[row] * chebyshev(i, x[row]))));
         }
         if matches!(self.effect.card().needs, Needs::Time | Needs::Cycles | Needs::PressurePath) {
@@ -245,19 +259,10 @@ impl Bent<'_> {
 
     /// An effect depends above all on its drive: compliance of the rig on the force, viscosity on the speed.
     fn along_drive(&self, change: &[f64]) -> Vec<Vec<f64>> {
-        let (set, force) = (&self.tangent.set, &self.tangent.force_as_set);
-        let moments = set.moments();
-        let of = |f: &dyn Fn(usize) -> f64| (0..moments.len()).map(f).collect::<Vec<f64>>();
-        let drive = match self.effect.card().mechanism {
-            Mechanism::GiveOfTheRig | Mechanism::ForceChain | Mechanism::ClothAndFibres => force.clone(),
-            Mechanism::Rate => of(&|row| moments[row].rate.abs().sqrt()),
-            Mechanism::Rubber | Mechanism::Ends | Mechanism::Section => of(&|row| moments[row].contraction),
-            Mechanism::PressureChain => of(&|row| moments[row].pressure),
-            Mechanism::SofteningAndHeat if self.effect.card().needs == Needs::Temperature => {
-                of(&|row| moments[row].temperature)
-            }
-            _ => return Vec::new(),
-        };
+        let Some(drive) = drive(&self.effect.card()) else { return Vec::new() };
+        let (moments, force) = (self.tangent.set.moments(), &self.tangent.force_as_set);
+        let drive: Vec<f64> =
+            moments.iter().zip(force).map(|(moment, force)| drive(moment, *force)).collect();
         let drive = over_range(&drive);
         let norm = (1..=DRIVEN).map(driven_weight).map(|w| w * w).sum::<f64>().sqrt();
         let column = |i: usize| {
@@ -359,5 +364,32 @@ impl Bent<'_> {
             columns.extend(own.into_iter().step_by(step).cloned());
         }
         columns
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_effect_is_driven_by_its_own_variable() {
+        let moment = Moment { rate: -4.0, temperature: 310.0, ..Moment::at_rest(2e5, 0.1) };
+        let catalogue = Catalogue::builtin();
+        let driven = |name: &str| {
+            let effect = catalogue.find(name).unwrap();
+            drive(&effect.card()).map(|drive| drive(&moment, 70.0))
+        };
+        for (name, value) in [
+            ("frame-compliance", Some(70.0)),
+            ("viscous-damping", Some(2.0)),
+            ("bladder-elasticity", Some(0.1)),
+            ("pressure-offset", Some(2e5)),
+            ("temperature", Some(310.0)),
+            // Of the same mechanism as the temperature, which softens no rubber.
+            ("stress-softening", None),
+            ("coulomb-friction", None),
+        ] {
+            assert_eq!(driven(name), value, "{name}");
+        }
     }
 }

@@ -348,9 +348,8 @@ impl Findings<'_> {
     /// Whether the formulas of the effects explain nearly everything as they are, so that the rest is their
     /// own error. If the remaining misfit may be zero, the smaller fraction required for claims is enough.
     fn is_nearly_exact(&self) -> bool {
-        let part = self.last().by_formulas(&self.search.stages[0]);
-        let may_be_none = || misfit(&self.last().linear, self.context.seed).1[0] <= 0.0;
-        part >= RULE.by_formulas[1] || part >= RULE.exact && !self.is_bent() && may_be_none()
+        let may_be_none = || !self.is_bent() && misfit(&self.last().linear, self.context.seed).1[0] <= 0.0;
+        is_nearly_all(self.last().by_formulas(&self.search.stages[0]), may_be_none)
     }
 
     /// Whether the claim rests on form errors; the effects are then only the nearest ones, not what is
@@ -362,6 +361,11 @@ impl Findings<'_> {
             || self.last().added.len() > 1
                 && self.last().by_formulas(&self.search.stages[0]) < RULE.by_formulas[0]
     }
+}
+
+/// Whether the part that the formulas explain is enough, if the rest `may_be_none`.
+fn is_nearly_all(part: f64, may_be_none: impl FnOnce() -> bool) -> bool {
+    part >= RULE.by_formulas[1] || part >= RULE.exact && may_be_none()
 }
 
 /// The sweep with the largest error, or the pressure if there is only one sweep, as a clause that continues a
@@ -382,4 +386,24 @@ pub(crate) fn furthest(comparison: &Comparison) -> String {
     let side = if bias_n < 0.0 { "below" } else { "above" };
     let by = significant(bias_n.abs(), 2);
     format!("; furthest off is {what}, where the readings lie {by} N {side} the model on average: repeat it")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_rest_that_may_be_none_takes_a_smaller_part_to_claim() {
+        let [_, without] = RULE.by_formulas;
+        let between = 0.5 * (RULE.exact + without);
+        for (part, may_be_none, all) in [
+            (without, false, true),
+            (between, false, false),
+            (between, true, true),
+            (RULE.exact, true, true),
+            (0.99 * RULE.exact, true, false),
+        ] {
+            assert_eq!(is_nearly_all(part, || may_be_none), all, "{part} {may_be_none}");
+        }
+    }
 }
