@@ -2,6 +2,7 @@
 
     python validation/mutation.py numerics [--sample 200] [--anew]       # samples until there are 200
     python validation/mutation.py numerics --again                       # those that survived before, after tests were written
+    python validation/mutation.py numerics --others --sample 100         # others, for which no test was written: what the crate's tests are worth
     python validation/docs_table.py mutation [--check]                   # the table in docs/hardening.md
 
 A mutant is the crate with one operator exchanged, one result replaced or one match arm removed. cargo-mutants 27 lists them (`cargo install cargo-mutants`); of
@@ -69,6 +70,7 @@ def main():
     parser.add_argument("--sample", type=int, default=200, help="how many mutants")
     parser.add_argument("--anew", action="store_true", help="forget the sample that there is")
     parser.add_argument("--again", action="store_true", help="run only those that survived before")
+    parser.add_argument("--others", action="store_true", help="another sample, kept beside the first")
     parser.add_argument("--budget", type=float, help="seconds of tests for a mutant: more may survive, which --again looks at with all tests")
     parser.add_argument("--tests", default="", help="regular expression: run only tests whose names contain it, such as new ones with --again")
     arguments = parser.parse_args()
@@ -77,21 +79,22 @@ def main():
     if not (ROOT / "crates" / arguments.crate).is_dir():
         parser.error(f"there is no crate `{arguments.crate}` below crates/")
     kept = json.loads(KEPT.read_text(encoding="utf-8")) if KEPT.exists() else {}
-    before = kept.get(arguments.crate)
+    row = f"{arguments.crate}, others" if arguments.others else arguments.crate
+    before = kept.get(row)
     if arguments.again and before is None:
-        parser.error(f"`{arguments.crate}` has not been sampled yet: leave out --again")
+        parser.error(f"`{row}` has not been sampled yet: leave out --again")
     crate = Crate(arguments.crate, arguments.tests, arguments.budget or float("inf"))
     if arguments.again:
         # Lines move; what is done to which function stays, and of several such places the nearest is meant.
         chosen = [nearest for name in before["survived"] if (nearest := _nearest(name, crate.mutants)) is not None]
         _, survived = crate.tested(chosen)
         counts = {**before, "survived": sorted(survived)}
-        _keep(arguments.crate, counts)
+        _keep(row, counts)
     else:
         empty = {"mutants": 0, "sample": 0, "unviable": 0, "survived": []}
         counts = empty if arguments.anew or before is None else before
         while counts["sample"] < min(arguments.sample, len(crate.mutants)):
-            batch = random.Random(f"{arguments.crate} from {counts['sample']}").sample(crate.mutants, min(BATCH, len(crate.mutants)))
+            batch = random.Random(f"{row} from {counts['sample']}").sample(crate.mutants, min(BATCH, len(crate.mutants)))
             unviable, survived = crate.tested(batch)
             counts = {
                 "mutants": len(crate.mutants),
@@ -99,14 +102,14 @@ def main():
                 "unviable": counts["unviable"] + unviable,
                 "survived": sorted({*counts["survived"], *survived}),
             }
-            _keep(arguments.crate, counts)
+            _keep(row, counts)
     print("\n".join([f"{len(counts['survived'])} of {counts['sample'] - counts['unviable']} that can be built survive:", *counts["survived"]]))
     return 0
 
 
-def _keep(crate, counts):
+def _keep(row, counts):
     # Another crate may have been added since.
-    kept = {**(json.loads(KEPT.read_text(encoding="utf-8")) if KEPT.exists() else {}), crate: counts}
+    kept = {**(json.loads(KEPT.read_text(encoding="utf-8")) if KEPT.exists() else {}), row: counts}
     KEPT.write_text(json.dumps(dict(sorted(kept.items())), indent=1) + "\n", encoding="utf-8")
 
 

@@ -66,8 +66,12 @@ impl Unknowns {
     }
 
     /// The same bulge by its tension. A bulge that reaches 1/q has up to three tensions for one curvature, but
-    /// each tension has one curvature at each radius, and one radius at which that is zero.
+    /// each tension has one curvature at each radius, and one radius at which that is zero. Waists, and bulges that
+    /// lobes or cloth limit, stay as they are.
     pub(crate) fn by_tension(&self, net: &Net<f64>) -> Option<Self> {
+        if self.kind != Kind::Bulge || is_limited(net, 1.0) {
+            return Some(*self);
+        }
         let near = Self { logs: [self.logs[0], self.logs[1].max(FLAT)], ..*self };
         let Middle { bulge, curvature, tension, force, .. } = near.curved(net, near.logs.map(f64::from))?;
         let (reach, slope) = net.cylinder_bulge(tension)?;
