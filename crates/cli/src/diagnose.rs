@@ -17,6 +17,7 @@ use crate::data::{DataArguments, told};
 use crate::failure::Failure;
 use crate::files;
 use crate::restricted::RestrictedArguments;
+use crate::said;
 use progress::Bar;
 
 /// Which physical effect is missing: compares, looks for what the model lacks, adds it, and says how sure that is.
@@ -47,6 +48,9 @@ pub(crate) struct DiagnoseCommand {
     /// Folder for report.html, the plots as SVG files, and diagnosis.json
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// What each stage took, in seconds and fits, on standard error
+    #[arg(long)]
+    progress: bool,
     #[command(flatten)]
     json: Json,
 }
@@ -67,7 +71,11 @@ impl DiagnoseCommand {
         let options =
             DiagnoseOptions { among, tolerance_n, seed: self.seed, progress, ..DiagnoseOptions::new(base) };
         let found = diagnose(&data, &muscle, &options)?;
+        let profile = bar.profile();
         drop(bar);
+        if self.progress {
+            said::message(&profile);
+        }
         let document = pretty(&found)?;
         let mut wrote = String::new();
         if let Some(folder) = &self.out {

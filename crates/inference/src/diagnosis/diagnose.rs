@@ -97,6 +97,7 @@ pub fn diagnose(
         check_memory(data, DIAGNOSED)?;
         let doubt = Doubt::of(muscle);
         let found = answered(data, [muscle, &doubt.doubted], options)?;
+        options.progress.at(0.96, "the geometry in doubt");
         let silent = DiagnoseOptions { progress: Progress::default(), ..options.clone() };
         let mut found = doubt.settled(found, |exact| answered(data, [muscle, exact], &silent))?;
         doubt.say(&mut found, &options.base.catalogue);
@@ -107,6 +108,7 @@ pub fn diagnose(
                 .warnings
                 .insert(0, format!("looked for {names} alone: what is missing may be another effect"));
         }
+        options.progress.at(1.0, "done");
         Ok(found)
     })
 }
@@ -252,7 +254,7 @@ fn on_rows(
         let says = format!("{rows} rows are too few to know their noise");
         return Ok(cannot_tell(&analysis.data, analysis.muscle, &says));
     };
-    progress.at(0.25, "the catalogue");
+    progress.at(0.2, "the catalogue");
     let near = (&base.prepared.model, &base.theta[..]);
     let searched = |averaged_data: &AveragedData, context: &Context<'_>| {
         let search = context.search(&model, near);
@@ -262,16 +264,19 @@ fn on_rows(
     let mut search = searched(&averaged_data, &averaged_data.context(law, options, Some(&fits)))?;
     // The first law includes the part of the base's misfit that no smooth function follows. The residuals of
     // a better model give a better law.
+    progress.at(0.4, "the noise again");
     let again = averaged_data_again(analysis, &search, &averaged_data, used, options);
     let second = Fits::after(Some(&fits));
     let (averaged_data, context) = match again.as_ref().and_then(|again| Some((again, again.law.as_ref()?))) {
         Some((again, law)) => {
             let context = again.context(law, options, Some(&second));
+            progress.at(0.45, "the catalogue again");
             search = searched(again, &context)?;
             (again, context)
         }
         None => (&averaged_data, averaged_data.context(law, options, Some(&fits))),
     };
+    progress.at(0.55, "exchanges");
     let quieter = quieter(&context, averaged_data, &model, &mut search);
     let quieter = quieter.map_err(|error| Stop::at_means(error, &averaged_data.averaged, analysis))?;
     if let Some((law, whitening)) = &quieter {
@@ -308,7 +313,7 @@ fn concluded(
     let is_whole = anew.is_some();
     let limits = || Limits::of(&averaged_data.record, options.limits);
     let next = if is_whole { next_experiment(context, &judged, &limits()) } else { None };
-    progress.at(0.85, "the ladder");
+    progress.at(0.8, "what happened");
     let classes: Vec<(Class, Confidence)> =
         judged.into_iter().map(|judged| (judged.class, judged.confidence)).collect();
     let sd_n = row_sd(context.law, averaged_data);
@@ -331,12 +336,13 @@ fn concluded(
             options.base.effects.iter().chain(found.shown()).cloned().collect();
         compare_after(first, analysis, &effects, found.last().confirmed.numbers())
     };
+    progress.at(0.85, "the ladder");
     let mut answer = compared(&found)?;
     found.event = found.event.take().or_else(|| lowers_nothing(&found, &answer.0.ladder));
     if answer.0.ladder.len() > 1 + found.known && found.event.is_some() {
         answer = compared(&found)?;
     }
-    progress.at(1.0, "done");
+    progress.at(0.92, "what form errors allow");
     let above_n = answer.0.ladder.last().map_or(f64::INFINITY, |rung| rung.rmse_n);
     let groups = &averaged_data.averaged.groups;
     let bent =
