@@ -74,9 +74,9 @@ impl Unknowns {
         }
         let near = Self { logs: [self.logs[0], self.logs[1].max(FLAT)], ..*self };
         let Middle { bulge, curvature, tension, force, .. } = near.curved(net, near.logs.map(f64::from))?;
-        let (reach, slope) = net.cylinder_bulge(tension)?;
-        let (small, whole) = (curvature * force / slope, reach - bulge);
-        let gap = if small < SMALL * net.end_radius { small } else { whole };
+        let (_, slope) = net.cylinder_bulge(tension)?;
+        // To first order: it is a start.
+        let gap = curvature * force / slope;
         let second = (gap / bulge).ln() + self.logs[1] - near.logs[1];
         Some(Self { kind: Kind::Soft, logs: [tension.ln(), second] })
     }

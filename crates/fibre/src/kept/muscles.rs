@@ -1,7 +1,7 @@
 //! Very different muscles, some at the borders of what is solved.
 
 /// Names with keys of muscle files.
-pub(super) const MUSCLES: [(&str, &str); 28] = [
+pub(super) const MUSCLES: [(&str, &str); 30] = [
     ("pleated", "kind = \"pleated\"\nlength = \"110 mm\"\nradius = \"16 mm\"\nfibres = 40\n"),
     (
         "pleated elastic",
@@ -126,5 +126,15 @@ pub(super) const MUSCLES: [(&str, &str); 28] = [
         "pleated soft lobes",
         "kind = \"pleated\"\nlength = \"47 mm\"\nradius = \"33 mm\"\nfibres = 24\nfibre = { stiffness = \"0.5 kN\" }\n\
          effects = { lobes = { circumference = \"234 mm\" } }\n",
+    ),
+    (
+        "braid of soft fibres",
+        "kind = \"braided\"\nlength = \"200 mm\"\nradius = \"10 mm\"\nbraid_angle = \"25 deg\"\nends = \"clamped\"\nfibres = 60\n\
+         fibre = { stiffness = \"57 N\" }\n",
+    ),
+    (
+        "long braid of soft fibres and rubber",
+        "kind = \"braided\"\nlength = \"500 mm\"\nradius = \"5.5 mm\"\nbraid_angle = \"20 deg\"\nends = \"clamped\"\nwall = \"0.5 mm\"\n\
+         fibres = 60\nfibre = { stiffness = \"30 N\" }\neffects = { bladder-elasticity = { c10 = \"20 kPa\" } }\n",
     ),
 ];

@@ -1,7 +1,7 @@
 //! Elastic braids drawn out to a waist: the tension at mid-length is an unknown of its own, since two
 //! tensions can have one curvature.
 
-use bulge_fibre::{Approach, Problem};
+use bulge_fibre::{Approach, FibreError, Problem};
 use bulge_muscles::{Angle, Braided, Construction, Fibre, Force, Length, Muscle, Pressure};
 
 /// Forces of a braid of l0 = 55.8 mm, r0 = 10 mm, 7.22 degrees, 60 fibres of EA = 11 840 N at 32 676 Pa, from
@@ -64,4 +64,21 @@ fn a_long_braid_of_soft_fibres_is_a_cylinder_between_its_ends() {
             "{slenderness} {contraction}"
         );
     }
+}
+
+/// Fibres that would be stretched to twice their length balloon: no yarn bears that, although there is an equilibrium.
+#[test]
+fn fibres_stretched_to_twice_their_length_balloon() {
+    let (angle, pressure): (f64, f64) = (15.4, 5e5);
+    let sin = angle.to_radians().sin();
+    let found = |group: f64| {
+        let stiffness = std::f64::consts::TAU * pressure * 1e-4 / (60.0 * group * sin * sin);
+        let braid = Braided::new(Length::mm(10.0), Angle::deg(angle)).unwrap().with_fibres(60).unwrap();
+        let muscle = Muscle::new("soft", Length::mm(205.0), Construction::Braided(braid)).unwrap();
+        let muscle = muscle.with_fibre(Fibre::new(Force::n(stiffness)).unwrap()).unwrap();
+        Problem::new(&muscle, Pressure::pa(pressure)).unwrap().follow(0.01, Approach::Auto)
+    };
+    let strain = |group: f64| found(group).unwrap().fibre_strain;
+    assert!(strain(0.40) < strain(0.45) && strain(0.45) > 0.7 && strain(0.45) < 1.0);
+    assert!(matches!(found(0.48), Err(FibreError::TooSoft { .. })), "{:?}", found(0.48));
 }
