@@ -430,6 +430,11 @@ impl<D: Real> Net<D> {
 }
 
 impl Net<f64> {
+    /// How far the pressure stretches the fibres of a braid, 2 pi p r0^2/(n EA sin^2(alpha0)).
+    pub(crate) fn softness(&self) -> f64 {
+        self.area_factor * self.compliance * std::f64::consts::TAU / (self.turn * self.turn)
+    }
+
     /// Straight inextensible fibres, circular sections, of half-length 1.
     #[cfg(test)]
     pub(crate) const fn plain() -> Self {

@@ -21,7 +21,10 @@ const BALLOONING: f64 = 0.859;
 
 /// The same for a long net. Its hoop term T q^2 r/((1 + e) sigma), with sigma about 1 + e, carries 2 pi p r
 /// up to e/(1 + e)^2 = 1/4 (at e = 1).
-const BURSTING: f64 = 0.25;
+pub(crate) const BURSTING: f64 = 0.25;
+
+/// Part of the limit from which on fibres count as soft.
+pub(crate) const SOFT: f64 = 0.7;
 
 /// Contraction below 0 up to which a muscle doesn't count as longer than at rest. Rounding of a length makes
 /// as much.
@@ -196,7 +199,7 @@ impl Problem {
         }
         let (group, limit) = self.elastic_group();
         match outcome() {
-            Err(FibreError::NotConverged { .. }) if group > 0.7 * limit => {
+            Err(FibreError::NotConverged { .. }) if group > SOFT * limit => {
                 Err(FibreError::TooSoft { group, limit })
             }
             Err(FibreError::NotConverged { .. }) if self.net.undulates(contraction) => {
@@ -224,10 +227,7 @@ impl Problem {
     fn elastic_group(&self) -> (f64, f64) {
         let net = &self.net;
         if net.turn != 0.0 {
-            return (
-                net.area_factor * net.compliance * std::f64::consts::TAU / (net.turn * net.turn),
-                BURSTING,
-            );
+            return (net.softness(), BURSTING);
         }
         let size = net.half_fibre * net.half_fibre;
         (net.area_factor * net.compliance * std::f64::consts::TAU * size, BALLOONING)

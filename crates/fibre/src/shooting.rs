@@ -26,6 +26,7 @@ use crate::FibreError;
 use crate::continuation::{continuation, softening, stiffening};
 use crate::meridian::{NoTrajectory, SHORTENING, Trajectory, VOLUME, trajectory};
 use crate::net::Net;
+use crate::outcome::{BURSTING, SOFT};
 use crate::quadrature;
 use crate::start::start;
 use crate::unknowns::{FLAT, Unknowns};
@@ -194,7 +195,7 @@ pub(crate) fn solve(
     if failed(&found) && (net.cloth.is_some() || net.has_wall()) {
         found = afresh(stiffening, net, contraction, &mut effort);
     }
-    if failed(&found) && net.turn != 0.0 && net.compliance > 0.0 && straight_contraction(net).is_none() {
+    if failed(&found) && net.turn != 0.0 && net.softness() > SOFT * BURSTING {
         found = afresh(softening, net, contraction, &mut effort);
     }
     Ok((found?, effort))

@@ -139,7 +139,7 @@ impl Problem {
     /// a search for the limit.
     #[must_use]
     pub fn explained(&self, error: FibreError, contraction: f64, approach: Approach) -> FibreError {
-        if !matches!(error, FibreError::NotConverged { .. }) {
+        if !matches!(error, FibreError::NotConverged { .. } | FibreError::TooSoft { .. }) {
             return error;
         }
         match self.range_end(approach) {
@@ -282,7 +282,8 @@ impl Problem {
             Err(
                 error @ (FibreError::NotConverged { .. }
                 | FibreError::Slack { .. }
-                | FibreError::Undulates { .. }),
+                | FibreError::Undulates { .. }
+                | FibreError::TooSoft { .. }),
             ) => error,
             Err(error) => return Err(error),
         };
@@ -435,7 +436,10 @@ impl Problem {
 
 /// Whether a search ended without an equilibrium, where another way may lead to one.
 fn is_lost(error: &FibreError) -> bool {
-    matches!(error, FibreError::NotConverged { .. } | FibreError::Undulates { .. })
+    matches!(
+        error,
+        FibreError::NotConverged { .. } | FibreError::Undulates { .. } | FibreError::TooSoft { .. }
+    )
 }
 
 /// dF/dl with the gas enclosed, (p + pa) V^g constant: dp/dl = -g (p + pa) V_l/(V + g (p + pa) V_p) in
