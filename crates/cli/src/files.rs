@@ -1,8 +1,10 @@
 //! Files that appear whole or not at all.
 
 use bulge_muscles::output;
+use std::ffi::OsString;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::failure::{Failure, wants_json};
@@ -13,8 +15,39 @@ const STDOUT: [&str; 4] = ["-", "/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"];
 /// Whether a file was written to standard output: messages of the command would corrupt it.
 static IS_TAKEN: AtomicBool = AtomicBool::new(false);
 
-/// Writes a whole file, or writes into the target of a name that is no regular file; "-" is standard output.
+/// The files that the command line names, and that there were when the command began.
+static NAMED: OnceLock<Vec<PathBuf>> = OnceLock::new();
+
+/// Keeps in mind which files the command line names: none that it names twice is written, because it is read too.
+pub(crate) fn named(arguments: &[OsString]) {
+    let values = arguments.iter().skip(1).flat_map(|argument| {
+        let value = argument.to_str().and_then(|text| text.split_once('='));
+        [Some(PathBuf::from(argument)), value.map(|(_, value)| PathBuf::from(value))]
+    });
+    let files = values.flatten().filter(|path| path.is_file());
+    let _ = NAMED.set(files.filter_map(|path| output::file_of(&path)).collect());
+}
+
+/// Refuses to write over a file that the command reads.
+pub(crate) fn is_not_read(path: &Path) -> Result<(), Failure> {
+    let (Some(named), Some(file)) = (NAMED.get(), output::file_of(path)) else { return Ok(()) };
+    if named.iter().filter(|named| **named == file).count() < 2 {
+        return Ok(());
+    }
+    let source =
+        io::Error::new(io::ErrorKind::InvalidInput, "the command reads it; give the name of another file");
+    Err(Failure::Output { path: path.to_path_buf(), source })
+}
+
+/// Writes a whole file that the command doesn't read, or writes into the target of a name that is no regular file; "-" is
+/// standard output.
 pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+    is_not_read(path)?;
+    replace(path, bytes)
+}
+
+/// The same for a file that may take the place of one that is read.
+pub(crate) fn replace(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     let failed = |source| Failure::Output { path: path.to_path_buf(), source };
     if is_stdout(path) {
         return take_stdout(bytes).map_err(failed);

@@ -77,7 +77,7 @@ impl FitCommand {
             None => None,
         };
         if let Some(path) = &self.out {
-            files::write(path, learnt.model.as_bytes())?;
+            files::replace(path, learnt.model.as_bytes())?;
         }
         if self.json.wanted {
             let document = learnt.document().with_drawn(drawn.as_ref().map(|(drawn, _)| drawn));

@@ -141,6 +141,7 @@ fn main() -> ExitCode {
             ));
         }
     };
+    files::named(&given);
     let arguments = match Arguments::try_parse_from(given) {
         Ok(arguments) => arguments,
         Err(error) => {

@@ -112,6 +112,7 @@ impl ShapeCommand {
             if files::is_stdout(path) {
                 files::write(path, &vtp_bytes(&drawn)?)?;
             } else {
+                files::is_not_read(path)?;
                 write_vtp(path, &drawn)?;
             }
         }

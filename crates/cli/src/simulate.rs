@@ -87,16 +87,26 @@ impl SimulateCommand {
             let source = io::Error::new(io::ErrorKind::IsADirectory, "it is a folder; move it away");
             return Err(Failure::Output { path: path.clone(), source });
         }
+        // A simulation writes over another one, and over nothing else.
+        let [data, _, truth] = &all;
+        if data.exists() && !truth.exists() {
+            let what = format!(
+                "{} isn't of a simulation, which has a truth.json beside it; give another folder",
+                data.display()
+            );
+            return Err(Failure::Value { option: "--out", what });
+        }
         Ok(())
     }
 }
 
-/// Writes the three files, each whole.
+/// Writes the three files, each whole. The truth comes first: by it the others are known as those of a simulation,
+/// even if they were never finished.
 fn write(folder: &Path, found: &Simulation, document: &str) -> Result<[PathBuf; 3], Failure> {
     files::folder(folder)?;
     let paths = FILES.map(|name| folder.join(name));
     let muscle = to_toml(&found.muscle);
-    for (path, content) in paths.iter().zip([found.csv.as_str(), &muscle, document]) {
+    for (path, content) in paths.iter().zip([found.csv.as_str(), &muscle, document]).rev() {
         files::write(path, content.as_bytes())?;
     }
     Ok(paths)

@@ -69,7 +69,7 @@ pub enum FibreError {
     },
     /// A user's own formula has no value or slope at a radius that the wall may take.
     #[error(
-        "at contraction {:.4} % the wall may be stretched to l1 = {along:.4}, l2 = {around:.4}, where the formula for `{what}` or its slope isn't finite; write one that is finite there", 100.0 * contraction
+        "at contraction {:.4} % the wall may be stretched to l1 = {along:.4}, l2 = {around:.4}, where the formula for `{what}` or its slope isn't finite; write one that is finite there", percent(*contraction)
     )]
     FormulaEnds {
         /// Asked contraction.
@@ -83,7 +83,7 @@ pub enum FibreError {
     },
     /// The slope of a user's own formula jumps.
     #[error(
-        "no equilibrium is computed at contraction {:.4} %: the slope of the formula for `{what}` jumps at l1 = {along:.4}, l2 = {around:.4}, so that the wall would keep that radius over a length; write a kink whose slope is continuous, such as max(l2 - 1.2, 0)^2", 100.0 * contraction
+        "no equilibrium is computed at contraction {:.4} %: the slope of the formula for `{what}` jumps at l1 = {along:.4}, l2 = {around:.4}, so that the wall would keep that radius over a length; write a kink whose slope is continuous, such as max(l2 - 1.2, 0)^2", percent(*contraction)
     )]
     FormulaJumps {
         /// Asked contraction.
@@ -104,7 +104,7 @@ pub enum FibreError {
     /// The contraction lies beyond the one at which the force vanishes.
     #[error(
         "no equilibrium with a pulling force at contraction {:.4} %: the limit of this muscle is {:.4} %, where the force vanishes",
-        100.0 * contraction, 100.0 * limit
+        percent(*contraction), percent(*limit)
     )]
     BeyondLimit {
         /// Asked contraction.
@@ -113,7 +113,7 @@ pub enum FibreError {
         limit: f64,
     },
     /// Nothing is left between the fittings.
-    #[error("no equilibrium at contraction {:.4} %: a muscle that contracts by 100 % has no length (a contraction without unit is a fraction: write \"20 %\" or 0.2)", 100.0 * contraction)]
+    #[error("no equilibrium at contraction {:.4} %: a muscle that contracts by 100 % has no length (a contraction without unit is a fraction: write \"20 %\" or 0.2)", percent(*contraction))]
     NoLength {
         /// Asked contraction.
         contraction: f64,
@@ -121,7 +121,7 @@ pub enum FibreError {
     /// The muscle would have to be longer than its inextensible fibres allow.
     #[error(
         "no equilibrium at contraction {:.4} %: it must be greater than {:.4} %, where the inextensible fibres are drawn straight (give `fibre.stiffness` to let them stretch)",
-        100.0 * contraction, 100.0 * limit
+        percent(*contraction), percent(*limit)
     )]
     TooLong {
         /// Asked contraction.
@@ -142,7 +142,7 @@ pub enum FibreError {
     },
     /// The muscle would be drawn out farther than any fibre bears.
     #[error(
-        "no equilibrium at contraction {:.4} %: its fibres would be stretched by {:.1} %, and none bears more than {:.0} %; ask for less length or force", 100.0 * contraction, 100.0 * strain, 100.0 * MOST_STRAIN
+        "no equilibrium at contraction {:.4} %: its fibres would be stretched by {:.1} %, and none bears more than {:.0} %; ask for less length or force", percent(*contraction), 100.0 * strain, 100.0 * MOST_STRAIN
     )]
     Overstretched {
         /// Asked contraction.
@@ -152,7 +152,7 @@ pub enum FibreError {
     },
     /// The muscle would have to push, and the contraction at which its force vanishes was not found.
     #[error(
-        "no equilibrium with a pulling force at contraction {:.4} %: the muscle would push with {:.6} N", 100.0 * contraction, -force_n
+        "no equilibrium with a pulling force at contraction {:.4} %: the muscle would push with {:.6} N", percent(*contraction), -force_n
     )]
     WouldPush {
         /// Asked contraction.
@@ -161,7 +161,7 @@ pub enum FibreError {
         force_n: f64,
     },
     /// A muscle pulls; it can't push.
-    #[error("no equilibrium with a force of {force_n:.6} N: a muscle only pulls, from 0 N at its contraction limit of {:.4} %", 100.0 * limit)]
+    #[error("no equilibrium with a force of {force_n:.6} N: a muscle only pulls, from 0 N at its contraction limit of {:.4} %", percent(*limit))]
     Pushes {
         /// Asked force \[N\].
         force_n: f64,
@@ -169,7 +169,7 @@ pub enum FibreError {
         limit: f64,
     },
     /// The volume is larger than at any contraction at which the muscle pulls.
-    #[error("no equilibrium with a volume of {:.4} ml: this muscle holds at most {:.4} ml, at contraction {:.4} %, {why}", 1e6 * volume_m3, 1e6 * high_m3, 100.0 * contraction)]
+    #[error("no equilibrium with a volume of {:.4} ml: this muscle holds at most {:.4} ml, at contraction {:.4} %, {why}", 1e6 * volume_m3, 1e6 * high_m3, percent(*contraction))]
     VolumeTooLarge {
         /// Asked volume \[m^3\].
         volume_m3: f64,
@@ -189,7 +189,7 @@ pub enum FibreError {
         low_m3: f64,
     },
     /// The force is larger than any that was found at any length.
-    #[error("no equilibrium with a force of {force_n:.6} N: the largest force found is {high_n:.6} N, at contraction {:.4} %", 100.0 * contraction)]
+    #[error("no equilibrium with a force of {force_n:.6} N: the largest force found is {high_n:.6} N, at contraction {:.4} %", percent(*contraction))]
     ForceTooLarge {
         /// Asked force \[N\].
         force_n: f64,
@@ -217,7 +217,7 @@ pub enum FibreError {
     NothingToShoot,
     /// The rubber carries more than the pressure: there is no equilibrium with taut fibres, and one with
     /// slack ones isn't computed.
-    #[error("at contraction {:.4} % the fibres are slack{}: the bladder alone carries more than the pressure there; more pressure or less contraction makes them taut", 100.0 * contraction, slack_from(*limit))]
+    #[error("at contraction {:.4} % the fibres are slack{}: the bladder alone carries more than the pressure there; more pressure or less contraction makes them taut", percent(*contraction), slack_from(*limit))]
     Slack {
         /// Asked contraction.
         contraction: f64,
@@ -225,13 +225,13 @@ pub enum FibreError {
         limit: Option<f64>,
     },
     /// The fibres don't hold the long middle: it would bulge and narrow in turn.
-    #[error("no equilibrium with one middle at contraction {:.4} %: the gas acts so far inside the fibres that they don't hold a cylinder of this length, it would bulge and narrow in turn; a thinner wall or a shorter muscle has one", 100.0 * contraction)]
+    #[error("no equilibrium with one middle at contraction {:.4} %: the gas acts so far inside the fibres that they don't hold a cylinder of this length, it would bulge and narrow in turn; a thinner wall or a shorter muscle has one", percent(*contraction))]
     Undulates {
         /// Asked contraction.
         contraction: f64,
     },
     /// Newton's method did not converge.
-    #[error("the equilibrium at contraction {:.4} % did not converge: residual {residual:.2e} after {iterations} iterations; try a contraction nearer to the middle of the muscle's range", 100.0 * contraction)]
+    #[error("the equilibrium at contraction {:.4} % did not converge: residual {residual:.2e} after {iterations} iterations; try a contraction nearer to the middle of the muscle's range", percent(*contraction))]
     NotConverged {
         /// Asked contraction.
         contraction: f64,
@@ -242,8 +242,14 @@ pub enum FibreError {
     },
 }
 
+/// In percent, with no sign where four digits show nothing else.
+fn percent(contraction: f64) -> f64 {
+    let percent = 100.0 * contraction;
+    if percent.abs() < 5e-5 { 0.0 } else { percent }
+}
+
 fn slack_from(limit: Option<f64>) -> String {
-    limit.map_or_else(String::new, |limit| format!(", as they are from {:.4} % on", 100.0 * limit))
+    limit.map_or_else(String::new, |limit| format!(", as they are from {:.4} % on", percent(limit)))
 }
 
 impl FibreError {

@@ -86,7 +86,7 @@ impl Case {
             arguments: "simulate muscle.toml --protocol protocol.toml --seed 1 --out out",
             again: "",
             read: vec![("protocol.toml", protocol.to_owned()), ("muscle.toml", MUSCLE.to_owned())],
-            before: &["out/data.csv"],
+            before: &["out/data.csv", "out/truth.json"],
         }
     }
 

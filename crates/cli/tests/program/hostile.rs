@@ -1,6 +1,6 @@
 //! Files of strangers: whatever they hold, a terminal shows text, on the lines that we gave it, with an end.
 
-use crate::support::{Folder, MUSCLE, PROTOCOL, bulge};
+use crate::support::{Folder, MUSCLE, PROTOCOL, bulge, refused};
 use bulge_muscles::shown::is_shown;
 use std::fs;
 
@@ -285,5 +285,25 @@ fn arguments_and_names_of_files() {
                 arguments.iter().map(|word| &word[..word.floor_char_boundary(100_000)]).collect();
             check(&cut);
         }
+    }
+}
+
+/// Whatever the command and whatever the option: a file that the command line names twice isn't written.
+#[test]
+fn a_file_that_is_read_is_not_written_over() {
+    let folder = Folder::new("over");
+    let text = fs::read_to_string(MUSCLE).unwrap();
+    for (name, call) in [
+        ("braid.csv", "curve FILE --pressure 1bar --points 5 --csv FILE"),
+        ("braid.svg", "curve FILE --pressure 1bar --points 5 --plot=FILE"),
+        ("braid.vtp", "shape FILE --pressure 1bar --contraction 5% --vtk SAME"),
+    ] {
+        let file = folder.write(name, &text);
+        let same = folder.path(&format!("./{name}"));
+        let call: Vec<String> =
+            call.split(' ').map(|word| word.replace("FILE", &file).replace("SAME", &same)).collect();
+        let call: Vec<&str> = call.iter().map(String::as_str).collect();
+        refused(&call, 1, &[name, "the command reads it; give the name of another file"]);
+        assert_eq!(fs::read_to_string(&file).unwrap(), text, "{name}");
     }
 }

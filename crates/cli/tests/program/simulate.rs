@@ -202,4 +202,15 @@ fn bad_input_is_answered_with_one_message() {
         &["muscle.toml would be written over"],
     );
     assert!(!folder.names().contains(&"data.csv".to_owned()));
+    // Nor measurements that no simulation made; a simulation is.
+    let measured = Folder::new("measured");
+    measured.write("data.csv", "my readings");
+    let out = measured.0.display().to_string();
+    let call = ["simulate", MUSCLE, "--protocol", PROTOCOL, "--out", &out];
+    refused(&call, 1, &["data.csv isn't of a simulation", "give another folder"]);
+    let data = || fs::read_to_string(measured.0.join("data.csv")).unwrap();
+    assert_eq!((data().as_str(), measured.names().len()), ("my readings", 1));
+    measured.write("truth.json", "{}");
+    stdout(&call);
+    assert!(measured.names().len() == 3 && data() != "my readings");
 }
