@@ -5,7 +5,7 @@ use bulge_muscles::{Muscle, Parameter};
 use bulge_numerics::Dual;
 
 use crate::FibreError;
-use crate::outcome::{Approach, Outcome, Scheme, Solution};
+use crate::outcome::{Approach, BURSTING, Outcome, Scheme, Solution};
 use crate::parts::{OWN_PARTS, PARTS, Parts};
 use crate::problem::Problem;
 use crate::search::{FAR, Goal, LEAST_ROOM, Seen};
@@ -126,10 +126,13 @@ impl Problem {
 
     fn followed(&self, scheme: Scheme, contraction: f64, approach: Approach) -> Result<Found, FibreError> {
         self.at(scheme, contraction, None).or_else(|error| {
-            let error = self.explained(error, contraction, approach);
             if !is_lost(&error) {
                 return Err(error);
             }
+            let error = match error {
+                FibreError::Undulates { .. } => error,
+                _ => self.within_limit(error, contraction, approach)?,
+            };
             self.walked(scheme, contraction, false).ok_or(error)
         })
     }
@@ -139,12 +142,27 @@ impl Problem {
     /// a search for the limit.
     #[must_use]
     pub fn explained(&self, error: FibreError, contraction: f64, approach: Approach) -> FibreError {
-        if !matches!(error, FibreError::NotConverged { .. } | FibreError::TooSoft { .. }) {
+        if !is_lost(&error) || matches!(error, FibreError::Undulates { .. }) {
             return error;
         }
+        self.within_limit(error, contraction, approach).unwrap_or_else(|explained| explained)
+    }
+
+    /// The same error where there may be an equilibrium: before the limit, or where no limit was found. If fibres
+    /// are soft, no limit means no equilibrium.
+    ///
+    /// # Errors
+    /// What is told instead of it: that the contraction is beyond the limit, or that the fibres are too soft.
+    fn within_limit(
+        &self,
+        error: FibreError,
+        contraction: f64,
+        approach: Approach,
+    ) -> Result<FibreError, FibreError> {
         match self.range_end(approach) {
-            Ok(end) if contraction > end.contraction() => end.beyond(contraction),
-            _ => error,
+            Ok(end) if contraction > end.contraction() => Err(end.beyond(contraction)),
+            Err(_) if matches!(error, FibreError::TooSoft { .. }) => Err(error),
+            _ => Ok(error),
         }
     }
 
@@ -279,19 +297,10 @@ impl Problem {
         let error = match self.at(scheme, contraction, None) {
             Ok(found) if self.pulls(&found.response) => return Ok(found),
             Ok(found) => FibreError::WouldPush { contraction, force_n: found.response.force_n },
-            Err(
-                error @ (FibreError::NotConverged { .. }
-                | FibreError::Slack { .. }
-                | FibreError::Undulates { .. }
-                | FibreError::TooSoft { .. }),
-            ) => error,
+            Err(error) if is_lost(&error) || matches!(error, FibreError::Slack { .. }) => error,
             Err(error) => return Err(error),
         };
-        // Say where the limit is, if that can be found.
-        match self.range_end(approach) {
-            Ok(end) if contraction > end.contraction() => return Err(end.beyond(contraction)),
-            _ => {}
-        }
+        let error = self.within_limit(error, contraction, approach)?;
         match self.longest() {
             Some(limit) if contraction <= limit => Err(FibreError::TooLong { contraction, limit }),
             // Go step by step from an equilibrium that exists.
@@ -434,12 +443,16 @@ impl Problem {
     }
 }
 
+/// The softness from which on a braid has no equilibrium that pulls: random ones pull up to 0.47.
+const SOFTEST: f64 = 0.5;
+
 /// Whether a search ended without an equilibrium, where another way may lead to one.
 fn is_lost(error: &FibreError) -> bool {
-    matches!(
-        error,
-        FibreError::NotConverged { .. } | FibreError::Undulates { .. } | FibreError::TooSoft { .. }
-    )
+    match error {
+        FibreError::NotConverged { .. } | FibreError::Undulates { .. } => true,
+        FibreError::TooSoft { group, limit } => *limit <= BURSTING && *group < SOFTEST,
+        _ => false,
+    }
 }
 
 /// dF/dl with the gas enclosed, (p + pa) V^g constant: dp/dl = -g (p + pa) V_l/(V + g (p + pa) V_p) in

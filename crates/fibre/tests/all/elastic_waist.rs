@@ -82,3 +82,38 @@ fn fibres_stretched_to_twice_their_length_balloon() {
     assert!(strain(0.40) < strain(0.45) && strain(0.45) > 0.7 && strain(0.45) < 1.0);
     assert!(matches!(found(0.48), Err(FibreError::TooSoft { .. })), "{:?}", found(0.48));
 }
+
+/// Soft braids that no start leads to: where a cylinder at the fitting has just ceased to be (just above the group 7/27), and
+/// between fittings wider than at rest, where stiff fibres have a waist. Forces from an independent integration (SciPy, DOP853,
+/// residuals below 1e-12). Beyond the limit it is the limit that is told.
+#[test]
+fn soft_braids_are_walked_to() {
+    let of = |length: &str, angle: &str, stiffness: &str, more: &str| {
+        let text = format!(
+            "name = \"soft\"\nkind = \"braided\"\nlength = \"{length} mm\"\nradius = \"10 mm\"\nbraid_angle = \"{angle} deg\"\n\
+             fibres = 60\nfibre = {{ stiffness = \"{stiffness} N\" }}\nends = \"clamped\"\n{more}"
+        );
+        Problem::new(&bulge_muscles::from_toml(&text, "soft.toml").unwrap(), Pressure::bar(3.0)).unwrap()
+    };
+    let asked = |problem: &Problem, contraction: f64| {
+        problem.solve(bulge_fibre::Given::Contraction(contraction), Approach::Auto)
+    };
+    let narrow = of("100", "40", "28.855875773070295", "");
+    for (contraction, force) in [(0.055, 8.856), (0.07, 0.769)] {
+        let found = asked(&narrow, contraction).unwrap();
+        assert!((found.force_n - force).abs() < 1e-3, "{} N instead of {force} N", found.force_n);
+    }
+    let beyond = asked(&narrow, 0.2).unwrap_err();
+    assert!(
+        matches!(beyond, FibreError::BeyondLimit { limit, .. } if (limit - 0.071_44).abs() < 1e-5),
+        "{beyond}"
+    );
+    let wide = of(
+        "72.66734293143807",
+        "31.15418077004014",
+        "41.74546549218538",
+        "[effects.end-radius]\nradius = \"15 mm\"\n",
+    );
+    let found = asked(&wide, 0.027_389_171_209_554_097).unwrap();
+    assert!((found.force_n - 120.0).abs() < 1e-6, "{} N", found.force_n);
+}
