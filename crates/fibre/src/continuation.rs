@@ -24,7 +24,7 @@ pub(crate) fn stiffening(
     contraction: f64,
     effort: &mut Effort,
 ) -> Result<Unknowns, FibreError> {
-    along(|part| net.with_walls(part), |_, at| Some(at), [1e-2, 0.1, 1e-9], contraction, effort)
+    along(|part| net.with_walls(part), |_, at, _| Some(at), [1e-2, 0.1, 1e-9], contraction, effort)
 }
 
 /// Solves at the same contraction with stiff fibres first, then softens them in adaptive steps. Soft fibres of
@@ -36,7 +36,10 @@ pub(crate) fn softening(
     effort: &mut Effort,
 ) -> Result<Unknowns, FibreError> {
     let softer = |part: f64| Net { compliance: part * net.compliance, ..net.clone() };
-    along(softer, |net, at| at.by_tension(net), [0.5, 0.5, 1e-4], contraction, effort)
+    let by_tension = |net: &Net<f64>, at: Unknowns, effort: &mut Effort| {
+        newton(net, contraction, at.by_tension(net)?, ON_THE_WAY, effort).ok()
+    };
+    along(softer, by_tension, [0.5, 0.5, 1e-4], contraction, effort)
 }
 
 /// Solves for a part of what makes a net hard to solve, and lets it grow to the whole in adaptive steps. The
@@ -44,7 +47,7 @@ pub(crate) fn softening(
 /// what the unknowns stand for on the way.
 fn along(
     with_part: impl Fn(f64) -> Net<f64>,
-    other: impl Fn(&Net<f64>, Unknowns) -> Option<Unknowns>,
+    other: impl Fn(&Net<f64>, Unknowns, &mut Effort) -> Option<Unknowns>,
     [first, factor, least]: [f64; 3],
     contraction: f64,
     effort: &mut Effort,
@@ -59,7 +62,7 @@ fn along(
         let easy = with_part(part);
         if let Some(start) = start(&easy, contraction)
             && let Ok(found) = newton(&easy, contraction, start, ON_THE_WAY, effort)
-            && let Some(found) = other(&easy, found)
+            && let Some(found) = other(&easy, found, effort)
         {
             break found;
         }

@@ -8,6 +8,8 @@ use crate::net::{Local, Net};
 
 /// Radii at which the fibres are tested for slackness.
 const SAMPLES: usize = 17;
+/// Halvings after which a bracket is as narrow as rounding.
+const HALVINGS: u32 = 200;
 /// A ratio of push to bulge that is next to nothing.
 const SLIGHT: f64 = 1e-304;
 /// Margin, as a part of H, by which H must be too small for the fibres to count as slack.
@@ -163,9 +165,15 @@ impl<D: Real> Net<D> {
 }
 
 impl<D: Real> Net<D> {
-    /// The bulge of the cylinder whose elastic fibres have a tension, and -d(push - h)/dr there at this tension. The
-    /// push exceeds the hoop term of narrower radii. `None` if it doesn't at the fitting's. Lobes and cloth aren't
-    /// asked for.
+    /// The bulge of the widest cylinder whose elastic fibres have a tension, and -d(push - h)/dr there at this tension,
+    /// which is positive. `None` if there is none wider than the fitting, or if rubber makes it no such cylinder. Lobes
+    /// and cloth aren't asked for.
+    ///
+    /// ```text
+    /// push - h = 2 pi a (r + depth) - T q^2 r/((1 + e) sigma)        of bare fibres, sigma^2 = (1 + e)^2 - q^2 r^2
+    /// ```
+    /// is concave in r and falls without limit towards sigma = 0. It has one zero if it is positive at the fitting; with
+    /// gas inside the fibres it may be negative there, and has two. The outer one is meant.
     pub(crate) fn cylinder_bulge(&self, tension: D) -> Option<(D, D)> {
         let gap = |bulge: D| {
             let r = self.end_radius + bulge;
@@ -173,30 +181,55 @@ impl<D: Real> Net<D> {
             let hoop_r = local.hoop_r - local.hoop_t * local.tension_r;
             (self.push(r) - local.hoop, hoop_r - self.section(r).area_rr)
         };
-        // Up to the radius at which the fibres lie along the circumference, where the hoop term has no limit.
+        let values = |bulge: f64| {
+            let (value, slope) = gap(D::from(bulge));
+            (value.value(), slope.value())
+        };
         let room =
             (tension * self.compliance + 1.0).value() / self.turn.value().abs() - self.end_radius.value();
         let (mut low, mut high) = (0.0, room);
-        if high.is_nan() || high <= 0.0 || gap(D::from(0.0)).0.value() <= 0.0 {
+        if high.is_nan() || high <= 0.0 {
             return None;
         }
+        // Up to where it is positive, if that is not at the fitting: it rises until then.
+        for _ in 0..HALVINGS {
+            let (value, slope) = values(low);
+            if value > 0.0 {
+                break;
+            }
+            let middle = 0.5 * (low + high);
+            let (value, slope_there) = values(middle);
+            if slope >= 0.0 {
+                return None;
+            }
+            if value > 0.0 || slope_there < 0.0 {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        if values(low).0.partial_cmp(&0.0) != Some(std::cmp::Ordering::Greater) {
+            return None;
+        }
+        high = room;
         let mut at = 0.5 * (low + high);
-        for _ in 0..200 {
-            let (value, slope) = gap(D::from(at));
-            if value.value() > 0.0 {
+        for _ in 0..HALVINGS {
+            let (value, slope) = values(at);
+            if value > 0.0 {
                 low = at;
             } else {
                 high = at;
             }
-            let newton = at + (value / slope).value();
+            let newton = at + value / slope;
             if (newton - at).abs() <= 1e-9 * at {
+                let (value, slope) = gap(D::from(at));
                 let bulge = value / slope + at;
-                return Some((bulge, gap(bulge).1));
+                let slope = gap(bulge).1;
+                // Next to a pole any step is small.
+                let is_zero = value.value().abs() <= 1e-6 * self.push(self.end_radius + bulge).value().abs();
+                return (is_zero && slope.value() > 0.0).then_some((bulge, slope));
             }
             at = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
-            if high - low <= f64::EPSILON * high {
-                break;
-            }
         }
         None
     }
@@ -290,5 +323,64 @@ mod tests {
         let border = 0.5 * PI / wave;
         assert!(!net(0.999 * border).undulates(contraction) && net(1.001 * border).undulates(contraction));
         assert!(!Net { depth: 0.0, ..net(10.0 * border) }.undulates(contraction));
+    }
+
+    /// A soft braid of 25 degrees, group 0.35.
+    fn soft([end_radius, depth, area_factor]: [f64; 3]) -> Net<f64> {
+        let (sin, cos) = 25.0_f64.to_radians().sin_cos();
+        let net = Net {
+            end_radius,
+            depth,
+            area_factor,
+            turn: sin,
+            cos_rest: cos,
+            sin2_rest: sin * sin,
+            ..Net::plain()
+        };
+        Net { compliance: 0.35 * sin * sin / (2.0 * PI), half_fibre: 20.0, ..net }
+    }
+
+    /// The widest radius at which push and hoop term balance, with derivatives, also where gas inside the fibres makes a
+    /// second one nearer to a narrow fitting.
+    #[test]
+    fn the_cylinder_of_a_tension() {
+        for form in [[1.0, 0.0, 1.0], [1.0, 0.3, 0.97], [1.0, -0.2, 1.0], [0.5, -0.2, 0.9], [0.3, -0.2, 1.0]]
+        {
+            let net = soft(form);
+            for strain in [0.1, 0.3, 0.6, 0.9] {
+                let tension = strain / net.compliance;
+                let gap = |bulge: f64| {
+                    let r = net.end_radius + bulge;
+                    net.push(r) - net.local(r, tension).hoop
+                };
+                let room = (1.0 + strain) / net.turn - net.end_radius;
+                let places: Vec<f64> = (1..4000).map(|i| room * f64::from(i) / 4000.0).collect();
+                let widest = places.iter().rposition(|place| gap(*place) > 0.0);
+                let Some((bulge, slope)) = net.cylinder_bulge(tension) else {
+                    assert!(widest.is_none(), "{form:?} {strain}");
+                    continue;
+                };
+                let widest = places[widest.unwrap()];
+                assert!(
+                    widest <= bulge && bulge < widest + room / 3900.0,
+                    "{form:?} {strain}: {bulge} {widest}"
+                );
+                assert!(gap(bulge).abs() < 1e-12 * net.push(net.end_radius + bulge), "{form:?} {strain}");
+                let h = 1e-5;
+                let differences = (gap(bulge - h) - gap(bulge + h)) / (2.0 * h);
+                assert!((slope / differences - 1.0).abs() < 1e-6, "{form:?} {strain}: {slope} {differences}");
+                let moving =
+                    net.lift::<1>().cylinder_bulge(bulge_numerics::Dual::variable(tension, 0)).unwrap();
+                let step = 1e-5 * tension;
+                let [more, less] = [step, -step].map(|step| net.cylinder_bulge(tension + step).unwrap());
+                for (moving, more, less) in [(moving.0, more.0, less.0), (moving.1, more.1, less.1)] {
+                    let differences = (more - less) / (2.0 * step);
+                    assert!((moving.gradient()[0] - differences).abs() < 1e-6 * differences.abs() + 1e-9);
+                }
+            }
+        }
+        // Fibres of this length don't reach so wide a fitting.
+        let wide = soft([3.0, 0.0, 1.0]);
+        assert!(wide.cylinder_bulge(0.02 / wide.compliance).is_none());
     }
 }

@@ -113,7 +113,7 @@ impl Problem {
     fn backwards(&self, scheme: Scheme, solved: &mut [(f64, Result<Found, FibreError>)]) {
         let mut last = [None, None];
         for (contraction, found) in solved.iter_mut().rev() {
-            if let (Err(FibreError::NotConverged { .. }), Some(near)) =
+            if let (Err(FibreError::NotConverged { .. } | FibreError::TooSoft { .. }), Some(near)) =
                 (&*found, extrapolate(last, *contraction))
                 && let Ok(better) = self.at(scheme, *contraction, Some(near))
             {
@@ -150,7 +150,7 @@ impl Problem {
     }
 }
 
-/// A start from the last two solutions on the same side, linear in the contraction.
+/// A start from the last two solutions of the same kind, linear in the contraction.
 fn extrapolate(last: [Option<(f64, Unknowns)>; 2], contraction: f64) -> Option<Unknowns> {
     let (x1, one) = last[1]?;
     let Some((x0, zero)) = last[0] else { return Some(one) };

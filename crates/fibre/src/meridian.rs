@@ -180,7 +180,7 @@ pub(crate) struct Middle<D> {
     pub(crate) bulge: D,
     /// Curvature of the meridian, of the same sign and not zero.
     pub(crate) curvature: D,
-    /// Tension of all fibres; it belongs to the curvature by [`Net::at_equator`].
+    /// Tension of all fibres, with which push - h = k N.
     pub(crate) tension: D,
     /// Meridional force N.
     pub(crate) force: D,

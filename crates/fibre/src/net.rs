@@ -430,7 +430,8 @@ impl<D: Real> Net<D> {
 }
 
 impl Net<f64> {
-    /// How far the pressure stretches the fibres of a braid, 2 pi p r0^2/(n EA sin^2(alpha0)).
+    /// How far the pressure stretches the fibres of a braid, 2 pi a p r0^2/(n EA sin^2(alpha0)) with a the
+    /// [`Net::area_factor`].
     pub(crate) fn softness(&self) -> f64 {
         self.area_factor * self.compliance * std::f64::consts::TAU / (self.turn * self.turn)
     }

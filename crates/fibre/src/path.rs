@@ -41,8 +41,9 @@ const MOST_PLACES: usize = 300;
 /// ln|k| below which a middle is too flat, and ln|B| below which it is straight.
 const FLATTEST: f64 = -2e4;
 const STRAIGHT: f64 = -9.0;
-/// Axial force in p R^2 and strain of the fibres beyond which the fibres are drawn out far enough.
-const DRAWN: [f64; 2] = [1e9, 0.5];
+/// Axial force in p R^2 and strain of the fibres beyond which the fibres are drawn out far enough, and the strain where
+/// the pressure stretches soft ones.
+const DRAWN: [f64; 3] = [1e9, 0.5, 1.0];
 /// Derivative of ln S by ln|B| above which a waist is as narrow as its fibres make it.
 const STEEP: f64 = 1e5;
 /// Places that are followed after the force has vanished.
@@ -123,7 +124,9 @@ impl<'a> Paths<'a> {
 fn covers(path: &[Place], side: f64, first: f64) -> bool {
     path.windows(2).any(|pair| {
         let [a, b] = [0, 1].map(|i| pair[i].unknowns);
-        a.kind != Kind::Soft && a.kind.side() * side > 0.0 && (a.logs[0] > first) != (b.logs[0] > first)
+        a.kind != Kind::BulgeByTension
+            && a.kind.side() * side > 0.0
+            && (a.logs[0] > first) != (b.logs[0] > first)
     })
 }
 
@@ -197,7 +200,7 @@ impl Plane<'_> {
             is_slack: at.is_slack(net),
             gradient: *length.gradient(),
             is_drawn: run.force.value() > DRAWN[0]
-                || strain > DRAWN[1]
+                || strain > if at.kind == Kind::BulgeByTension { DRAWN[2] } else { DRAWN[1] }
                 || (at.kind == Kind::Waist && length.gradient()[0] > STEEP),
         }
     }
@@ -300,7 +303,7 @@ impl Plane<'_> {
         if logs[1] < FLATTEST || place.contraction > 1.0 {
             return true;
         }
-        if kind == Kind::Soft {
+        if kind == Kind::BulgeByTension {
             return logs[1] > -STRAIGHT;
         }
         let side = kind.side();

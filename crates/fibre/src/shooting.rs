@@ -16,6 +16,9 @@
 //! fibres carries a part, the first unknown is ln(push/B). With a bladder it is asinh(push/(2 B)), because a
 //! bladder that is narrower than at rest pushes outwards itself.
 //!
+//! Where fibres of a braid are so soft that the bulge may reach beyond unstretched ones, the unknowns are its tension and
+//! the gap to a cylinder of that tension ([`Unknowns::by_tension`]).
+//!
 //! Newton's method takes exact derivatives from the integration of dual numbers, which is loose at first.
 //! Where the meridian is a quadrature (see `quadrature`), the derivatives come from that instead, at a tenth
 //! of the cost.
@@ -40,7 +43,7 @@ const MAX_ITERATIONS: u32 = 40;
 /// Limit on the evaluations of the right-hand side (or of the integrands). A search for an equilibrium that
 /// may not exist ends there (after some 3 ms). The longest braid takes under 5000.
 const MOST_EVALUATIONS: u32 = 30_000;
-/// Largest steps of ln|B| and ln|k|.
+/// Largest steps of the first unknown, ln|B| or ln T, and of the second one.
 const MAX_STEP: [f64; 2] = [0.8, 4.0];
 /// Largest step of ln|k| in the middle of a long cylinder, as a fraction of ln|k|.
 const CYLINDER: f64 = 0.3;

@@ -213,8 +213,8 @@ impl Problem {
     pub(crate) fn at_limit(&self, scheme: Scheme, seen: &mut Seen) -> Result<Found, FibreError> {
         let way = [self.contraction_start(), FAR];
         match self.root(scheme, way, seen, |found| found.response.force_n) {
-            Err(error @ FibreError::NotConverged { contraction, .. }) => {
-                let slack = |limit| FibreError::Slack { contraction, limit: Some(limit) };
+            Err(error @ (FibreError::NotConverged { .. } | FibreError::TooSoft { .. })) => {
+                let slack = |limit| FibreError::Slack { contraction: limit, limit: Some(limit) };
                 self.limit_on_a_path(scheme, seen).map_or(Err(error), |end| end.map_err(slack))
             }
             other => other,

@@ -12,18 +12,17 @@ pub(crate) enum Kind {
     /// ln B and ln k of a bulge. Where lobes or cloth limit the radius they are ln(push/(k B)) and ln k, and with
     /// an angle besides ln(push/B) and ln k.
     Bulge,
-    /// ln|B| and the excess of the tension of a waist.
+    /// ln|B| and the logarithm of the excess of the tension of a waist over that of a cylinder.
     Waist,
-    /// The tension of a bulge of soft fibres, and how far its radius is from that of a cylinder with the same
-    /// tension.
-    Soft,
+    /// ln T of a bulge, and ln(gap/B) with the gap from its radius to that of the cylinder with the same tension.
+    BulgeByTension,
 }
 
 impl Kind {
     /// +1 for a bulge, -1 for a waist.
     pub(crate) const fn side(self) -> f64 {
         match self {
-            Self::Bulge | Self::Soft => 1.0,
+            Self::Bulge | Self::BulgeByTension => 1.0,
             Self::Waist => -1.0,
         }
     }
@@ -40,9 +39,9 @@ pub(crate) struct Unknowns {
 /// [`Middle::beyond`].
 pub(crate) const FLAT: f64 = -40.0;
 
-/// Part of the fitting's radius below which the gap to a cylinder is small. The curvature is linear in it there; the
-/// square is next to rounding.
-const SMALL: f64 = 1e-6;
+/// Part of the fitting's radius below which the gap to a cylinder is small and the curvature linear in it. At this gap the
+/// difference of push and hoop term is rounded to 1e-8, and its square would change the curvature by some 1e-7.
+const SMALL: f64 = 1e-8;
 
 /// Largest part of the way to the radius of the lobes' circle that a start may cover.
 const OPEN: f64 = 0.98;
@@ -65,9 +64,10 @@ impl Unknowns {
         Self { kind: Kind::Bulge, logs: [first, second] }
     }
 
-    /// The same bulge by its tension. A bulge that reaches 1/q has up to three tensions for one curvature, but
-    /// each tension has one curvature at each radius, and one radius at which that is zero. Waists, and bulges that
-    /// lobes or cloth limit, stay as they are.
+    /// Nearly the same bulge, by its tension. A bulge that reaches 1/q has several tensions for one curvature, but each
+    /// tension has one curvature at each radius. Waists, and bulges that lobes or cloth limit, stay as they are.
+    ///
+    /// The gap to the cylinder is of first order in the curvature: Newton's method corrects it.
     pub(crate) fn by_tension(&self, net: &Net<f64>) -> Option<Self> {
         if self.kind != Kind::Bulge || is_limited(net, 1.0) {
             return Some(*self);
@@ -75,10 +75,9 @@ impl Unknowns {
         let near = Self { logs: [self.logs[0], self.logs[1].max(FLAT)], ..*self };
         let Middle { bulge, curvature, tension, force, .. } = near.curved(net, near.logs.map(f64::from))?;
         let (_, slope) = net.cylinder_bulge(tension)?;
-        // To first order: it is a start.
         let gap = curvature * force / slope;
-        let second = (gap / bulge).ln() + self.logs[1] - near.logs[1];
-        Some(Self { kind: Kind::Soft, logs: [tension.ln(), second] })
+        let logs = [tension.ln(), (gap / bulge).ln() + self.logs[1] - near.logs[1]];
+        logs.iter().all(|log| log.is_finite()).then_some(Self { kind: Kind::BulgeByTension, logs })
     }
 
     /// The middle of the meridian. If `D` carries derivatives, the unknowns are variables number 0 and 1.
@@ -105,8 +104,8 @@ impl Unknowns {
 
     /// The same for a curvature that numbers can represent.
     fn curved<D: Real>(&self, net: &Net<D>, logs: [D; 2]) -> Option<Middle<D>> {
-        if self.kind == Kind::Soft {
-            return soft(net, logs);
+        if self.kind == Kind::BulgeByTension {
+            return by_tension(net, logs);
         }
         let (second, straight) = (logs[1].exp(), D::from(0.0));
         let side = self.kind.side();
@@ -177,7 +176,7 @@ impl Unknowns {
 
 /// The middle of a bulge with the tension `exp(logs[0])`. The gap to the radius of the cylinder with this tension
 /// is `exp(logs[1])` times the bulge.
-fn soft<D: Real>(net: &Net<D>, logs: [D; 2]) -> Option<Middle<D>> {
+fn by_tension<D: Real>(net: &Net<D>, logs: [D; 2]) -> Option<Middle<D>> {
     let (tension, part) = (logs[0].exp(), logs[1].exp());
     let (reach, slope) = net.cylinder_bulge(tension)?;
     let bulge = reach / (part + 1.0);
@@ -200,4 +199,65 @@ pub(crate) fn is_limited<D: Real>(net: &Net<D>, side: f64) -> bool {
 pub(crate) fn steepest(net: &Net<f64>, r: f64) -> f64 {
     let angle2 = (net.turn * r).powi(2);
     angle2 / (r * (1.0 - angle2))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Where the curvature becomes linear in the gap it jumps by less than a Newton step that is accepted, and the logarithm
+    /// of the gap is that of the curvature.
+    #[test]
+    fn the_curvature_beside_a_cylinder_is_linear_in_the_gap() {
+        let (sin, cos) = 25.0_f64.to_radians().sin_cos();
+        for depth in [0.0, 0.3, -0.2] {
+            let net = Net {
+                turn: sin,
+                cos_rest: cos,
+                sin2_rest: sin * sin,
+                half_fibre: 20.0,
+                depth,
+                ..Net::plain()
+            };
+            let net = Net { compliance: 0.35 * sin * sin / (2.0 * std::f64::consts::PI), ..net };
+            for strain in [0.1, 0.3, 0.9] {
+                let tension: f64 = strain / net.compliance;
+                let bulge = net.cylinder_bulge(tension).unwrap().0;
+                let ln_k = |gap: f64| {
+                    let at =
+                        Unknowns { kind: Kind::BulgeByTension, logs: [tension.ln(), (gap / bulge).ln()] };
+                    at.middle(&net, |value, _| value).unwrap().curvature.ln()
+                };
+                let jump = ln_k(SMALL * 1.000_001) - ln_k(SMALL * 0.999_999) - 2e-6;
+                assert!(jump.abs() < 5e-7, "{depth} {strain}: {jump:e}");
+                assert!((ln_k(1e-12) - ln_k(1e-14) - 100.0_f64.ln()).abs() < 1e-9, "{depth} {strain}");
+                assert!((ln_k(1e-4) - ln_k(1e-6) - 100.0_f64.ln()).abs() < 1e-2, "{depth} {strain}");
+            }
+        }
+    }
+
+    /// A shallow stretch of the same muscle by either pair of unknowns.
+    #[test]
+    fn a_bulge_by_its_tension_is_nearly_the_same() {
+        let (sin, cos) = 25.0_f64.to_radians().sin_cos();
+        let net = Net { turn: sin, cos_rest: cos, sin2_rest: sin * sin, half_fibre: 20.0, ..Net::plain() };
+        let net = Net { compliance: 0.1 * sin * sin / (2.0 * std::f64::consts::PI), ..net };
+        let middle = |at: Unknowns| at.middle(&net, |value, _| value).unwrap();
+        for ln_k in [-60.0, -20.0, -8.0] {
+            let at = Unknowns::new(&net, 1.0, [0.5_f64.ln(), ln_k]);
+            let by_tension = at.by_tension(&net).unwrap();
+            assert_eq!(by_tension.kind, Kind::BulgeByTension);
+            let [a, b] = [at, by_tension].map(middle);
+            assert!(
+                (a.tension / b.tension - 1.0).abs() < 1e-12 && (a.bulge / b.bulge - 1.0).abs() < 1e-2,
+                "{ln_k}"
+            );
+            // Below a curvature that numbers can represent, a cylinder stands for the rest.
+            let differs = (a.curvature / b.curvature - 1.0).abs();
+            assert!(differs < 2e-2 || a.straight > 0.0, "{ln_k}: {} {}", a.curvature, b.curvature);
+            assert_eq!(a.straight > 0.0, b.straight > 0.0, "{ln_k}");
+        }
+        let waist = Unknowns::new(&net, -1.0, [-3.0, -3.0]);
+        assert_eq!(waist.by_tension(&net), Some(waist));
+    }
 }

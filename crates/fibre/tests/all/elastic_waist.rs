@@ -117,3 +117,34 @@ fn soft_braids_are_walked_to() {
     let found = asked(&wide, 0.027_389_171_209_554_097).unwrap();
     assert!((found.force_n - 120.0).abs() < 1e-6, "{} N", found.force_n);
 }
+
+/// Gas inside a thick wall on narrow fittings: two cylinders have one tension, and the wider one is the middle of the muscle.
+/// The limits are those that a reviewer's own search of the zero gave.
+#[test]
+fn soft_braids_with_gas_inside_their_fibres_are_found() {
+    let sin = 25.0_f64.to_radians().sin();
+    for (fitting, wall, group, limit) in
+        [(5.0, 2.0, 0.35, 0.248), (3.0, 2.0, 0.30, 0.296), (7.0, 4.0, 0.40, 0.261)]
+    {
+        let stiffness = std::f64::consts::TAU * 3e5 * 1e-4 / (60.0 * group * sin * sin);
+        let text = format!(
+            "name = \"soft\"\nkind = \"braided\"\nlength = \"200 mm\"\nradius = \"10 mm\"\nbraid_angle = \"25 deg\"\nfibres = 60\n\
+             fibre = {{ stiffness = \"{stiffness} N\" }}\nends = \"clamped\"\n\
+             effects = {{ end-radius = {{ radius = \"{fitting} mm\" }}, wall-thickness = {{ thickness = \"{wall} mm\" }} }}\n"
+        );
+        let problem =
+            Problem::new(&bulge_muscles::from_toml(&text, "soft.toml").unwrap(), Pressure::bar(3.0)).unwrap();
+        let found = problem.contraction_limit(Approach::Auto).unwrap();
+        assert!((found - limit).abs() < 6e-4, "{fitting} {wall}: limit {found}");
+        let mut last = f64::INFINITY;
+        for contraction in [0.0, 0.05, 0.1, 0.15, 0.2] {
+            let [a, b] =
+                [Approach::Auto, Approach::Shooting].map(|way| problem.follow(contraction, way).unwrap());
+            assert!(
+                (a.force_n / b.force_n - 1.0).abs() < 1e-8 && a.force_n < last,
+                "{fitting} {contraction}"
+            );
+            last = a.force_n;
+        }
+    }
+}

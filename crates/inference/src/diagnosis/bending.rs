@@ -118,7 +118,8 @@ fn is_asked(prepared: &Prepared, name: &str) -> bool {
     numbers.filter(|(p, _)| p.effect == name).any(|(_, nuisance)| !nuisance)
 }
 
-/// The variable that drives an effect, of a row and the force there, if one does.
+/// What the form error of an effect is a function of, for a row and the force there: the variable that drives the effect
+/// (of a rate its root, which spreads slow and fast rows).
 fn drive(card: &Card<'_>) -> Option<fn(&Moment, f64) -> f64> {
     match card.mechanism {
         Mechanism::GiveOfTheRig | Mechanism::ForceChain | Mechanism::ClothAndFibres => Some(|_, force| force),
