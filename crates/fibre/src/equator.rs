@@ -187,10 +187,10 @@ impl<D: Real> Net<D> {
         };
         let room =
             (tension * self.compliance + 1.0).value() / self.turn.value().abs() - self.end_radius.value();
-        let (mut low, mut high) = (0.0, room);
-        if high.is_nan() || high <= 0.0 {
+        if room.is_nan() || room <= 0.0 {
             return None;
         }
+        let (mut low, mut high) = (0.0, room);
         // Up to where it is positive, if that is not at the fitting: it rises until then.
         for _ in 0..HALVINGS {
             let (value, slope) = values(low);

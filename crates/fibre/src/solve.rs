@@ -443,7 +443,8 @@ impl Problem {
     }
 }
 
-/// The softness from which on a braid has no equilibrium that pulls: random ones pull up to 0.47.
+/// The softness from which on a braid that isn't found at once isn't walked to: random ones whose gas acts at the fibres
+/// pull up to 0.47.
 const SOFTEST: f64 = 0.5;
 
 /// Whether a search ended without an equilibrium, where another way may lead to one.

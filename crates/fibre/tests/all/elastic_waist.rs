@@ -4,15 +4,26 @@
 use bulge_fibre::{Approach, FibreError, Problem};
 use bulge_muscles::{Angle, Braided, Construction, Fibre, Force, Length, Muscle, Pressure};
 
+/// A clamped braid of 60 elastic fibres: length and radius in mm, angle in degrees, stiffness EA of a fibre in N.
+fn braid([length, radius, angle, stiffness]: [f64; 4], pressure: f64) -> Problem {
+    let braid = Braided::new(Length::mm(radius), Angle::deg(angle)).unwrap().with_fibres(60).unwrap();
+    let muscle = Muscle::new("braid", Length::mm(length), Construction::Braided(braid)).unwrap();
+    let muscle = muscle.with_fibre(Fibre::new(Force::n(stiffness)).unwrap()).unwrap();
+    Problem::new(&muscle, Pressure::pa(pressure)).unwrap()
+}
+
+/// The stiffness EA at which such a braid has the group 2 pi p r0^2/(n EA sin^2(alpha0)).
+fn stiffness([radius, angle]: [f64; 2], pressure: f64, group: f64) -> f64 {
+    let part = 1e-3 * radius / angle.to_radians().sin();
+    std::f64::consts::TAU * pressure * part * part / (60.0 * group)
+}
+
 /// Forces of a braid of l0 = 55.8 mm, r0 = 10 mm, 7.22 degrees, 60 fibres of EA = 11 840 N at 32 676 Pa, from
 /// an independent integration of the equilibrium in Hamiltonian form from the fitting inwards (SciPy,
 /// relative tolerance 3e-13), 8 digits.
 #[test]
 fn force_agrees_with_an_independent_integration() {
-    let braid = Braided::new(Length::mm(10.0), Angle::deg(7.22)).unwrap().with_fibres(60).unwrap();
-    let muscle = Muscle::new("waist", Length::mm(55.8), Construction::Braided(braid)).unwrap();
-    let muscle = muscle.with_fibre(Fibre::new(Force::n(11_840.0)).unwrap()).unwrap();
-    let problem = Problem::new(&muscle, Pressure::pa(32_676.0)).unwrap();
+    let problem = braid([55.8, 10.0, 7.22, 11_840.0], 32_676.0);
     for (contraction, force) in [(-0.0022, 1461.5701), (-0.0025, 1635.6432)] {
         let found = problem.follow(contraction, Approach::Auto).unwrap();
         assert!(found.mid_radius_m < 0.01, "no waist: {} m", found.mid_radius_m);
@@ -33,10 +44,7 @@ fn soft_fibres_bulge_where_no_cylinder_carries_the_pressure() {
         (0.0260, 173.095, 53.170),
         (0.0300, 41.677, 44.3871),
     ] {
-        let braid = Braided::new(Length::mm(10.0), Angle::deg(25.0)).unwrap().with_fibres(60).unwrap();
-        let muscle = Muscle::new("soft", Length::mm(200.0), Construction::Braided(braid)).unwrap();
-        let muscle = muscle.with_fibre(Fibre::new(Force::n(stiffness)).unwrap()).unwrap();
-        let found = Problem::new(&muscle, Pressure::bar(3.0)).unwrap().follow(0.05, Approach::Auto).unwrap();
+        let found = braid([200.0, 10.0, 25.0, stiffness], 3e5).follow(0.05, Approach::Auto).unwrap();
         assert!((found.mid_radius_m / radius - 1.0).abs() < 1e-5, "{} m", found.mid_radius_m);
         assert!((found.force_n - force).abs() < 2e-3, "{} N instead of {force} N", found.force_n);
     }
@@ -46,18 +54,14 @@ fn soft_fibres_bulge_where_no_cylinder_carries_the_pressure() {
 /// quadrature does, and the dimensionless group is all that counts: here 0.32.
 #[test]
 fn a_long_braid_of_soft_fibres_is_a_cylinder_between_its_ends() {
-    let (angle, group, pressure): (f64, f64, f64) = (20.0, 0.32, 3e5);
-    let sin = angle.to_radians().sin();
+    let (angle, pressure): (f64, f64) = (20.0, 3e5);
     for (slenderness, contraction) in [(20.0, 0.1), (100.0, 0.0), (100.0, 0.15)] {
-        let radius = 0.2 / slenderness;
-        let stiffness = std::f64::consts::TAU * pressure * radius * radius / (60.0 * group * sin * sin);
-        let braid = Braided::new(Length::m(radius), Angle::deg(angle)).unwrap().with_fibres(60).unwrap();
-        let muscle = Muscle::new("soft", Length::mm(200.0), Construction::Braided(braid)).unwrap();
-        let muscle = muscle.with_fibre(Fibre::new(Force::n(stiffness)).unwrap()).unwrap();
-        let problem = Problem::new(&muscle, Pressure::pa(pressure)).unwrap();
+        let radius = 200.0 / slenderness;
+        let problem = braid([200.0, radius, angle, stiffness([radius, angle], pressure, 0.32)], pressure);
         let [by_quadrature, by_ode] =
             [Approach::Auto, Approach::Shooting].map(|way| problem.follow(contraction, way).unwrap());
-        assert!(by_quadrature.mid_radius_m > radius / sin, "{} m", by_quadrature.mid_radius_m);
+        let reach = 1e-3 * radius / angle.to_radians().sin();
+        assert!(by_quadrature.mid_radius_m > reach, "{} m", by_quadrature.mid_radius_m);
         assert!((by_ode.force_n / by_quadrature.force_n - 1.0).abs() < 1e-9, "{slenderness} {contraction}");
         assert!(
             (by_ode.volume_m3 / by_quadrature.volume_m3 - 1.0).abs() < 1e-9,
@@ -69,14 +73,9 @@ fn a_long_braid_of_soft_fibres_is_a_cylinder_between_its_ends() {
 /// Fibres that would be stretched to twice their length balloon: no yarn bears that, although there is an equilibrium.
 #[test]
 fn fibres_stretched_to_twice_their_length_balloon() {
-    let (angle, pressure): (f64, f64) = (15.4, 5e5);
-    let sin = angle.to_radians().sin();
     let found = |group: f64| {
-        let stiffness = std::f64::consts::TAU * pressure * 1e-4 / (60.0 * group * sin * sin);
-        let braid = Braided::new(Length::mm(10.0), Angle::deg(angle)).unwrap().with_fibres(60).unwrap();
-        let muscle = Muscle::new("soft", Length::mm(205.0), Construction::Braided(braid)).unwrap();
-        let muscle = muscle.with_fibre(Fibre::new(Force::n(stiffness)).unwrap()).unwrap();
-        Problem::new(&muscle, Pressure::pa(pressure)).unwrap().follow(0.01, Approach::Auto)
+        let stiffness = stiffness([10.0, 15.4], 5e5, group);
+        braid([205.0, 10.0, 15.4, stiffness], 5e5).follow(0.01, Approach::Auto)
     };
     let strain = |group: f64| found(group).unwrap().fibre_strain;
     assert!(strain(0.40) < strain(0.45) && strain(0.45) > 0.7 && strain(0.45) < 1.0);
@@ -122,11 +121,10 @@ fn soft_braids_are_walked_to() {
 /// The limits are those that a reviewer's own search of the zero gave.
 #[test]
 fn soft_braids_with_gas_inside_their_fibres_are_found() {
-    let sin = 25.0_f64.to_radians().sin();
     for (fitting, wall, group, limit) in
         [(5.0, 2.0, 0.35, 0.248), (3.0, 2.0, 0.30, 0.296), (7.0, 4.0, 0.40, 0.261)]
     {
-        let stiffness = std::f64::consts::TAU * 3e5 * 1e-4 / (60.0 * group * sin * sin);
+        let stiffness = stiffness([10.0, 25.0], 3e5, group);
         let text = format!(
             "name = \"soft\"\nkind = \"braided\"\nlength = \"200 mm\"\nradius = \"10 mm\"\nbraid_angle = \"25 deg\"\nfibres = 60\n\
              fibre = {{ stiffness = \"{stiffness} N\" }}\nends = \"clamped\"\n\
