@@ -1,6 +1,8 @@
 //! Elastic braids drawn out to a waist: the tension at mid-length is an unknown of its own, since two
 //! tensions can have one curvature.
 
+#![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
+
 use bulge_fibre::{Approach, FibreError, Problem};
 use bulge_muscles::{Angle, Braided, Construction, Fibre, Force, Length, Muscle, Pressure};
 
