@@ -4,6 +4,7 @@
     python validation/docs_table.py diagnosis [--check]      # from validation/hidden-effects/answers, scored anew
     python validation/docs_table.py forms [--check]          # the same for the forms suite: with the whole catalogue, and with the truth as the only candidate
     python validation/docs_table.py ratios [--check]         # from benches/ratios.json, which benches/ratios.py measures
+    python validation/docs_table.py limits [--check]         # from benches/limits.json, which `limits -- --write` of bulge-benches measures
     python validation/docs_table.py mutation [--check]       # from validation/mutation.json, which validation/mutation.py measures
     python validation/docs_table.py coverage [--check]       # from validation/coverage.json, which validation/coverage.py measures
     python validation/docs_table.py fuzz [--check]           # from fuzz/counts.tsv, to which fuzz/run adds
@@ -101,7 +102,7 @@ FORMS_FRONT = (
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("what", choices=("verification", "diagnosis", "forms", "ratios", "mutation", "coverage", "fuzz"))
+    parser.add_argument("what", choices=("verification", "diagnosis", "forms", "ratios", "limits", "mutation", "coverage", "fuzz"))
     parser.add_argument("--check", action="store_true", help="compare the pages, and write nothing")
     parser.add_argument("--root", type=Path, default=ROOT, help="folder of README.md and docs")
     arguments = parser.parse_args()
@@ -110,6 +111,8 @@ def main():
         if not checks:
             parser.error("standard input holds no check: give it the output of `bulge validate --json`")
         tables = {"verification": verification(checks)}
+    elif arguments.what == "limits":
+        tables = {"limits": limits(json.loads((ROOT / "benches/limits.json").read_text(encoding="utf-8")))}
     elif arguments.what == "ratios":
         measured = json.loads((ROOT / "benches/ratios.json").read_text(encoding="utf-8"))
         tables = {"ratios": ratios(measured), "ratios-front": ratios(measured)}
@@ -164,6 +167,22 @@ def ratios(measured):
         cells = [row["question"], _time(row["own_s"]), f"{row['peer_is']}: {_time(row['peer_s'])}", f"{float(format(row['ratio'], '.2g')):g}"]
         lines.append("| " + " | ".join(cells) + " |")
     return "\n".join(lines)
+
+
+def limits(measured):
+    """What each kernel takes beside what its operations need at least."""
+    lines = ["| a call of | needs: + x, divisions, roots | instructions | time | limit as compiled | limit in all lanes |", "|---|---|---|---|---|---|"]
+    for row in measured["rows"]:
+        needs = f"{_count(row['arithmetic'])}, {_count(row['divisions'])}, {_count(row['roots'])}"
+        instructions = _count(row["instructions"]) if row["instructions"] else ""
+        of = lambda key: f"{_time(1e-9 * row[key])}: {float(format(row['time_ns'] / row[key], '.2g')):g} times"
+        cells = [f"{row['kernel']} ({row['counted']})", needs, instructions, _time(1e-9 * row["time_ns"]), of("compiled_ns"), of("lanes_ns")]
+        lines.append("| " + " | ".join(cells) + " |")
+    return "\n".join(lines)
+
+
+def _count(number):
+    return f"{number:.2g}" if number >= 1e5 else f"{number:.0f}"
 
 
 def mutation(crates):

@@ -250,6 +250,14 @@ mod tests {
     use bulge_muscles::preset;
 
     #[test]
+    fn a_range_is_mapped_to_one_on_either_side() {
+        let scaled = Scaled::of([3.0, 7.0, 4.0].into_iter());
+        for (value, place) in [(3.0, -1.0), (5.0, 0.0), (7.0, 1.0)] {
+            assert!((scaled.at(value) - place).abs() < 1e-15, "{value}");
+        }
+    }
+
+    #[test]
     fn no_floor_is_finer_than_the_steps_of_the_force() {
         let moments: Vec<Moment> = (0..120)
             .map(|i| Moment::at_rest(f64::from(1 + i / 20) * 1e5, 0.01 * f64::from(i % 20)))

@@ -197,6 +197,23 @@ fn sweeps_end_where_the_muscle_would_push() {
 }
 
 #[test]
+fn fillings_begin_where_the_muscle_pulls() {
+    // With a load cell that reads 30 N less, readings are positive from 30 N on, and pressures from that force.
+    let (model, theta) = truth(&muscle(""), &[("force-offset", &[-30.0])]);
+    let block = Block { rows: 200, ..Block::isometric([0.1e5, 5e5], vec![0.05, 0.2], 40.0) };
+    let found = simulate(&model, &theta, &Protocol::new(vec![block]), 1).unwrap();
+    assert!(found.exact.force().iter().all(|force| *force > 0.0));
+    assert_eq!(found.truth.ended.len(), 2);
+    for (ended, held) in found.truth.ended.iter().zip([0.05, 0.2]) {
+        let [low, high] = ended.pressure_reached_pa.unwrap();
+        let least = 30.0 / force(1.0, held);
+        // Rows of a filling, of the thinned plan at first, are some kilopascals apart.
+        assert!(low > least && low < least + 2e4, "{held}: {low} Pa, not {least}");
+        assert!((high - 5e5).abs() < 1e-6, "{high}");
+    }
+}
+
+#[test]
 fn rig_errors_are_drawn_from_the_instruments() {
     let protocol = Protocol { rig: RigErrors::Drawn, ..Protocol::new(vec![loops(50, 1)]) };
     let (mut zeros, mut gains) = (Vec::new(), Vec::new());

@@ -1,0 +1,476 @@
+//! What each kernel costs beside what its mathematics needs: a roofline.
+//!
+//! ```sh
+//! cargo run --release -p bulge-benches --bin limits            # the table
+//! cargo run --release -p bulge-benches --bin limits -- --write # and into benches/limits.json, for the page on speed
+//! ```
+//!
+//! Operations are counted in the formulas, by hand, of the best algorithm that we know. The rates of the machine are measured
+//! in the same run, each by a loop whose numbers stay in registers: as this program is compiled (two lanes of SSE2) and with
+//! all lanes of the processor (`pulp` chooses at run time). The limit of a kernel is the longer of its additions and
+//! multiplications on one hand, and of its divisions and roots, which share a unit, on the other:
+//!
+//! ```text
+//! limit = max(arithmetic t_a, divisions t_d + roots t_r) + functions t_f
+//! ```
+//!
+//! Instructions are counted by `valgrind --tool=callgrind` in two runs of this program, one with twice as many calls, where
+//! valgrind is there. Virtual machines seldom have the counters of `perf`.
+
+#![expect(
+    clippy::inline_always,
+    reason = "what isn't inlined into the dispatch isn't compiled for its lanes"
+)]
+
+use bulge_benches::{Failure, SLENDERNESS, braid, median_us, pleated, random_points, solve};
+use bulge_fibre::{Approach, Problem, closed_form};
+use bulge_membrane::case::Case;
+use bulge_numerics::Random;
+use bulge_numerics::elliptic::incomplete;
+use bulge_sweep::{Plan, tabulate};
+use bulge_table::Table;
+use serde_json::{Value, json};
+use std::hint::black_box;
+use std::path::Path;
+use std::process::Command;
+
+const FAMILY: &str = include_str!("../../../crates/cli/data/family.toml");
+/// Numbers in a loop that measures a rate: eight vectors hide the latency of an addition, four cycles. Vectors have two lanes as compiled, and at most eight.
+const PLAIN: usize = 16;
+const WIDE: usize = 64;
+/// Operations on each number in such a loop.
+const LOOPS: usize = 10_000;
+/// Points of a kernel: more than branch predictors learn.
+const POINTS: usize = 4096;
+const ROUNDS: usize = 15;
+/// Additions and multiplications of an exponential or a logarithm in lanes: a polynomial of degree eleven and its reduction.
+const PER_FUNCTION: f64 = 25.0;
+
+/// Operations that a formula needs.
+#[derive(Debug, Clone, Copy, Default)]
+struct Operations {
+    /// Additions and multiplications.
+    arithmetic: f64,
+    divisions: f64,
+    roots: f64,
+    /// Exponentials, logarithms, arcs.
+    functions: f64,
+}
+
+impl Operations {
+    fn times(self, factor: f64) -> Self {
+        Self {
+            arithmetic: self.arithmetic * factor,
+            divisions: self.divisions * factor,
+            roots: self.roots * factor,
+            functions: self.functions * factor,
+        }
+    }
+
+    fn and(self, other: Self) -> Self {
+        Self {
+            arithmetic: self.arithmetic + other.arithmetic,
+            divisions: self.divisions + other.divisions,
+            roots: self.roots + other.roots,
+            functions: self.functions + other.functions,
+        }
+    }
+}
+
+/// One operation, of which many are independent.
+trait Operation {
+    fn on(x: f64) -> f64;
+}
+
+struct MultiplyAndAdd;
+struct Divide;
+struct Root;
+struct Function;
+
+// Each has a fixed point near one, so that numbers stay ordinary.
+impl Operation for MultiplyAndAdd {
+    #[inline(always)]
+    fn on(x: f64) -> f64 {
+        x * 0.75 + 0.25
+    }
+}
+
+impl Operation for Divide {
+    #[inline(always)]
+    fn on(x: f64) -> f64 {
+        1.000_1 / x
+    }
+}
+
+impl Operation for Root {
+    #[inline(always)]
+    fn on(x: f64) -> f64 {
+        x.sqrt()
+    }
+}
+
+impl Operation for Function {
+    #[inline(always)]
+    fn on(x: f64) -> f64 {
+        (-x).exp()
+    }
+}
+
+#[inline(always)]
+fn repeat<O: Operation, const N: usize>(numbers: &mut [f64; N]) {
+    for _ in 0..LOOPS {
+        for x in numbers.iter_mut() {
+            *x = O::on(*x);
+        }
+    }
+}
+
+/// Nanoseconds of one operation as compiled.
+fn plain<O: Operation>() -> f64 {
+    let mut numbers = std::array::from_fn::<f64, PLAIN, _>(|i| 1.0 + 1e-3 * i as f64);
+    1e3 * median_us(ROUNDS, LOOPS * PLAIN, || repeat::<O, PLAIN>(black_box(&mut numbers)))
+}
+
+/// The same with all lanes.
+fn wide<O: Operation>() -> f64 {
+    let mut numbers = std::array::from_fn::<f64, WIDE, _>(|i| 1.0 + 1e-3 * i as f64);
+    let arch = pulp::Arch::new();
+    let mut run = || {
+        let numbers = black_box(&mut numbers);
+        arch.dispatch(
+            #[inline(always)]
+            || repeat::<O, WIDE>(numbers),
+        );
+    };
+    1e3 * median_us(ROUNDS, LOOPS * WIDE, &mut run)
+}
+
+/// Nanoseconds of one operation where many are independent.
+#[derive(Debug, Clone, Copy)]
+struct Rates {
+    arithmetic: f64,
+    division: f64,
+    root: f64,
+    function: f64,
+}
+
+impl Rates {
+    fn as_compiled() -> Self {
+        Self {
+            arithmetic: 0.5 * plain::<MultiplyAndAdd>(),
+            division: plain::<Divide>(),
+            root: plain::<Root>(),
+            function: plain::<Function>(),
+        }
+    }
+
+    /// With all lanes, in which a function is made of arithmetic.
+    fn of_all_lanes() -> Self {
+        let arithmetic = 0.5 * wide::<MultiplyAndAdd>();
+        Self {
+            arithmetic,
+            division: wide::<Divide>(),
+            root: wide::<Root>(),
+            function: PER_FUNCTION * arithmetic,
+        }
+    }
+
+    /// Nanoseconds that operations take at least.
+    fn limit(&self, needed: &Operations) -> f64 {
+        let arithmetic = needed.arithmetic * self.arithmetic;
+        let divider = needed.divisions * self.division + needed.roots * self.root;
+        arithmetic.max(divider) + needed.functions * self.function
+    }
+}
+
+/// A kernel: what a call of it needs, and calls of it.
+struct Kernel {
+    name: &'static str,
+    /// Where the counted operations come from.
+    counted: &'static str,
+    needed: Operations,
+    /// Makes so many calls.
+    calls: Box<dyn FnMut(usize)>,
+    /// Calls that are timed, and whose instructions are counted: some 10^7 of them.
+    traced: usize,
+}
+
+/// Duplications of Carlson's algorithm until its series are exact, as [`incomplete`] makes them.
+fn duplications(t: f64, m: f64) -> f64 {
+    let (mut x, mut y, mut z) = (1.0_f64, 1.0 + (1.0 - m) * t * t, 1.0 + t * t);
+    let mut count = 0.0;
+    loop {
+        let a: f64 = 0.2 * (x + y + 3.0 * z);
+        if (a - x).abs().max((a - y).abs()).max((a - z).abs()) < 0.012 * a {
+            return count;
+        }
+        let lambda = (x * y).sqrt() + (x * z).sqrt() + (y * z).sqrt();
+        [x, y, z] = [x, y, z].map(|v| 0.25 * (v + lambda));
+        count += 1.0;
+    }
+}
+
+/// A pair of elliptic integrals after so many duplications.
+fn pair(duplications: f64) -> Operations {
+    // lambda, the sum, four means.
+    let duplication = Operations { arithmetic: 15.0, divisions: 1.0, roots: 3.0, functions: 0.0 };
+    // Both series by Horner's rule, the arguments, the factors in front.
+    let series = Operations { arithmetic: 60.0, divisions: 2.0, roots: 2.0, functions: 0.0 };
+    duplication.times(duplications).and(series)
+}
+
+/// An iteration of Newton's method in the closed form beside its pair: residuals, Jacobian, step. Logarithms and exponentials
+/// of numbers near one are short series.
+const NEWTON: Operations = Operations { arithmetic: 70.0, divisions: 5.0, roots: 3.0, functions: 0.0 };
+/// Pairs that an equilibrium needs: one that corrects a start from a small table, good to four digits, to eight, and one whose
+/// derivatives correct the answer to sixteen.
+const PAIRS: f64 = 2.0;
+/// A point of the meridian's quadrature: the divided differences, the rates of length, shortening and volume, and their sums.
+/// The places are a table's.
+const NODE: Operations = Operations { arithmetic: 52.0, divisions: 6.0, roots: 2.0, functions: 0.0 };
+/// The same with derivatives by two unknowns: each division and root has them for products.
+const NODE_WITH_TWO: Operations =
+    Operations { arithmetic: 250.0, divisions: 6.0, roots: 2.0, functions: 0.0 };
+/// A spline of 4 x 4 coefficients for two outputs: two bases with slopes, values and slopes along the rows, and their sums
+/// across, the coordinates and the chain rule.
+const SPLINE: Operations = Operations {
+    arithmetic: 2.0 * 16.0 + 2.0 * (64.0 + 24.0) + 30.0,
+    divisions: 3.0,
+    roots: 1.0,
+    functions: 0.0,
+};
+/// The tangent of a flat triangle of three nodes: metric and strain, a stress with its three by three moduli, B^T D B (nine
+/// by nine, symmetric) and the stress's own part.
+const TRIANGLE: Operations =
+    Operations { arithmetic: 39.0 + 60.0 + 162.0 + 270.0 + 40.0, divisions: 2.0, roots: 1.0, functions: 0.0 };
+
+fn elliptic(name: &'static str) -> Kernel {
+    let mut random = Random::new(1, 0);
+    let arguments: Vec<[f64; 2]> =
+        (0..POINTS).map(|_| [3.0 * random.uniform(), 0.5 * random.uniform()]).collect();
+    let mean = arguments.iter().map(|[t, m]| duplications(*t, *m)).sum::<f64>() / POINTS as f64;
+    let mut next = 0;
+    Kernel {
+        name,
+        counted: "Carlson's duplications until the series are exact",
+        needed: pair(mean),
+        calls: Box::new(move |count| {
+            for _ in 0..count {
+                next = (next + 1) % POINTS;
+                let [t, m] = arguments[next];
+                black_box(incomplete(black_box(t), m));
+            }
+        }),
+        traced: 50_000,
+    }
+}
+
+fn closed(name: &'static str) -> Kernel {
+    let mut random = Random::new(2, 0);
+    let contractions: Vec<f64> = (0..POINTS).map(|_| 0.05 + 0.35 * random.uniform()).collect();
+    let found = contractions.iter().filter_map(|e| closed_form::solve(*e, SLENDERNESS, 0.0).ok());
+    let mean = found.map(|found| duplications(found.t, found.m)).sum::<f64>() / POINTS as f64;
+    let mut next = 0;
+    Kernel {
+        name,
+        counted: "two pairs, each in an iteration of Newton's method",
+        needed: pair(mean).and(NEWTON).times(PAIRS),
+        calls: Box::new(move |count| {
+            for _ in 0..count {
+                next = (next + 1) % POINTS;
+                let _ = black_box(closed_form::solve(black_box(contractions[next]), SLENDERNESS, 0.0));
+            }
+        }),
+        traced: 10_000,
+    }
+}
+
+/// An equilibrium by shooting: two passes over so many nodes, one of them with derivatives.
+fn shot(name: &'static str, problem: Problem, nodes: f64, traced: usize) -> Kernel {
+    Kernel {
+        name,
+        counted: "two passes over the nodes of one or two pieces, one of them with two derivatives",
+        needed: NODE.and(NODE_WITH_TWO).times(nodes),
+        calls: Box::new(move |count| {
+            for i in 0..count {
+                let contraction = 0.05 + 0.2 * (i % 64) as f64 / 63.0;
+                let _ = black_box(solve(&problem, black_box(contraction), Approach::Shooting));
+            }
+        }),
+        traced,
+    }
+}
+
+/// The table that the tour ships.
+fn build(table: &Path) -> Result<(), Failure> {
+    let plan = Plan::from_toml(FAMILY, "family.toml", None)?;
+    let wish = plan.table.as_ref().ok_or("no table is wished")?;
+    std::fs::write(table, tabulate(&plan, wish, &|_| ())?.bytes)?;
+    Ok(())
+}
+
+/// Lookups in a table.
+fn looked_up(name: &'static str, table: &Path, in_one_call: bool) -> Result<Kernel, Failure> {
+    let bytes: &'static [u8] = Vec::leak(std::fs::read(table)?);
+    let lookup = Table::from_bytes(bytes)?.lookup::<2, 2>()?;
+    let points = random_points(&lookup, POINTS);
+    let mut found = vec![None; POINTS];
+    let mut next = 0;
+    let one_by_one = {
+        let points = points.clone();
+        move |count: usize| {
+            for _ in 0..count {
+                next = (next + 1) % POINTS;
+                black_box(lookup.at(black_box(points[next])));
+            }
+        }
+    };
+    let many = move |count: usize| {
+        for first in (0..count).step_by(POINTS) {
+            let some = POINTS.min(count - first);
+            lookup.at_each(black_box(&points[..some]), &mut found[..some]);
+            black_box(&found);
+        }
+    };
+    Ok(Kernel {
+        name,
+        counted: "two splines of 4 x 4 coefficients with gradients",
+        needed: SPLINE,
+        calls: if in_one_call { Box::new(many) } else { Box::new(one_by_one) },
+        traced: 4 * POINTS,
+    })
+}
+
+/// Makes a kernel of a name, with the file of a table.
+type Maker = fn(&'static str, &Path) -> Result<Kernel, Failure>;
+const KERNELS: [(&str, Maker); 6] = [
+    ("pair of elliptic integrals", |name, _| Ok(elliptic(name))),
+    ("equilibrium in closed form", |name, _| Ok(closed(name))),
+    ("pleated muscle by shooting", |name, _| Ok(shot(name, pleated(None)?, 21.0, 1000))),
+    ("clamped braid by shooting, l0/r0 = 25", |name, _| Ok(shot(name, braid(25.0)?, 42.0, 300))),
+    ("lookup, one by one", |name, table| looked_up(name, table, false)),
+    ("lookup, many in one call", |name, table| looked_up(name, table, true)),
+];
+
+/// Instructions of one call of a kernel, as valgrind counts them in two runs of this program. None without it.
+fn instructions(kernel: &Kernel, table: &Path) -> Option<f64> {
+    let count = |calls: usize| -> Option<f64> {
+        let run = Command::new("valgrind")
+            .args(["--tool=callgrind", "--callgrind-out-file=/dev/null"])
+            .arg(std::env::current_exe().ok()?)
+            .args(["--calls", kernel.name, &calls.to_string()])
+            .arg(table)
+            .output()
+            .ok()?;
+        let said = String::from_utf8_lossy(&run.stderr).into_owned();
+        said.lines().find_map(|line| line.split_once("Collected : ")?.1.trim().parse().ok())
+    };
+    Some((count(2 * kernel.traced)? - count(kernel.traced)?) / kernel.traced as f64)
+}
+
+/// Triangles of the square airbag and its factors: nanoseconds of a tangent with its share of the sums, nanoseconds of a
+/// factor, and the operations that a factor with so many entries needs at least, sum c_j^2 >= (sum c_j)^2/n of its columns.
+fn membrane() -> Result<[(f64, f64); 2], Failure> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../meshes/airbag.toml");
+    let case = Case::from_toml(&std::fs::read_to_string(&path)?, "airbag.toml", path.parent())?;
+    let mut run = case.start()?;
+    run.last_row(|_| ())?;
+    let effort = run.effort();
+    let [unknowns, _, factors] = run.sizes();
+    let elements = run.elements() as f64 * effort.iterations as f64;
+    let least = (factors as f64).powi(2) / unknowns as f64;
+    Ok([
+        (1e9 * effort.assembling.as_secs_f64() / elements, TRIANGLE.arithmetic),
+        (1e9 * effort.factorising.as_secs_f64() / effort.factorisations as f64, least),
+    ])
+}
+
+fn measured(table: &Path) -> Result<Value, Failure> {
+    let [compiled, lanes] = [Rates::as_compiled(), Rates::of_all_lanes()];
+    let mut rows = Vec::new();
+    let row = |name: &str, counted: &str, needed: &Operations, time_ns: f64, instructions: Option<f64>| {
+        json!({
+            "kernel": name,
+            "counted": counted,
+            "arithmetic": needed.arithmetic,
+            "divisions": needed.divisions,
+            "roots": needed.roots,
+            "instructions": instructions,
+            "time_ns": time_ns,
+            "compiled_ns": compiled.limit(needed),
+            "lanes_ns": lanes.limit(needed),
+        })
+    };
+    for (name, maker) in KERNELS {
+        let mut kernel = maker(name, table)?;
+        let time = 1e3 * median_us(ROUNDS, kernel.traced, || (kernel.calls)(kernel.traced));
+        rows.push(row(kernel.name, kernel.counted, &kernel.needed, time, instructions(&kernel, table)));
+    }
+    let [(tangent, _), (factor, least)] = membrane()?;
+    rows.push(row(
+        "tangent of a triangle, with its sums",
+        "metric, stress, moduli, B^T D B",
+        &TRIANGLE,
+        tangent,
+        None,
+    ));
+    let needed = Operations { arithmetic: least, ..Operations::default() };
+    rows.push(row(
+        "factor of an airbag of 3200 triangles",
+        "squares of its columns' lengths",
+        &needed,
+        factor,
+        None,
+    ));
+    let rates = |rates: &Rates| {
+        json!({
+            "arithmetic_ns": rates.arithmetic,
+            "division_ns": rates.division,
+            "root_ns": rates.root,
+            "function_ns": rates.function,
+        })
+    };
+    Ok(json!({
+        "command": "cargo run --release -p bulge-benches --bin limits -- --write",
+        "compiled": rates(&compiled),
+        "lanes": rates(&lanes),
+        "rows": rows,
+    }))
+}
+
+fn main() -> Result<(), Failure> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    if let [flag, asked, calls, table] = &arguments[..] {
+        let known = KERNELS.into_iter().find(|(name, _)| flag == "--calls" && name == asked);
+        let (name, maker) = known.ok_or("write `limits`, or `limits --write`")?;
+        (maker(name, Path::new(table))?.calls)(calls.parse()?);
+        return Ok(());
+    }
+    let table = std::env::temp_dir().join(format!("bulge-limits-{}.bulge", std::process::id()));
+    build(&table)?;
+    let found = measured(&table);
+    std::fs::remove_file(&table)?;
+    let found = found?;
+    let number = |row: &Value, key: &str| row[key].as_f64().unwrap_or(f64::NAN);
+    for rates in ["compiled", "lanes"] {
+        println!("{rates}: {}", found[rates]);
+    }
+    for row in found["rows"].as_array().into_iter().flatten() {
+        let [time, compiled, lanes] = ["time_ns", "compiled_ns", "lanes_ns"].map(|key| number(row, key));
+        println!(
+            "{:<40} {:>10.0} +x {:>6.0} / {:>6.0} sqrt {:>10.0} instructions {time:>12.1} ns, {:.1} times {compiled:.1} ns, {:.1} times {lanes:.1} ns",
+            row["kernel"].as_str().unwrap_or(""),
+            number(row, "arithmetic"),
+            number(row, "divisions"),
+            number(row, "roots"),
+            number(row, "instructions"),
+            time / compiled,
+            time / lanes,
+        );
+    }
+    if arguments.iter().any(|argument| argument == "--write") {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("limits.json");
+        std::fs::write(path, format!("{}\n", serde_json::to_string_pretty(&found)?))?;
+    }
+    Ok(())
+}
