@@ -1,5 +1,6 @@
 //! Errors of an equilibrium, with their numbers.
 
+use bulge_muscles::units::Decimals;
 use bulge_muscles::{Fault, Pressure};
 
 use crate::problem::{MOST_STRAIN, WIDEST_FITTING};
@@ -30,7 +31,7 @@ pub enum FibreError {
         value: f64,
     },
     /// A dimension outside the range for which the solver is verified.
-    #[error("the {what} of this muscle is {value:.6}: meridians are computed from {low} to {high}")]
+    #[error("the {what} of this muscle is {:.6}: meridians are computed from {low} to {high}", Decimals(*value))]
     OutOfRange {
         /// Which dimension.
         what: &'static str,
@@ -42,7 +43,7 @@ pub enum FibreError {
         high: f64,
     },
     /// The cloth would be taut before the muscle bulges.
-    #[error("the cloth is unfolded at a radius of {:.4} mm, less than the {:.4} mm of the fibres at the fittings: it must not be narrower than these", 1e3 * taut_m, 1e3 * end_m)]
+    #[error("the cloth is unfolded at a radius of {:.4} mm, less than the {:.4} mm of the fibres at the fittings: it must not be narrower than these", Decimals(1e3 * taut_m), Decimals(1e3 * end_m))]
     ClothTooNarrow {
         /// Radius at which the cloth is unfolded \[m\].
         taut_m: f64,
@@ -50,7 +51,7 @@ pub enum FibreError {
         end_m: f64,
     },
     /// The fibres of the braid would lie along the parallels at these fittings.
-    #[error("the fittings have a radius of {:.4} mm, and this braid can't be wider than {:.4} mm, where its fibres lie along the circumference: at most {:.4} mm", 1e3 * end_m, 1e3 * widest_m, 1e3 * WIDEST_FITTING * widest_m)]
+    #[error("the fittings have a radius of {:.4} mm, and this braid can't be wider than {:.4} mm, where its fibres lie along the circumference: at most {:.4} mm", Decimals(1e3 * end_m), Decimals(1e3 * widest_m), Decimals(1e3 * WIDEST_FITTING * widest_m))]
     FittingTooWide {
         /// Radius of the fittings \[m\].
         end_m: f64,
@@ -141,7 +142,7 @@ pub enum FibreError {
     },
     /// The muscle would be drawn out farther than any fibre bears.
     #[error(
-        "no equilibrium at contraction {:.4} %: its fibres would be stretched by {:.1} %, and none bears more than {:.0} %; ask for less length or force", percent(*contraction), 100.0 * strain, 100.0 * MOST_STRAIN
+        "no equilibrium at contraction {:.4} %: its fibres would be stretched by {:.1} %, and none bears more than {:.0} %; ask for less length or force", percent(*contraction), Decimals(100.0 * strain), 100.0 * MOST_STRAIN
     )]
     Overstretched {
         /// Asked contraction.
@@ -151,7 +152,7 @@ pub enum FibreError {
     },
     /// The muscle would have to push, and the contraction at which its force vanishes was not found.
     #[error(
-        "no equilibrium with a pulling force at contraction {:.4} %: the muscle would push with {:.6} N", percent(*contraction), -force_n
+        "no equilibrium with a pulling force at contraction {:.4} %: the muscle would push with {:.6} N", percent(*contraction), Decimals(-force_n)
     )]
     WouldPush {
         /// Asked contraction.
@@ -160,7 +161,7 @@ pub enum FibreError {
         force_n: f64,
     },
     /// A muscle pulls; it can't push.
-    #[error("no equilibrium with a force of {force_n:.6} N: a muscle only pulls, from 0 N at its contraction limit of {:.4} %", percent(*limit))]
+    #[error("no equilibrium with a force of {:.6} N: a muscle only pulls, from 0 N at its contraction limit of {:.4} %", Decimals(*force_n), percent(*limit))]
     Pushes {
         /// Asked force \[N\].
         force_n: f64,
@@ -168,7 +169,7 @@ pub enum FibreError {
         limit: f64,
     },
     /// The volume is larger than at any contraction at which the muscle pulls.
-    #[error("no equilibrium with a volume of {:.4} ml: this muscle holds at most {:.4} ml, at contraction {:.4} %, {why}", 1e6 * volume_m3, 1e6 * high_m3, percent(*contraction))]
+    #[error("no equilibrium with a volume of {:.4} ml: this muscle holds at most {:.4} ml, at contraction {:.4} %, {why}", Decimals(1e6 * volume_m3), Decimals(1e6 * high_m3), percent(*contraction))]
     VolumeTooLarge {
         /// Asked volume \[m^3\].
         volume_m3: f64,
@@ -180,7 +181,7 @@ pub enum FibreError {
         why: &'static str,
     },
     /// The volume is smaller than that of the muscle drawn out as far as it goes, or contracted to its limit.
-    #[error("no equilibrium with a volume of {:.4} ml: it must be greater than {:.4} ml, the least that this muscle holds while it pulls", 1e6 * volume_m3, 1e6 * low_m3)]
+    #[error("no equilibrium with a volume of {:.4} ml: it must be greater than {:.4} ml, the least that this muscle holds while it pulls", Decimals(1e6 * volume_m3), Decimals(1e6 * low_m3))]
     VolumeTooSmall {
         /// Asked volume \[m^3\].
         volume_m3: f64,
@@ -188,7 +189,7 @@ pub enum FibreError {
         low_m3: f64,
     },
     /// The force is larger than any that was found at any length.
-    #[error("no equilibrium with a force of {force_n:.6} N: the largest force found is {high_n:.6} N, at contraction {:.4} %", percent(*contraction))]
+    #[error("no equilibrium with a force of {:.6} N: the largest force found is {high_n:.6} N, at contraction {:.4} %", Decimals(*force_n), percent(*contraction))]
     ForceTooLarge {
         /// Asked force \[N\].
         force_n: f64,
@@ -198,7 +199,7 @@ pub enum FibreError {
         contraction: f64,
     },
     /// No contraction with this volume was found at which the muscle pulls.
-    #[error("no pulling equilibrium with a volume of {:.4} ml was found; `bulge curve` shows the volumes of this muscle", 1e6 * volume_m3)]
+    #[error("no pulling equilibrium with a volume of {:.4} ml was found; `bulge curve` shows the volumes of this muscle", Decimals(1e6 * volume_m3))]
     VolumeNotFound {
         /// Asked volume \[m^3\].
         volume_m3: f64,
@@ -242,9 +243,9 @@ pub enum FibreError {
 }
 
 /// In percent, with no sign where four digits show nothing else.
-fn percent(contraction: f64) -> f64 {
+fn percent(contraction: f64) -> Decimals {
     let percent = 100.0 * contraction;
-    if percent.abs() < 5e-5 { 0.0 } else { percent }
+    Decimals(if percent.abs() < 5e-5 { 0.0 } else { percent })
 }
 
 fn slack_from(limit: Option<f64>) -> String {

@@ -1,5 +1,7 @@
 //! Digits of numbers: rounded as values, and written for people.
 
+use std::fmt;
+
 /// Rounds to `digits` significant decimal digits, so that 0.11 m reads "110 mm", not "110.00000000000001 mm".
 ///
 /// ```
@@ -35,9 +37,50 @@ pub fn significant(value: f64, digits: i32) -> String {
     rounded
 }
 
+/// From this size on, digits before the point say less than an exponent.
+pub(crate) const USUAL: f64 = 1e12;
+
+/// A number that is shown with as many decimals as the format asks for, or with an exponent where these would say
+/// nothing: from 1e12 on, or where all of them would be zero.
+///
+/// ```
+/// use bulge_muscles::units::Decimals;
+/// assert_eq!(format!("{:.2} {:.2} {:.2}", Decimals(0.25), Decimals(1e200), Decimals(-1e-5)), "0.25 1.00e200 -1.00e-5");
+/// ```
+#[derive(Debug, Clone, Copy)]
+pub struct Decimals(pub f64);
+
+impl fmt::Display for Decimals {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Some(digits) = f.precision() else { return write!(f, "{}", self.0) };
+        let size = self.0.abs();
+        let is_lost = size > 0.0 && format!("{size:.digits$}").trim_matches(['0', '.']).is_empty();
+        if size.is_finite() && (size >= USUAL || is_lost) {
+            write!(f, "{:.digits$e}", self.0)
+        } else {
+            write!(f, "{:.digits$}", self.0)
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn decimals_say_something() {
+        for (value, shown) in
+            [(0.0, "0.0000"), (2.5, "2.5000"), (-3e11, "-300000000000.0000"), (f64::INFINITY, "inf")]
+        {
+            assert_eq!(format!("{:.4}", Decimals(value)), shown);
+        }
+        for (value, shown) in
+            [(1e12, "1.0000e12"), (-1e290, "-1.0000e290"), (4.9e-5, "4.9000e-5"), (1e-300, "1.0000e-300")]
+        {
+            assert_eq!(format!("{:.4}", Decimals(value)), shown);
+        }
+        assert_eq!(format!("{:.4}", Decimals(5.1e-5)), "0.0001");
+    }
 
     #[test]
     fn significant_digits() {

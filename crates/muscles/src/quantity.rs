@@ -73,7 +73,10 @@ macro_rules! quantity {
             fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
                 let value = in_unit(self.0, $shown_factor);
                 match f.precision() {
-                    Some(digits) => write!(f, "{value:.digits$} {}", $shown),
+                    Some(digits) => write!(f, "{:.digits$} {}", $crate::digits::Decimals(value), $shown),
+                    None if value.abs() >= $crate::digits::USUAL => {
+                        write!(f, "{:e} {}", $crate::digits::rounded(value, 12), $shown)
+                    }
                     None => write!(f, "{} {}", $crate::digits::rounded(value, 12), $shown),
                 }
             }

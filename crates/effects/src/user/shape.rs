@@ -625,6 +625,14 @@ mod tests {
         let parts = own(&none).reshaped(&[3e5, 0.002], &clamped()).unwrap();
         let message = Problem::new(&parts, Pressure::bar(1.0)).unwrap_err().to_string();
         assert!(message.contains("`energy` is NaN at rest"), "{message}");
+        // sin(alpha0) is 0.42 (25 degrees): a turn of 2.5 times that of rest needs fibres along the circumference at the
+        // fittings, at one pressure and not at another.
+        let turned = own("[effects.turn]\ntitle = \"Turn\"\ntwist = \"sin(alpha0)/r0*(1 + k*p)\"\n\
+            parameters.k = { unit = \"1/MPa\", typical = \"1 1/MPa\", low = \"0 1/MPa\", high = \"9 1/MPa\" }\n");
+        let parts = turned.reshaped(&[5e-6], &clamped()).unwrap();
+        let below = Problem::new(&parts, Pressure::bar(2.0)).unwrap();
+        let message = below.at_pressure(Pressure::bar(3.0)).unwrap_err().to_string();
+        assert!(message.contains("can't be wider than 10.15"), "{message}");
         let lobed = preset("ppam-2-r16").unwrap().with(Parameter::ClothCircumference, 0.33).unwrap();
         let area = "[effects.x]\ntitle = \"x\"\narea = \"pi*(r + t)^2\"\n\
             parameters.t = { unit = \"mm\", typical = \"1 mm\", low = \"0 mm\", high = \"5 mm\" }\n";
