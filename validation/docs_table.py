@@ -171,7 +171,7 @@ def ratios(measured):
 
 def limits(measured):
     """What each kernel takes beside what its operations need at least."""
-    lines = ["| a call of | needs: + x, divisions, roots | instructions | time | limit as compiled | limit in all lanes |", "|---|---|---|---|---|---|"]
+    lines = ["| a call of | needs: + x, divisions, roots | instructions | time | limit as compiled | limit in four lanes |", "|---|---|---|---|---|---|"]
     for row in measured["rows"]:
         needs = f"{_count(row['arithmetic'])}, {_count(row['divisions'])}, {_count(row['roots'])}"
         instructions = _count(row["instructions"]) if row["instructions"] else ""

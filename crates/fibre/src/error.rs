@@ -50,12 +50,12 @@ pub enum FibreError {
         /// Radius at the fittings \[m\].
         end_m: f64,
     },
-    /// The fibres of the braid would lie along the parallels at these fittings.
-    #[error("the fittings have a radius of {:.4} mm, and this braid can't be wider than {:.4} mm, where its fibres lie along the circumference: at most {:.4} mm", Decimals(1e3 * end_m), Decimals(1e3 * widest_m), Decimals(1e3 * WIDEST_FITTING * widest_m))]
+    /// The fibres would lie along the parallels at these fittings.
+    #[error("the fittings have a radius of {:.4} mm, and this muscle can't be wider than {:.4} mm, where its fibres lie along the circumference: at most {:.4} mm", Decimals(1e3 * end_m), Decimals(1e3 * widest_m), Decimals(1e3 * WIDEST_FITTING * widest_m))]
     FittingTooWide {
         /// Radius of the fittings \[m\].
         end_m: f64,
-        /// r0/sin(alpha0) \[m\].
+        /// r0/sin(alpha0), or what a formula for the turn of the fibres leaves \[m\].
         widest_m: f64,
     },
     /// A user's own formula has no value.

@@ -107,11 +107,18 @@ impl Problem {
     /// Whether an equilibrium takes a search by shooting, because there is no closed form.
     #[must_use]
     pub fn shoots(&self) -> bool {
-        matches!(self.scheme(Approach::Auto), Ok(Scheme::Shooting(_)))
+        matches!(self.unchecked(Approach::Auto), Ok(Scheme::Shooting(_)))
     }
 
-    /// The scheme that `approach` selects for this muscle.
+    /// The scheme that `approach` selects for this muscle, whose fibres can be at its fittings.
     pub(crate) fn scheme(&self, approach: Approach) -> Result<Scheme, FibreError> {
+        if !self.is_cylinder() {
+            self.check_turn()?;
+        }
+        self.unchecked(approach)
+    }
+
+    fn unchecked(&self, approach: Approach) -> Result<Scheme, FibreError> {
         if self.is_cylinder() {
             return match approach {
                 Approach::Shooting => Err(FibreError::NothingToShoot),
@@ -125,6 +132,23 @@ impl Problem {
             (Approach::ClosedForm, Some(why)) => Err(FibreError::NoClosedForm { why }),
             (_, None) => Ok(Scheme::ClosedForm),
         }
+    }
+
+    /// Refuses a formula that turns the fibres more than they can at the fittings: l1^2 = (1 + T/EA)^2 - q^2 r^2 > 0.
+    fn check_turn(&self) -> Result<(), FibreError> {
+        if self.parts.twist.is_none() {
+            return Ok(());
+        }
+        let turned = self.net.turn.abs() * self.net.end_radius;
+        if turned.is_nan() {
+            return Err(FibreError::FormulaWithoutValue { what: "twist", value: turned });
+        }
+        let stretched = if self.net.compliance > 0.0 { 1.0 + MOST_STRAIN } else { 1.0 };
+        if turned < stretched {
+            return Ok(());
+        }
+        let end_m = self.net.end_radius * self.parts.radius;
+        Err(FibreError::FittingTooWide { end_m, widest_m: stretched * end_m / turned })
     }
 
     fn obstacle_to_closed_form(&self) -> Option<&'static str> {

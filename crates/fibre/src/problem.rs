@@ -74,12 +74,6 @@ impl Problem {
             return Err(FibreError::PressureNotPositive { pressure_pa: pressure });
         }
         let net = parts.net(pressure);
-        // A formula may turn the fibres more than the fittings bear, at one pressure or at all.
-        let turned = net.turn.abs() * net.end_radius;
-        if parts.twist.is_some() && parts.ends != Ends::Cylinder && turned > WIDEST_FITTING {
-            let widest_m = parts.radius / net.turn.abs();
-            return Err(FibreError::FittingTooWide { end_m: net.end_radius * parts.radius, widest_m });
-        }
         quadrature::prepare(&net);
         Ok(Self { parts, pressure, net })
     }

@@ -37,6 +37,7 @@ const MAX_DUPLICATIONS: u32 = 300;
 ///
 /// Relative error below 2e-15 (F) and 4e-15 (D); NaN outside the range.
 #[must_use]
+#[inline]
 pub fn incomplete(t: f64, m: f64) -> Pair {
     let t2 = t * t;
     let (rf, rd) = carlson(1.0, 1.0 + (1.0 - m) * t2, 1.0 + t2);
@@ -45,6 +46,7 @@ pub fn incomplete(t: f64, m: f64) -> Pair {
 
 /// Carlson's RF(x, y, z) and RD(x, y, z) for positive arguments, sharing the duplications.
 #[must_use]
+#[inline]
 pub fn carlson(x: f64, y: f64, z: f64) -> (f64, f64) {
     let (mut x, mut y, mut z) = (x, y, z);
     let mut sum = 0.0;
@@ -67,6 +69,7 @@ pub fn carlson(x: f64, y: f64, z: f64) -> (f64, f64) {
 }
 
 /// Series of RF about equal arguments (DLMF 19.36.1).
+#[inline]
 fn rf_series(x: f64, y: f64, z: f64) -> f64 {
     let a = (x + y + z) / 3.0;
     let inverse = 1.0 / a;
@@ -82,6 +85,7 @@ fn rf_series(x: f64, y: f64, z: f64) -> f64 {
 }
 
 /// Series of RD about equal arguments (DLMF 19.36.2).
+#[inline]
 fn rd_series(x: f64, y: f64, z: f64, a: f64) -> f64 {
     let inverse = 1.0 / a;
     let (dx, dy) = (1.0 - x * inverse, 1.0 - y * inverse);
