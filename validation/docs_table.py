@@ -4,7 +4,7 @@
     python validation/docs_table.py diagnosis [--check]      # from validation/hidden-effects/answers, scored anew
     python validation/docs_table.py forms [--check]          # the same for the forms suite: with the whole catalogue, and with the truth as the only candidate
     python validation/docs_table.py ratios [--check]         # from benches/ratios.json, which benches/ratios.py measures
-    python validation/docs_table.py limits [--check]         # from benches/limits.json, which `limits -- --write` of bulge-benches measures
+    python validation/docs_table.py limits [--check]         # from benches/limits.json, which the program `limits` of bulge-benches prints
     python validation/docs_table.py mutation [--check]       # from validation/mutation.json, which validation/mutation.py measures
     python validation/docs_table.py coverage [--check]       # from validation/coverage.json, which validation/coverage.py measures
     python validation/docs_table.py fuzz [--check]           # from fuzz/counts.tsv, to which fuzz/run adds
@@ -175,8 +175,8 @@ def limits(measured):
     for row in measured["rows"]:
         needs = f"{_count(row['arithmetic'])}, {_count(row['divisions'])}, {_count(row['roots'])}"
         instructions = _count(row["instructions"]) if row["instructions"] else ""
-        of = lambda key: f"{_time(1e-9 * row[key])}: {float(format(row['time_ns'] / row[key], '.2g')):g} times"
-        cells = [f"{row['kernel']} ({row['counted']})", needs, instructions, _time(1e-9 * row["time_ns"]), of("compiled_ns"), of("lanes_ns")]
+        bounds = [f"{_time(1e-9 * row[key])}: {float(format(row['time_ns'] / row[key], '.2g')):g} times" for key in ("compiled_ns", "lanes_ns")]
+        cells = [f"{row['kernel']} ({row['counted']})", needs, instructions, _time(1e-9 * row["time_ns"]), *bounds]
         lines.append("| " + " | ".join(cells) + " |")
     return "\n".join(lines)
 

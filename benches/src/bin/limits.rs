@@ -1,8 +1,8 @@
 //! What each kernel costs beside what its mathematics needs: a roofline.
 //!
 //! ```sh
-//! cargo run --release -p bulge-benches --bin limits            # the table
-//! cargo run --release -p bulge-benches --bin limits -- --write # and into benches/limits.json, for the page on speed
+//! cargo run --release -p bulge-benches --bin limits > benches/limits.json
+//! python3 validation/docs_table.py limits                                   # the table, into docs/speed.md
 //! ```
 //!
 //! Operations are counted in the formulas that are used, by hand, to some ten per cent. The rates of the machine are measured
@@ -27,7 +27,7 @@ use bulge_benches::{Failure, SLENDERNESS, braid, median_us, pleated, random_poin
 use bulge_fibre::{Approach, Problem, closed_form};
 use bulge_membrane::case::Case;
 use bulge_numerics::Random;
-use bulge_numerics::elliptic::incomplete;
+use bulge_numerics::elliptic::{duplications, incomplete};
 use bulge_sweep::{Plan, tabulate};
 use bulge_table::Table;
 use serde_json::{Value, json};
@@ -44,6 +44,7 @@ const LOOPS: usize = 10_000;
 /// Points of a kernel: more than branch predictors learn.
 const POINTS: usize = 4096;
 const ROUNDS: usize = 15;
+
 /// Operations that a formula needs.
 #[derive(Debug, Clone, Copy, Default)]
 struct Operations {
@@ -172,21 +173,6 @@ struct Kernel {
     traced: usize,
 }
 
-/// Duplications of Carlson's algorithm until its series are exact, as [`incomplete`] makes them.
-fn duplications(t: f64, m: f64) -> f64 {
-    let (mut x, mut y, mut z) = (1.0_f64, 1.0 + (1.0 - m) * t * t, 1.0 + t * t);
-    let mut count = 0.0;
-    loop {
-        let a: f64 = 0.2 * (x + y + 3.0 * z);
-        if (a - x).abs().max((a - y).abs()).max((a - z).abs()) < 0.012 * a {
-            return count;
-        }
-        let lambda = (x * y).sqrt() + (x * z).sqrt() + (y * z).sqrt();
-        [x, y, z] = [x, y, z].map(|v| 0.25 * (v + lambda));
-        count += 1.0;
-    }
-}
-
 /// A pair of elliptic integrals after so many duplications.
 fn pair(duplications: f64) -> Operations {
     // lambda, the sum, four means.
@@ -227,7 +213,7 @@ fn elliptic(name: &'static str) -> Kernel {
     let mut random = Random::new(1, 0);
     let arguments: Vec<[f64; 2]> =
         (0..POINTS).map(|_| [3.0 * random.uniform(), 0.5 * random.uniform()]).collect();
-    let mean = arguments.iter().map(|[t, m]| duplications(*t, *m)).sum::<f64>() / POINTS as f64;
+    let mean = arguments.iter().map(|[t, m]| f64::from(duplications(*t, *m))).sum::<f64>() / POINTS as f64;
     let mut next = 0;
     Kernel {
         name,
@@ -248,7 +234,7 @@ fn closed(name: &'static str) -> Kernel {
     let mut random = Random::new(2, 0);
     let contractions: Vec<f64> = (0..POINTS).map(|_| 0.05 + 0.35 * random.uniform()).collect();
     let found = contractions.iter().filter_map(|e| closed_form::solve(*e, SLENDERNESS, 0.0).ok());
-    let mean = found.map(|found| duplications(found.t, found.m)).sum::<f64>() / POINTS as f64;
+    let mean = found.map(|found| f64::from(duplications(found.t, found.m))).sum::<f64>() / POINTS as f64;
     let mut next = 0;
     Kernel {
         name,
@@ -408,7 +394,7 @@ fn measured(table: &Path) -> Result<Value, Failure> {
         })
     };
     Ok(json!({
-        "command": "cargo run --release -p bulge-benches --bin limits -- --write",
+        "command": "cargo run --release -p bulge-benches --bin limits > benches/limits.json",
         "compiled": rates(&compiled),
         "lanes": rates(&lanes),
         "rows": rows,
@@ -419,7 +405,7 @@ fn main() -> Result<(), Failure> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     if let [flag, asked, calls, table] = &arguments[..] {
         let known = KERNELS.into_iter().find(|(name, _)| flag == "--calls" && name == asked);
-        let (name, maker) = known.ok_or("write `limits`, or `limits --write`")?;
+        let (name, maker) = known.ok_or("write `limits` alone")?;
         (maker(name, Path::new(table))?.calls)(calls.parse()?);
         return Ok(());
     }
@@ -427,27 +413,6 @@ fn main() -> Result<(), Failure> {
     build(&table)?;
     let found = measured(&table);
     std::fs::remove_file(&table)?;
-    let found = found?;
-    let number = |row: &Value, key: &str| row[key].as_f64().unwrap_or(f64::NAN);
-    for rates in ["compiled", "lanes"] {
-        println!("{rates}: {}", found[rates]);
-    }
-    for row in found["rows"].as_array().into_iter().flatten() {
-        let [time, compiled, lanes] = ["time_ns", "compiled_ns", "lanes_ns"].map(|key| number(row, key));
-        println!(
-            "{:<40} {:>10.0} +x {:>6.0} / {:>6.0} sqrt {:>10.0} instructions {time:>12.1} ns, {:.1} times {compiled:.1} ns, {:.1} times {lanes:.1} ns",
-            row["kernel"].as_str().unwrap_or(""),
-            number(row, "arithmetic"),
-            number(row, "divisions"),
-            number(row, "roots"),
-            number(row, "instructions"),
-            time / compiled,
-            time / lanes,
-        );
-    }
-    if arguments.iter().any(|argument| argument == "--write") {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("limits.json");
-        std::fs::write(path, format!("{}\n", serde_json::to_string_pretty(&found)?))?;
-    }
+    println!("{}", serde_json::to_string_pretty(&found?)?);
     Ok(())
 }

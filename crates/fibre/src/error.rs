@@ -1,7 +1,7 @@
 //! Errors of an equilibrium, with their numbers.
 
-use bulge_muscles::units::Decimals;
-use bulge_muscles::{Fault, Pressure};
+use bulge_muscles::units::significant;
+use bulge_muscles::{Fault, Force, Length, Pressure, Ratio, Volume};
 
 use crate::problem::{MOST_STRAIN, WIDEST_FITTING};
 
@@ -31,7 +31,7 @@ pub enum FibreError {
         value: f64,
     },
     /// A dimension outside the range for which the solver is verified.
-    #[error("the {what} of this muscle is {:.6}: meridians are computed from {low} to {high}", Decimals(*value))]
+    #[error("the {what} of this muscle is {}: meridians are computed from {low} to {high}", significant(*value, 7))]
     OutOfRange {
         /// Which dimension.
         what: &'static str,
@@ -43,7 +43,7 @@ pub enum FibreError {
         high: f64,
     },
     /// The cloth would be taut before the muscle bulges.
-    #[error("the cloth is unfolded at a radius of {:.4} mm, less than the {:.4} mm of the fibres at the fittings: it must not be narrower than these", Decimals(1e3 * taut_m), Decimals(1e3 * end_m))]
+    #[error("the cloth is unfolded at a radius of {:.4}, less than the {:.4} of the fibres at the fittings: it must not be narrower than these", Length::m(*taut_m), Length::m(*end_m))]
     ClothTooNarrow {
         /// Radius at which the cloth is unfolded \[m\].
         taut_m: f64,
@@ -51,7 +51,7 @@ pub enum FibreError {
         end_m: f64,
     },
     /// The fibres would lie along the parallels at these fittings.
-    #[error("the fittings have a radius of {:.4} mm, and this muscle can't be wider than {:.4} mm, where its fibres lie along the circumference: at most {:.4} mm", Decimals(1e3 * end_m), Decimals(1e3 * widest_m), Decimals(1e3 * WIDEST_FITTING * widest_m))]
+    #[error("the fittings have a radius of {:.4}, and this muscle can't be wider than {:.4}, where its fibres lie along the circumference: at most {:.4}", Length::m(*end_m), Length::m(*widest_m), Length::m(WIDEST_FITTING * widest_m))]
     FittingTooWide {
         /// Radius of the fittings \[m\].
         end_m: f64,
@@ -70,7 +70,7 @@ pub enum FibreError {
     },
     /// A user's own formula has no value or slope at a radius that the wall may take.
     #[error(
-        "at contraction {:.4} % the wall may be stretched to l1 = {along:.4}, l2 = {around:.4}, where the formula for `{what}` or its slope isn't finite; write one that is finite there", percent(*contraction)
+        "at contraction {:.4} the wall may be stretched to l1 = {along:.4}, l2 = {around:.4}, where the formula for `{what}` or its slope isn't finite; write one that is finite there", percent(*contraction)
     )]
     FormulaEnds {
         /// Asked contraction.
@@ -84,7 +84,7 @@ pub enum FibreError {
     },
     /// The slope of a user's own formula jumps.
     #[error(
-        "no equilibrium is computed at contraction {:.4} %: the slope of the formula for `{what}` jumps at l1 = {along:.4}, l2 = {around:.4}, so that the wall would keep that radius over a length; write a kink whose slope is continuous, such as max(l2 - 1.2, 0)^2", percent(*contraction)
+        "no equilibrium is computed at contraction {:.4}: the slope of the formula for `{what}` jumps at l1 = {along:.4}, l2 = {around:.4}, so that the wall would keep that radius over a length; write a kink whose slope is continuous, such as max(l2 - 1.2, 0)^2", percent(*contraction)
     )]
     FormulaJumps {
         /// Asked contraction.
@@ -104,7 +104,7 @@ pub enum FibreError {
     },
     /// The contraction lies beyond the one at which the force vanishes.
     #[error(
-        "no equilibrium with a pulling force at contraction {:.4} %: the limit of this muscle is {:.4} %, where the force vanishes",
+        "no equilibrium with a pulling force at contraction {:.4}: the limit of this muscle is {:.4}, where the force vanishes",
         percent(*contraction), percent(*limit)
     )]
     BeyondLimit {
@@ -114,14 +114,14 @@ pub enum FibreError {
         limit: f64,
     },
     /// Nothing is left between the fittings.
-    #[error("no equilibrium at contraction {:.4} %: a muscle that contracts by 100 % has no length (a contraction without unit is a fraction: write \"20 %\" or 0.2)", percent(*contraction))]
+    #[error("no equilibrium at contraction {:.4}: a muscle that contracts by 100 % has no length (a contraction without unit is a fraction: write \"20 %\" or 0.2)", percent(*contraction))]
     NoLength {
         /// Asked contraction.
         contraction: f64,
     },
     /// The muscle would have to be longer than its inextensible fibres allow.
     #[error(
-        "no equilibrium at contraction {:.4} %: it must be greater than {:.4} %, where the inextensible fibres are drawn straight (give `fibre.stiffness` to let them stretch)",
+        "no equilibrium at contraction {:.4}: it must be greater than {:.4}, where the inextensible fibres are drawn straight (give `fibre.stiffness` to let them stretch)",
         percent(*contraction), percent(*limit)
     )]
     TooLong {
@@ -142,7 +142,7 @@ pub enum FibreError {
     },
     /// The muscle would be drawn out farther than any fibre bears.
     #[error(
-        "no equilibrium at contraction {:.4} %: its fibres would be stretched by {:.1} %, and none bears more than {:.0} %; ask for less length or force", percent(*contraction), Decimals(100.0 * strain), 100.0 * MOST_STRAIN
+        "no equilibrium at contraction {:.4}: its fibres would be stretched by {:.1}, and none bears more than {:.0}; ask for less length or force", percent(*contraction), Ratio::one(*strain), Ratio::one(MOST_STRAIN)
     )]
     Overstretched {
         /// Asked contraction.
@@ -152,7 +152,7 @@ pub enum FibreError {
     },
     /// The muscle would have to push, and the contraction at which its force vanishes was not found.
     #[error(
-        "no equilibrium with a pulling force at contraction {:.4} %: the muscle would push with {:.6} N", percent(*contraction), Decimals(-force_n)
+        "no equilibrium with a pulling force at contraction {:.4}: the muscle would push with {:.6}", percent(*contraction), Force::n(-force_n)
     )]
     WouldPush {
         /// Asked contraction.
@@ -161,7 +161,7 @@ pub enum FibreError {
         force_n: f64,
     },
     /// A muscle pulls; it can't push.
-    #[error("no equilibrium with a force of {:.6} N: a muscle only pulls, from 0 N at its contraction limit of {:.4} %", Decimals(*force_n), percent(*limit))]
+    #[error("no equilibrium with a force of {:.6}: a muscle only pulls, from 0 N at its contraction limit of {:.4}", Force::n(*force_n), percent(*limit))]
     Pushes {
         /// Asked force \[N\].
         force_n: f64,
@@ -169,7 +169,7 @@ pub enum FibreError {
         limit: f64,
     },
     /// The volume is larger than at any contraction at which the muscle pulls.
-    #[error("no equilibrium with a volume of {:.4} ml: this muscle holds at most {:.4} ml, at contraction {:.4} %, {why}", Decimals(1e6 * volume_m3), Decimals(1e6 * high_m3), percent(*contraction))]
+    #[error("no equilibrium with a volume of {:.4}: this muscle holds at most {:.4}, at contraction {:.4}, {why}", Volume::m3(*volume_m3), Volume::m3(*high_m3), percent(*contraction))]
     VolumeTooLarge {
         /// Asked volume \[m^3\].
         volume_m3: f64,
@@ -181,7 +181,7 @@ pub enum FibreError {
         why: &'static str,
     },
     /// The volume is smaller than that of the muscle drawn out as far as it goes, or contracted to its limit.
-    #[error("no equilibrium with a volume of {:.4} ml: it must be greater than {:.4} ml, the least that this muscle holds while it pulls", Decimals(1e6 * volume_m3), Decimals(1e6 * low_m3))]
+    #[error("no equilibrium with a volume of {:.4}: it must be greater than {:.4}, the least that this muscle holds while it pulls", Volume::m3(*volume_m3), Volume::m3(*low_m3))]
     VolumeTooSmall {
         /// Asked volume \[m^3\].
         volume_m3: f64,
@@ -189,7 +189,7 @@ pub enum FibreError {
         low_m3: f64,
     },
     /// The force is larger than any that was found at any length.
-    #[error("no equilibrium with a force of {:.6} N: the largest force found is {high_n:.6} N, at contraction {:.4} %", Decimals(*force_n), percent(*contraction))]
+    #[error("no equilibrium with a force of {:.6}: the largest force found is {:.6}, at contraction {:.4}", Force::n(*force_n), Force::n(*high_n), percent(*contraction))]
     ForceTooLarge {
         /// Asked force \[N\].
         force_n: f64,
@@ -199,7 +199,7 @@ pub enum FibreError {
         contraction: f64,
     },
     /// No contraction with this volume was found at which the muscle pulls.
-    #[error("no pulling equilibrium with a volume of {:.4} ml was found; `bulge curve` shows the volumes of this muscle", Decimals(1e6 * volume_m3))]
+    #[error("no pulling equilibrium with a volume of {:.4} was found; `bulge curve` shows the volumes of this muscle", Volume::m3(*volume_m3))]
     VolumeNotFound {
         /// Asked volume \[m^3\].
         volume_m3: f64,
@@ -217,7 +217,7 @@ pub enum FibreError {
     NothingToShoot,
     /// The rubber carries more than the pressure: there is no equilibrium with taut fibres, and one with
     /// slack ones isn't computed.
-    #[error("at contraction {:.4} % the fibres are slack{}: the bladder alone carries more than the pressure there; more pressure or less contraction makes them taut", percent(*contraction), slack_from(*limit))]
+    #[error("at contraction {:.4} the fibres are slack{}: the bladder alone carries more than the pressure there; more pressure or less contraction makes them taut", percent(*contraction), slack_from(*limit))]
     Slack {
         /// Asked contraction.
         contraction: f64,
@@ -225,13 +225,13 @@ pub enum FibreError {
         limit: Option<f64>,
     },
     /// The fibres don't hold the long middle: it would bulge and narrow in turn.
-    #[error("no equilibrium with one middle at contraction {:.4} %: the gas acts so far inside the fibres that they don't hold a cylinder of this length, it would bulge and narrow in turn; a thinner wall or a shorter muscle has one", percent(*contraction))]
+    #[error("no equilibrium with one middle at contraction {:.4}: the gas acts so far inside the fibres that they don't hold a cylinder of this length, it would bulge and narrow in turn; a thinner wall or a shorter muscle has one", percent(*contraction))]
     Undulates {
         /// Asked contraction.
         contraction: f64,
     },
     /// Newton's method did not converge.
-    #[error("the equilibrium at contraction {:.4} % did not converge: residual {residual:.2e} after {iterations} iterations; try a contraction nearer to the middle of the muscle's range", percent(*contraction))]
+    #[error("the equilibrium at contraction {:.4} did not converge: residual {residual:.2e} after {iterations} iterations; try a contraction nearer to the middle of the muscle's range", percent(*contraction))]
     NotConverged {
         /// Asked contraction.
         contraction: f64,
@@ -243,13 +243,12 @@ pub enum FibreError {
 }
 
 /// In percent, with no sign where four digits show nothing else.
-fn percent(contraction: f64) -> Decimals {
-    let percent = 100.0 * contraction;
-    Decimals(if percent.abs() < 5e-5 { 0.0 } else { percent })
+fn percent(contraction: f64) -> Ratio {
+    Ratio::one(if contraction.abs() < 5e-7 { 0.0 } else { contraction })
 }
 
 fn slack_from(limit: Option<f64>) -> String {
-    limit.map_or_else(String::new, |limit| format!(", as they are from {:.4} % on", percent(limit)))
+    limit.map_or_else(String::new, |limit| format!(", as they are from {:.4} on", percent(limit)))
 }
 
 impl FibreError {

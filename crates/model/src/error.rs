@@ -1,14 +1,13 @@
 //! Errors of a model, with the rows and numbers concerned.
 
 use bulge_fibre::FibreError;
-use bulge_muscles::units::Decimals;
-use bulge_muscles::{Fault, MuscleError, Pressure};
+use bulge_muscles::{Fault, MuscleError, Pressure, Ratio};
 
 /// Why a model has no prediction.
 #[derive(Debug, Clone, thiserror::Error)]
 pub enum ModelError {
     /// Some rows have no equilibrium.
-    #[error("no equilibrium at {:.4} and a contraction of {:.2} %: {source}", Pressure::pa(*pressure_pa), Decimals(100.0 * contraction))]
+    #[error("no equilibrium at {:.4} and a contraction of {:.2}: {source}", Pressure::pa(*pressure_pa), Ratio::one(*contraction))]
     NoEquilibrium {
         /// Rows, from 0.
         rows: Vec<usize>,

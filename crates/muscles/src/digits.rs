@@ -1,7 +1,5 @@
 //! Digits of numbers: rounded as values, and written for people.
 
-use std::fmt;
-
 /// Rounds to `digits` significant decimal digits, so that 0.11 m reads "110 mm", not "110.00000000000001 mm".
 ///
 /// ```
@@ -38,29 +36,18 @@ pub fn significant(value: f64, digits: i32) -> String {
 }
 
 /// From this size on, digits before the point say less than an exponent.
-pub(crate) const USUAL: f64 = 1e12;
+const USUAL: f64 = 1e12;
 
-/// A number that is shown with as many decimals as the format asks for, or with an exponent where these would say
-/// nothing: from 1e12 on, or where all of them would be zero.
-///
-/// ```
-/// use bulge_muscles::units::Decimals;
-/// assert_eq!(format!("{:.2} {:.2} {:.2}", Decimals(0.25), Decimals(1e200), Decimals(-1e-5)), "0.25 1.00e200 -1.00e-5");
-/// ```
-#[derive(Debug, Clone, Copy)]
-pub struct Decimals(pub f64);
-
-impl fmt::Display for Decimals {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Some(digits) = f.precision() else { return write!(f, "{}", self.0) };
-        let size = self.0.abs();
-        let is_lost = size > 0.0 && format!("{size:.digits$}").trim_matches(['0', '.']).is_empty();
-        if size.is_finite() && (size >= USUAL || is_lost) {
-            write!(f, "{:.digits$e}", self.0)
-        } else {
-            write!(f, "{:.digits$}", self.0)
-        }
-    }
+/// As many decimals as asked for, else the shortest form; with an exponent where these would say nothing: from 1e12 on, or where all
+/// decimals would be zero.
+pub(crate) fn plain(value: f64, decimals: Option<usize>) -> String {
+    let is_large = value.is_finite() && value.abs() >= USUAL;
+    let Some(decimals) = decimals else {
+        return if is_large { format!("{value:e}") } else { format!("{value}") };
+    };
+    let fixed = format!("{value:.decimals$}");
+    let is_lost = value.abs() > 0.0 && fixed.trim_matches(['-', '0', '.']).is_empty();
+    if is_large || is_lost { format!("{value:.decimals$e}") } else { fixed }
 }
 
 #[cfg(test)]
@@ -69,17 +56,20 @@ mod tests {
 
     #[test]
     fn decimals_say_something() {
-        for (value, shown) in
-            [(0.0, "0.0000"), (2.5, "2.5000"), (-3e11, "-300000000000.0000"), (f64::INFINITY, "inf")]
-        {
-            assert_eq!(format!("{:.4}", Decimals(value)), shown);
+        for (value, shown) in [
+            (0.0, "0.0000"),
+            (2.5, "2.5000"),
+            (-3e11, "-300000000000.0000"),
+            (f64::INFINITY, "inf"),
+            (5.1e-5, "0.0001"),
+            (4.9e-5, "4.9000e-5"),
+            (1e-300, "1.0000e-300"),
+            (1e12, "1.0000e12"),
+            (-1e290, "-1.0000e290"),
+        ] {
+            assert_eq!(plain(value, Some(4)), shown);
         }
-        for (value, shown) in
-            [(1e12, "1.0000e12"), (-1e290, "-1.0000e290"), (4.9e-5, "4.9000e-5"), (1e-300, "1.0000e-300")]
-        {
-            assert_eq!(format!("{:.4}", Decimals(value)), shown);
-        }
-        assert_eq!(format!("{:.4}", Decimals(5.1e-5)), "0.0001");
+        assert_eq!([plain(2.5, None), plain(1e290, None)], ["2.5", "1e290"]);
     }
 
     #[test]

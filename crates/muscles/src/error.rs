@@ -2,7 +2,7 @@
 
 use crate::construction::Kind;
 use crate::parameter::Parameter;
-use crate::units::Decimals;
+use crate::quantity::Length;
 use thiserror::Error;
 
 /// Why values do not make a muscle. Values are in SI; `key` is the place of the value in a muscle file.
@@ -75,7 +75,7 @@ pub enum MuscleError {
     #[error("the gas acts on the inner wall, but `wall` does not say how thick the wall is")]
     NoGasWall,
     /// No gas is left inside the wall.
-    #[error("`{key}` is {:.4} mm thick, and the braid or its fittings have a radius of {:.4} mm: it must be thinner than that to leave room for gas", Decimals(1e3 * wall_m), Decimals(1e3 * radius_m))]
+    #[error("`{key}` is {:.4} thick, and the braid or its fittings have a radius of {:.4}: it must be thinner than that to leave room for gas", Length::m(*wall_m), Length::m(*radius_m))]
     WallTooThick {
         /// Where it stands in a muscle file.
         key: &'static str,

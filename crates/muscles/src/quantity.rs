@@ -72,13 +72,9 @@ macro_rules! quantity {
         impl fmt::Display for $type {
             fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
                 let value = in_unit(self.0, $shown_factor);
-                match f.precision() {
-                    Some(digits) => write!(f, "{:.digits$} {}", $crate::digits::Decimals(value), $shown),
-                    None if value.abs() >= $crate::digits::USUAL => {
-                        write!(f, "{:e} {}", $crate::digits::rounded(value, 12), $shown)
-                    }
-                    None => write!(f, "{} {}", $crate::digits::rounded(value, 12), $shown),
-                }
+                let digits = f.precision();
+                let value = if digits.is_none() { $crate::digits::rounded(value, 12) } else { value };
+                write!(f, "{} {}", $crate::digits::plain(value, digits), $shown)
             }
         }
     };

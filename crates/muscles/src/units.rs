@@ -1,7 +1,7 @@
 //! Units in text: "110 mm", "2 bar", "110 mm +- 0.2 mm", "1,2,3 bar", "0 %..35 %", "4 N s", "1e-3 1/K".
 
 use crate::digits::shortest;
-pub use crate::digits::{Decimals, rounded, significant};
+pub use crate::digits::{rounded, significant};
 use crate::dimension::Dimension;
 use crate::quantity::Ratio;
 use crate::quantity::in_unit;
