@@ -101,10 +101,11 @@ mod tests {
         }
         assert!(asked(300, 10.0, "time [s]").is_some() && asked(700, 1.0, "time").is_some());
         assert!(asked(25, 1000.0, "time [s]").is_some());
-        // Slow tests with few readings, fast ones, sampling at fractions of a second, and headers with another
-        // unit.
+        // Slow tests with few readings, short ones, fast ones, sampling at fractions of a second, and headers with
+        // another unit.
         for (rows, step, heading) in [
             (100, 20.0, "time [s]"),
+            (310, 1.0, "time [s]"),
             (625, 0.5, "time [s]"),
             (625, 0.02, "time [s]"),
             (625, 1.0, "time [ms]"),
