@@ -27,6 +27,7 @@ pub(crate) mod lack_of_fit;
 mod late;
 pub(crate) mod linearised_model;
 pub(crate) mod misfit;
+pub(crate) mod mislabelled;
 pub(crate) mod next;
 pub(crate) mod noise;
 pub(crate) mod not_looked_for;

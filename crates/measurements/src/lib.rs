@@ -66,5 +66,5 @@ pub use quality::{Disturbance, Finding, FindingKind, LineRange, Quality, Quality
 pub use reading::{ColumnUse, ReadOptions, Reading, SetApart};
 pub use repeats::{Offset, PureError, RepeatGroup, Repeats, Run};
 pub use source::SourceFile;
-pub use sweep::{Sweep, SweepKind};
+pub use sweep::{Sweep, SweepKind, is_weight};
 pub use written::{WrittenColumn, WrittenError, WrittenValues, to_csv, to_parquet, written};

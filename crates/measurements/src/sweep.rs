@@ -196,8 +196,8 @@ pub(crate) fn is_held(pressure: &[f64], largest: f64) -> bool {
     high - low <= PRESSURE_CHANGE * largest
 }
 
-/// Whether a force was held.
-pub(crate) fn is_weight(force: impl Iterator<Item = f64> + Clone) -> bool {
+/// Whether a force was held, as by a weight: its standard deviation is less than a tenth of its mean.
+pub fn is_weight(force: impl Iterator<Item = f64> + Clone) -> bool {
     let count = force.clone().count().max(1) as f64;
     let mean = force.clone().sum::<f64>() / count;
     let variance = force.map(|force| (force - mean).powi(2)).sum::<f64>() / count;

@@ -148,8 +148,8 @@ class World:
         start = self._balanced(pressure, load)
         known = self._remembered(motion, pressure, start)
         if not any(self.amplitude(name) for name in SHARES_LENGTH):
-            contraction = self._balanced(pressure, load + known)
-            return contraction, self.hose.pull(pressure, contraction) - load
+            # Where no contraction carries the load it rests on a stop, and the muscle pulls with less.
+            return self._balanced(pressure, load + known), known
         return self._sliding(pressure, load + known, known)
 
     def _balanced(self, pressure, load):

@@ -17,9 +17,10 @@ use crate::diagnosis::late::Late;
 use crate::diagnosis::odd::odd;
 use crate::diagnosis::trimmed::Linearised;
 use crate::diagnosis::write::Findings;
+use crate::vector::{minus, rms};
 
-/// Most specimens that are exchanged in pairs.
-const MOST_SPECIMENS: usize = 5;
+/// Most specimens that are compared with each other.
+pub(crate) const MOST_SPECIMENS: u32 = 5;
 
 /// Diagnoses of the same data made anew; none if there is no answer.
 #[derive(Clone, Copy)]
@@ -47,7 +48,7 @@ pub(crate) fn event(
         let linear = Linearised::of(&base.prepared, &base.theta, found.context.record).ok()?;
         late(found, &linear, data, groups, anew).or_else(|| odd(found, &linear, data, groups, anew))
     };
-    jump(found, data, groups, anew).or_else(among_the_rows).or_else(|| exchanged(data, anew))
+    jump(found, data, groups, anew).or_else(among_the_rows).or_else(|| exchanged(found, data, anew))
 }
 
 /// A column that is late, without which nothing is missing.
@@ -63,20 +64,32 @@ fn late(
     is_all.then(|| Late::asks(&alike, data))
 }
 
-/// Two specimens with each other's numbers, of which nothing is missing.
-fn exchanged(data: &Data, anew: Anew<'_>) -> Option<String> {
+/// Two specimens with each other's numbers, of which nothing is missing; or nothing is known to be, and they explain
+/// half of what was named, without a number.
+fn exchanged(found: &Findings<'_>, data: &Data, anew: Anew<'_>) -> Option<String> {
     let names = data.specimens();
-    if names.len() > MOST_SPECIMENS {
+    if names.len() > MOST_SPECIMENS as usize {
         return None;
     }
     let pairs = (1..names.len()).flat_map(|other| (0..other).map(move |one| [one, other]));
-    let fits = |pair: &[usize; 2]| {
-        let found = (anew.exchanged)(pair.map(|place| names[place].as_str()));
-        found.is_some_and(|found| found.verdict == Verdict::Adequate)
+    let left = |force: &[f64]| rms(&minus(found.context.record.force(), force));
+    let [base, last] = [found.search.stages.first()?, found.last()].map(|stage| left(&stage.linear.force));
+    // No number is fitted for it.
+    let enough = (0.5 * (base * base + last * last)).sqrt();
+    let fits = |pair: [usize; 2]| {
+        let found = (anew.exchanged)(pair.map(|place| names[place].as_str()))?;
+        let is_less = || found.ladder.first().is_some_and(|base| base.rmse_n < enough);
+        let says = match found.verdict {
+            Verdict::Adequate => "nothing is missing",
+            Verdict::CannotTell if is_less() => "most of what would be named otherwise is gone",
+            _ => return None,
+        };
+        Some((pair, says))
     };
-    let [one, other] = pairs.into_iter().find(fits)?.map(|place| shortened(&names[place]));
+    let (pair, says) = pairs.into_iter().find_map(fits)?;
+    let [one, other] = pair.map(|place| shortened(&names[place]));
     Some(format!(
-        "with the numbers of the specimens `{one}` and `{other}` exchanged nothing is missing: has each the name of the other, in the data or in the muscle \
+        "with the numbers of the specimens `{one}` and `{other}` exchanged {says}: has each the name of the other, in the data or in the muscle \
          file? Correct it, and ask again"
     ))
 }

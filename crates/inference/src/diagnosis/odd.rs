@@ -11,7 +11,8 @@ use std::ops::Range;
 use crate::comparison::rows::lines;
 use crate::diagnosis::document::Verdict;
 use crate::diagnosis::event::{Anew, names, said};
-use crate::diagnosis::shift::shifts;
+use crate::diagnosis::mislabelled::mislabelled;
+use crate::diagnosis::shift::{Otherwise, shifts};
 use crate::diagnosis::trimmed::Linearised;
 use crate::diagnosis::write::Findings;
 use crate::median::median;
@@ -36,8 +37,9 @@ const SILENT: f64 = 64.0;
 /// Youden's index from which the odd rows lie at one end of a state, and from which hardly another row does.
 const APART: f64 = 0.75;
 const ALONE: f64 = 0.9;
-/// Fraction of the rows on which alone nothing is named: an effect of the muscle shows in its neighbours too.
-const FEW: f64 = 0.1;
+/// Fractions of the rows on which alone nothing is named, with the part of the misfit that the others may have: an
+/// effect of the muscle shows in its neighbours too, the more so if it is large.
+const FEW: [(f64, f64); 3] = [(0.01, f64::INFINITY), (0.1, FALLS), (0.3, 0.1)];
 
 /// What is said of rows without which nothing of what was named is missing, if there are such.
 pub(crate) fn odd(
@@ -51,35 +53,40 @@ pub(crate) fn odd(
     let claimed = minus(&found.last().linear.force, &base.linear.force);
     let claims = found.claims();
     // Why an answer may rest on these rows alone; none if the others bear it out.
-    let doubt = |odd: &[bool]| {
+    let doubt = |odd: &[bool], otherwise: Option<&Otherwise>| {
         let kept: Vec<bool> = odd.iter().map(|odd| !odd).collect();
-        let falls = || linear.falls_to(&kept).is_some_and(|part| part < FALLS);
+        let falls = |below: f64| linear.falls_to(&kept).is_some_and(|part| part < below);
         if claims.is_empty() {
             // What comes back at one state is no event.
-            return (falls() && !comes_back(found.context.record, odd)).then_some(Others::Deny);
+            return (falls(FALLS) && !comes_back(found.context.record, odd)).then_some(Others::Deny);
         }
         let share = linear.share(&claimed, &kept)?;
         if share.shown < SHOWN && share.expected * (1.0 - share.shown).powi(2) > DENIED {
             return Some(Others::Deny);
         }
-        let is_silent = share.expected < SILENT;
-        (is_silent && count(odd) as f64 <= FEW * odd.len() as f64 && falls()).then_some(Others::AreSilent)
+        let part = count(odd) as f64 / odd.len() as f64;
+        // One reading that is wrong in these rows is as good a cause as what was named.
+        let is_enough = || match otherwise {
+            Some(otherwise) => 2.0 * part <= 1.0 && (otherwise.explains_more || falls(FALLS)),
+            None => FEW.iter().any(|(few, below)| part <= *few && falls(*below)),
+        };
+        (share.expected < SILENT && is_enough()).then_some(Others::AreSilent)
     };
     let first = |place: &Vec<usize>| place.first().copied().unwrap_or_default();
     let sweep = |row: usize| data.sweeps().partition_point(|sweep| sweep.rows.end <= row);
     let file = |row: usize| data.line(row).0;
     let stretch = |row: usize| row * STRETCHES / data.len();
     let of: [&dyn Fn(usize) -> usize; 3] = [&file, &sweep, &stretch];
-    let few = of.into_iter().filter_map(|part| {
+    let parts = of.into_iter().filter_map(|part| {
         let places = stand_out(found, groups, part)?;
         Some(groups.iter().map(|group| places.contains(&part(first(group)))).collect::<Vec<bool>>())
     });
-    let shifts = shifts(found, linear);
+    let others = mislabelled(found, linear, data).into_iter().chain(shifts(found, linear));
+    let others = others.map(|other| (other.odd.clone(), Some(other)));
     let mut tried = BTreeSet::new();
-    let few = few.chain(linear.odd()).map(|odd| (odd, None));
-    shifts.into_iter().map(|shifted| (shifted.odd.clone(), Some(shifted))).chain(few).find_map(|(odd, shifted)| {
-        let is_better = shifted.as_ref().is_some_and(|shifted| shifted.is_better);
-        let others = if is_better { Some(Others::Deny) } else { doubt(&odd) };
+    others.chain(parts.chain(linear.odd()).map(|odd| (odd, None))).find_map(|(odd, otherwise)| {
+        let is_better = otherwise.as_ref().is_some_and(|otherwise| otherwise.is_better);
+        let others = if is_better { Some(Others::Deny) } else { doubt(&odd, otherwise.as_ref()) };
         let others = others.filter(|_| tried.insert(odd.clone()))?;
         let own = groups.iter().zip(&odd).filter(|(_, odd)| **odd);
         let mut rows: Vec<usize> = own.flat_map(|(group, _)| group.iter().copied()).collect();
@@ -88,15 +95,18 @@ pub(crate) fn odd(
         let denied = match rest.verdict {
             Verdict::Adequate => true,
             Verdict::Missing => !claims.is_empty() && !claims.iter().any(|claim| names(&rest, *claim)),
-            // Most of the rows know nothing of what a shift of the others explains better.
-            Verdict::CannotTell => is_better && 2 * count(&odd) <= odd.len(),
+            // Most of the rows know nothing of what was named.
+            Verdict::CannotTell => {
+                let is_denied = matches!(others, Others::Deny) && (is_better || !claims.is_empty());
+                is_denied && 2 * count(&odd) <= odd.len()
+            }
             Verdict::Unknown => false,
         };
         let asks = match others {
             Others::Deny => "some rows ask for something that the others deny",
-            Others::AreSilent => "few rows ask for something that the others could not show",
+            Others::AreSilent => "some rows ask for something that the others could not show",
         };
-        let as_if = shifted.map_or_else(String::new, |shifted| format!(", as if {} there", shifted.says));
+        let as_if = otherwise.map_or_else(String::new, |otherwise| format!(", as if {} there", otherwise.says));
         denied.then(|| {
             let or = or_what(found.context.record, &odd);
             format!(

@@ -11,26 +11,28 @@ use crate::diagnosis::write::Findings;
 use crate::vector::{count, minus};
 use bulge_numerics::vector::dot;
 
-/// Sum of squares that a shift of a channel explains over that of what was named, at least.
-const AS_WELL: f64 = 0.8;
+/// Sum of squares that another explanation takes up over that of what was named, at least.
+pub(crate) const AS_WELL: f64 = 0.8;
 /// Fraction of the rows that must be left: a few say nothing against the others.
 const LEAST: f64 = 0.25;
 /// Rows on either side of one at which another state may be set, and the least step as a fraction of the range.
 const AROUND: usize = 2;
 const STEP: f64 = 0.2;
 
-/// A part of the rows, in which a channel is shifted.
-pub(crate) struct Shifted {
+/// A part of the rows that something else than an effect explains: a channel that is shifted, another specimen.
+pub(crate) struct Otherwise {
     pub(crate) odd: Vec<bool>,
-    /// The shift in words.
+    /// What explains them, in words.
     pub(crate) says: String,
-    /// Whether it explains clearly more than what was named.
+    /// Whether it explains clearly more than what was named,
+    pub(crate) explains_more: bool,
+    /// and begins where no other state was set.
     pub(crate) is_better: bool,
 }
 
 /// The shift of a channel that explains the data as well as what was named: in its window, or in all other rows.
 /// The smaller part is left out first.
-pub(crate) fn shifts(found: &Findings<'_>, linear: &Linearised) -> Vec<Shifted> {
+pub(crate) fn shifts(found: &Findings<'_>, linear: &Linearised) -> Vec<Otherwise> {
     let of = || {
         let (record, base) = (found.context.record, found.search.stages.first()?);
         let wanted = Wanted { parameters: Vec::new(), readings: true };
@@ -51,7 +53,8 @@ pub(crate) fn shifts(found: &Findings<'_>, linear: &Linearised) -> Vec<Shifted> 
     };
     let Some((shift, named)) = of() else { return Vec::new() };
     let rows = found.context.record.len();
-    let is_better = shift.more > named && !is_another_state(found.context.record, shift.window.start);
+    let explains_more = shift.more > named;
+    let is_better = explains_more && !is_another_state(found.context.record, shift.window.start);
     let part = |is_window: bool| {
         let says = |(channel, by): &(Channel, f64)| {
             // The model's force needs another reading than the one that was taken.
@@ -66,10 +69,10 @@ pub(crate) fn shifts(found: &Findings<'_>, linear: &Linearised) -> Vec<Shifted> 
         };
         let says = shift.by.iter().map(says).collect::<Vec<String>>().join(" or ");
         let odd = (0..rows).map(|place| shift.window.contains(&place) == is_window).collect();
-        Shifted { odd, says, is_better }
+        Otherwise { odd, says, explains_more, is_better }
     };
     let is_small = 2 * shift.window.len() <= rows;
-    let leaves_enough = |part: &Shifted| (rows - count(&part.odd)) as f64 >= LEAST * rows as f64;
+    let leaves_enough = |part: &Otherwise| (rows - count(&part.odd)) as f64 >= LEAST * rows as f64;
     [part(is_small), part(!is_small)].into_iter().filter(leaves_enough).collect()
 }
 

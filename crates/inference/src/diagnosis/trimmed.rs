@@ -34,8 +34,8 @@ const FEWEST: usize = 5;
 const ALIKE: f64 = 0.9;
 /// Fraction of a shift that the numbers of the model must leave.
 const SEEN: f64 = 0.02;
-/// Sum of squares of a shift, in variances of what the model leaves: 6 sigma, of some hundred windows that are
-/// tried.
+/// Sum of squares of what explains a part of the rows, in variances of what is left: 6 sigma, of some hundreds of parts
+/// that are tried.
 const CLEAR: f64 = 36.0;
 
 /// A model linearised at its numbers.
@@ -253,11 +253,16 @@ impl Linearised {
         let (most, (_, by), outside) = channels.first()?;
         let mut rest = left.clone();
         add(&mut rest, -by, outside);
-        let chance = CLEAR * robust_sd(&rest).powi(2) * shared(&rest);
+        let chance = by_chance(&rest);
         let alike = channels.iter().filter(|(gain, _, _)| *gain >= ALIKE * most);
         let by = alike.map(|(_, by, _)| *by).collect();
         (*most > least && *most > chance).then(|| Shift { window, by, more: most - chance })
     }
+}
+
+/// Sum of squares that a choice among some hundreds may explain of noise such as this \[N^2\].
+pub(crate) fn by_chance(left: &[f64]) -> f64 {
+    CLEAR * robust_sd(left).powi(2) * shared(left)
 }
 
 /// Windows in which a channel may be shifted: to the end of the record, to the end of a sweep, a whole sweep.

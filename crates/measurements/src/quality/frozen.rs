@@ -134,8 +134,11 @@ fn filled(gate: &Gate, is_force: bool, is_filled: impl Fn(usize) -> bool) -> Vec
         let sides = run.start.saturating_sub(AROUND).max(sweep.start)..(run.end + AROUND).min(sweep.end);
         let near = |other: &&Range<usize>| other.start < sides.end && sides.start < other.end;
         let below = found[..place].iter().rev().take_while(near);
-        let others: usize = below.chain(found[place + 1..].iter().take_while(near)).map(Range::len).sum();
-        let here = (others as f64 + 1.0) / (sides.len() - run.len()).max(1) as f64;
+        let near = below.chain(found[place + 1..].iter().take_while(near)).map(Range::len);
+        // Runs by chance have all lengths: one as long, without short ones beside it, is filled in as well.
+        let (long, short): (Vec<usize>, Vec<usize>) = near.partition(|length| 2 * length >= run.len());
+        let rest = sides.len().saturating_sub(run.len() + long.iter().sum::<usize>()).max(1);
+        let here = (short.iter().sum::<usize>() as f64 + 1.0) / rest as f64;
         run.len() + 1 >= longest_by_chance(gate.data.len(), everywhere.max(here))
     };
     let long = (0..found.len()).filter(|place| is_long(*place) && is_measured(&found[*place]));

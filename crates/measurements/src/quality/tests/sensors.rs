@@ -163,6 +163,16 @@ fn a_recording_that_stands_still() {
             }
         });
     }
+    // Two gaps near each other: neither is usual for this sensor because of the other.
+    let near: Vec<usize> = (301..310).chain(320..329).collect();
+    plants(FindingKind::Frozen, &near, |columns| {
+        for gap in [300..311, 319..330] {
+            let from = columns.pressure_pa[gap.start];
+            for (step, row) in gap.enumerate() {
+                columns.pressure_pa[row] = from + 123.4 * step as f64;
+            }
+        }
+    });
     // A load cell that shows full newtons, at the turning points of a slow loop, isn't frozen.
     let mut columns = clean_loops(1, 1);
     columns.force_n.iter_mut().for_each(|force| *force = (*force / 5.0).round() * 5.0);
