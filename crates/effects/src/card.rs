@@ -168,8 +168,6 @@ pub enum Needs {
     Motion,
     /// A path with time on which the pressure rises and falls.
     PressurePath,
-    /// A path with time on which the force rises and falls.
-    ForcePath,
     /// A path with time.
     Time,
     /// Time or cycles.
@@ -189,9 +187,6 @@ impl Needs {
             Self::Path => "a path: rows in the order of measurement, the length in both directions",
             Self::Motion => "a path: rows in the order of measurement, length or pressure in both directions",
             Self::PressurePath => "a path with a column `time` on which the pressure rises and falls",
-            Self::ForcePath => {
-                "a path with a column `time` on which the force rises and falls: a load that is held shows no late reading of it"
-            }
             Self::Time => "a path with a column `time`",
             Self::Cycles => "several cycles of the same path",
             Self::Temperature => "a column `temperature` that changes",

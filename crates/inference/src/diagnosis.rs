@@ -20,6 +20,7 @@ pub(crate) mod explained;
 pub(crate) mod fits;
 pub(crate) mod form_error;
 pub(crate) mod geometry;
+pub(crate) mod held_load;
 pub(crate) mod hints;
 pub(crate) mod hypotheses;
 pub(crate) mod jump;

@@ -273,6 +273,18 @@ impl Data {
         self.lengths.get(specimen as usize).copied().flatten().unwrap_or(l0)
     }
 
+    /// The contraction of a row if its muscle was another specimen; what was read stays.
+    #[must_use]
+    pub fn contraction_as(&self, specimen: u32, row: usize, contraction: f64, l0: f64) -> f64 {
+        let ratio = self.length_of(self.specimen_of(row), l0) / self.length_of(specimen, l0);
+        let is_displaced = || self.displaced_from_m.get(self.line(row).0).is_some_and(Option::is_some);
+        match &self.columns.motion {
+            Trace::Contraction(_) => contraction,
+            Trace::Length(_) if is_displaced() => contraction * ratio,
+            Trace::Length(_) => 1.0 - (1.0 - contraction) * ratio,
+        }
+    }
+
     /// Contraction per unit of shortening, for a specimen of a muscle of length `l0`.
     pub(crate) fn contraction_per_shortening(&self, specimen: u32, l0: f64) -> f64 {
         match &self.columns.motion {

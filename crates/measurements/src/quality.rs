@@ -10,6 +10,7 @@ mod frozen;
 mod labels;
 mod quantisation;
 mod slack;
+mod slower;
 mod spikes;
 mod time;
 mod values;

@@ -322,16 +322,10 @@ impl Record {
         self
     }
 
-    /// All rows as if they were of one specimen, by its index. `is_length` says that lengths were measured, and not
-    /// how much the muscle has shortened.
+    /// All rows as those of one specimen, by its index; the contractions stay.
     #[must_use]
-    pub fn of_specimen(mut self, specimen: u32, is_length: bool) -> Self {
-        let of = |which: u32| self.shortness.get(which as usize).copied().unwrap_or(1.0);
+    pub fn of_specimen(mut self, specimen: u32) -> Self {
         for moment in Arc::make_mut(&mut self.moments) {
-            // Length of its own specimen over that of the other.
-            let ratio = of(specimen) / of(moment.specimen);
-            moment.contraction =
-                if is_length { 1.0 - (1.0 - moment.contraction) * ratio } else { moment.contraction * ratio };
             moment.specimen = specimen;
         }
         self
@@ -428,28 +422,6 @@ mod tests {
         assert_eq!(record.specimens(), ["long", "short"]);
         let of_rows: Vec<u32> = record.moments().iter().map(|moment| moment.specimen).collect();
         assert_eq!(of_rows, [0, 0, 1]);
-    }
-
-    /// Of lengths 250 and 240 mm, told by 1 - l/l_own or by the shortening over l_own.
-    #[test]
-    fn rows_as_those_of_another_specimen_keep_their_length() {
-        let csv = "specimen,pressure [bar],length [mm],force [N]\nlong,2,220,300\nshort,2,210,310\n";
-        let data = Data::from_csv(csv, "two.csv")
-            .unwrap()
-            .with_lengths(|name| Some(if name == "long" { 0.25 } else { 0.24 }));
-        let record = Record::new(&data, 0.25);
-        let of = |specimen, is_length| {
-            let record = record.clone().of_specimen(specimen, is_length);
-            assert!(record.moments().iter().all(|moment| moment.specimen == specimen));
-            [0, 1].map(|row| record.moments()[row].contraction)
-        };
-        let close = |found: [f64; 2], exact: [f64; 2]| {
-            assert!(found.iter().zip(exact).all(|(a, b)| (a - b).abs() < 1e-15), "{found:?} {exact:?}");
-        };
-        close(of(0, true), [1.0 - 0.22 / 0.25, 1.0 - 0.21 / 0.25]);
-        close(of(1, true), [1.0 - 0.22 / 0.24, 1.0 - 0.21 / 0.24]);
-        close(of(0, false), [0.03 / 0.25, 0.03 / 0.25]);
-        close(of(1, false), [0.03 / 0.24, 0.03 / 0.24]);
     }
 
     #[test]

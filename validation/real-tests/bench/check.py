@@ -36,6 +36,7 @@ def run():
         ("two lags delay a ramp by their times", _late, 1e-9),
         ("regulator: overshoot of a step exp(-pi d/sqrt(1 - d^2))", _overshoot, 1e-3),
         ("isotonic: load carried with strands and rig that rub [N]", _carried, 1e-6),
+        ("isotonic, a regulator that undershoots: the muscle pulls as at rest, or less than the load on its stop [N]", _rests, 1e-6),
         ("noise: size of samples, three laws", _noise, 0.05),
         ("damage: rows that are not named are untouched", _untouched, 0.0),
         ("24 dialects read back by pandas, openpyxl and SciPy", _dialects, 2e-7),
@@ -204,6 +205,21 @@ def _carried():
     resisted = world.resisted(motion, record.pressure, record.contraction)
     left = hose.pull(record.pressure, record.contraction) - resisted - motion.load
     return float(np.abs(left).max())
+
+
+def _rests():
+    """A slow regulator undershoots at the lowest pressure, which just carries the load."""
+    hose, worst, resting = hoses(1)[4], 0.0, 0
+    for seed in range(8):
+        motion = rigs.isotonic(np.random.default_rng(seed), hose, 200, 6e5)
+        record = World(hose, Nature(regulator=4.0, damping=0.1)).record(motion)
+        worst = max(worst, float(np.abs(record.force - hose.pull(record.pressure, record.contraction)).max()))
+        # Away from the stop it carries the load.
+        lowest, highest = hose.map.window.contraction
+        on_stop = (record.contraction < lowest + 2e-4) | (record.contraction > highest - 2e-4)
+        resting += int(on_stop.sum())
+        worst = max(worst, float(np.abs(record.force - motion.load)[~on_stop].max()))
+    return worst if resting else np.inf
 
 
 def _noise():

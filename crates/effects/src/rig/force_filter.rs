@@ -41,7 +41,7 @@ impl Effect for ForceFilter {
                 Twin { name: "presliding-hysteresis", how: "beside friction, at one speed" },
             ],
             separate: "a step of the load; a turn with many readings within tau; a second speed",
-            needs: Needs::ForcePath,
+            needs: Needs::Time,
         }
     }
 

@@ -37,7 +37,7 @@ impl Effect for ForceLag {
                 Twin { name: "viscous-damping", how: "-0.90" },
             ],
             separate: "a knock that both sensors see; a step; a second speed",
-            needs: Needs::ForcePath,
+            needs: Needs::Time,
         }
     }
 

@@ -1,11 +1,11 @@
 //! Requirements on data for a comparison with a muscle and its effects.
 
 use bulge_effects::{Effect, Needs};
-use bulge_measurements::{Data, is_weight};
+use bulge_measurements::Data;
 use bulge_model::Record;
 use bulge_muscles::units::significant;
 use bulge_muscles::{Construction, Muscle, Quantity, memory};
-use std::ops::{Range, RangeInclusive};
+use std::ops::RangeInclusive;
 use std::sync::Arc;
 
 use crate::comparison::mismatch::possible_motion;
@@ -97,9 +97,6 @@ pub(crate) fn check_needs(effect: &Arc<dyn Effect>, record: &Record) -> Result<(
         Needs::Path => moments.iter().any(|m| m.direction != 0.0),
         Needs::Motion => moments.iter().any(|m| m.branch() != 0.0),
         Needs::PressurePath => record.has_time() && moments.iter().any(|m| m.pressure_direction != 0.0),
-        Needs::ForcePath => {
-            record.has_time() && record.sweeps().iter().any(|rows| !is_under_a_load(record, rows))
-        }
         Needs::Time => record.has_time(),
         Needs::Cycles => moments.iter().any(|m| m.cycle >= 1.0),
         Needs::Temperature => moments.iter().any(|m| m.temperature != 0.0),
@@ -109,14 +106,6 @@ pub(crate) fn check_needs(effect: &Arc<dyn Effect>, record: &Record) -> Result<(
         return Ok(());
     }
     Err(InferenceError::Needs { effect: card.name.to_owned(), needs: lacking(card.needs, record) })
-}
-
-/// Whether a load is held in a sweep while pressure and length change. Its force is then the same at all times, and
-/// what a model gives for it changes by the noise of the readings alone.
-fn is_under_a_load(record: &Record, rows: &Range<usize>) -> bool {
-    let moments = &record.moments()[rows.clone()];
-    let moves = moments.iter().any(|m| m.direction != 0.0 && m.pressure_direction != 0.0);
-    moves && is_weight(record.force()[rows.clone()].iter().copied())
 }
 
 /// The unmet needs of an effect, in words.

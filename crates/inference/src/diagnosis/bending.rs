@@ -251,10 +251,7 @@ impl Bent<'_> {
             let branch: Vec<f64> = set.moments().iter().map(Moment::branch).collect();
             columns.extend((0..=1).map(|i| times(&|row| BY_STROKE * branch[row] * chebyshev(i, x[row]))));
         }
-        if matches!(
-            self.effect.card().needs,
-            Needs::Time | Needs::Cycles | Needs::PressurePath | Needs::ForcePath
-        ) {
+        if matches!(self.effect.card().needs, Needs::Time | Needs::Cycles | Needs::PressurePath) {
             let clock = scaled(set, |m| m.clock);
             columns.extend((1..=2).map(|i| times(&|row| chebyshev(i, clock[row]) / ALONG)));
         }

@@ -373,7 +373,7 @@ fn lowers_nothing(found: &Findings<'_>, ladder: &[Rung]) -> Option<String> {
     let [slow, white] = [found.slow_n(), found.context.law.white_n];
     (verdict == Verdict::Missing && slow > white && after > LOWERS * before).then(|| {
         format!(
-            "what would fit best, {}, lowers the error from {} N to {} N only: readings that lie near each other share a noise of {} N beside the {} N of a single one \
+            "what would fit best, {}, hardly lowers the error ({} N before, {} N with it): readings that lie near each other share a noise of {} N beside the {} N of a single one \
              (whole sweeps that are shifted, a zero that wanders), and that looks like an effect somewhere. Look at the zero of the load cell between sweeps, and \
              measure each set point twice, in another order",
             names.join(" and "),

@@ -15,9 +15,10 @@ use crate::comparison::rows::lines;
 use crate::diagnosis::document::{Diagnosis, Verdict};
 use crate::diagnosis::late::Late;
 use crate::diagnosis::odd::odd;
-use crate::diagnosis::trimmed::Linearised;
+use crate::diagnosis::trimmed::{Linearised, by_chance};
 use crate::diagnosis::write::Findings;
-use crate::vector::{minus, rms};
+use crate::vector::minus;
+use bulge_numerics::vector::dot;
 
 /// Most specimens that are compared with each other.
 pub(crate) const MOST_SPECIMENS: u32 = 5;
@@ -72,10 +73,13 @@ fn exchanged(found: &Findings<'_>, data: &Data, anew: Anew<'_>) -> Option<String
         return None;
     }
     let pairs = (1..names.len()).flat_map(|other| (0..other).map(move |one| [one, other]));
-    let left = |force: &[f64]| rms(&minus(found.context.record.force(), force));
+    let record = found.context.record;
+    let left = |force: &[f64]| minus(record.force(), force);
     let [base, last] = [found.search.stages.first()?, found.last()].map(|stage| left(&stage.linear.force));
+    let (base, chance) = (dot(&base, &base), by_chance(&last));
     // No number is fitted for it.
-    let enough = (0.5 * (base * base + last * last)).sqrt();
+    let half = base - (0.5 * (base - dot(&last, &last))).max(chance);
+    let enough = (half.max(0.0) / record.len().max(1) as f64).sqrt();
     let fits = |pair: [usize; 2]| {
         let found = (anew.exchanged)(pair.map(|place| names[place].as_str()))?;
         let is_less = || found.ladder.first().is_some_and(|base| base.rmse_n < enough);

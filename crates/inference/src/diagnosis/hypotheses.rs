@@ -1,7 +1,6 @@
 //! Hypotheses of one or two effects for a misfit, best first, with what they would explain in linear
 //! approximation.
 
-use bulge_effects::Needs;
 use bulge_model::Model;
 use rayon::prelude::*;
 
@@ -56,11 +55,8 @@ pub(crate) fn effect_log_prior(linear: &LinearisedModel, effect: usize) -> f64 {
     let heads = (0..effects.len()).filter(|i| shown(*i) && effects[*i].effect.card().name == own).count();
     let is_head = effects[effect].effect.card().name == own;
     // Of two effects that are indistinguishable on these data, prefer the one with fewer requirements.
-    let simple = if matches!(effects[effect].effect.card().needs, Needs::Time | Needs::ForcePath) {
-        -RULE.simpler
-    } else {
-        0.0
-    };
+    let simple =
+        if effects[effect].effect.card().needs == bulge_effects::Needs::Time { -RULE.simpler } else { 0.0 };
     of_family
         + simple
         + match (members, heads, is_head) {

@@ -1,7 +1,9 @@
 //! Rows under the name of another specimen: a stretch of the readings of one fits the numbers of another.
 
-use bulge_measurements::{Data, Trace};
+use bulge_effects::Moment;
+use bulge_measurements::Data;
 use bulge_model::{Wanted, Warm};
+use bulge_muscles::Quantity;
 use bulge_muscles::shown::shortened;
 
 use crate::diagnosis::event::MOST_SPECIMENS;
@@ -9,55 +11,72 @@ use crate::diagnosis::shift::{AS_WELL, Otherwise};
 use crate::diagnosis::trimmed::{Linearised, by_chance};
 use crate::diagnosis::write::Findings;
 use crate::vector::minus;
-use bulge_numerics::vector::dot;
 use std::ops::Range;
 
 /// Fewest rows of a stretch: it is chosen among all.
 const FEWEST: usize = 5;
 
 /// The stretch of one specimen's rows that fits the numbers of another best, if those explain it as well as what was
-/// named explains all rows. No number is fitted for it.
-pub(crate) fn mislabelled(found: &Findings<'_>, linear: &Linearised, data: &Data) -> Option<Otherwise> {
+/// named explains all rows; its ends and the other specimen are chosen, and no number is fitted.
+pub(crate) fn mislabelled(
+    found: &Findings<'_>,
+    linear: &Linearised,
+    data: &Data,
+    groups: &[Vec<usize>],
+) -> Option<Otherwise> {
     let (record, base) = (found.context.record, found.search.stages.first()?);
     let count = u32::try_from(record.specimens().len()).ok().filter(|count| *count <= MOST_SPECIMENS)?;
-    let is_length = matches!(data.motion(), Trace::Length(_));
+    let (model, theta) = (&base.confirmed.prepared.model, &base.confirmed.theta);
     let own = minus(record.force(), &base.linear.force);
-    let mut best: Option<(f64, u32, Vec<bool>, Vec<f64>)> = None;
+    let mut best: Option<(f64, u32, Range<usize>, Vec<f64>)> = None;
     for other in (0..count).filter(|_| count > 1) {
-        let of_other = record.clone().of_specimen(other, is_length);
-        let (model, theta) = (&base.confirmed.prepared.model, &base.confirmed.theta);
+        let contraction = |(place, moment): (usize, &Moment)| {
+            let row = groups.get(place).and_then(|group| group.first()).copied().unwrap_or(place);
+            data.contraction_as(other, row, moment.contraction, model.muscle().length().si())
+        };
+        let contraction: Vec<f64> = record.moments().iter().enumerate().map(contraction).collect();
+        let pressure: Vec<f64> = record.moments().iter().map(|moment| moment.pressure).collect();
+        let of_other = record.clone().at(&pressure, &contraction).of_specimen(other);
         let force = model.evaluate_partly(&of_other, theta, &Wanted::default(), &Warm::new()).ok()?;
         let left = minus(record.force(), &force.prediction.force);
-        let gain = |row: &usize| own[*row].powi(2) - left[*row].powi(2);
-        for specimen in (0..count).filter(|specimen| *specimen != other) {
-            let moments = record.moments().iter().enumerate();
-            let rows: Vec<usize> =
-                moments.filter(|(_, m)| m.specimen == specimen).map(|(row, _)| row).collect();
-            let gains: Vec<f64> = rows.iter().map(gain).collect();
+        for rows in record.moments().chunk_by(|a, b| a.specimen == b.specimen).scan(0, |end, rows| {
+            *end += rows.len();
+            Some(*end - rows.len()..*end)
+        }) {
+            if record.moments()[rows.start].specimen == other {
+                continue;
+            }
+            // Where the other specimen has no state it explains nothing.
+            let gain = |row: usize| {
+                own[row].powi(2) - if left[row].is_finite() { left[row].powi(2) } else { f64::INFINITY }
+            };
+            let gains: Vec<f64> = rows.clone().map(gain).collect();
             let stretch = largest(&gains);
             let sum: f64 = gains[stretch.clone()].iter().sum();
             if stretch.len() >= FEWEST && best.as_ref().is_none_or(|(most, ..)| sum > *most) {
-                let mut odd = vec![false; record.len()];
-                rows[stretch].iter().for_each(|row| odd[*row] = true);
-                best = Some((sum, other, odd, left.clone()));
+                best = Some((sum, other, rows.start + stretch.start..rows.start + stretch.end, left.clone()));
             }
         }
     }
-    let (_, other, odd, left) = best?;
-    let square = |left: &[f64]| dot(left, left);
-    let named = square(&own) - square(&minus(record.force(), &found.last().linear.force));
+    let (_, other, stretch, left) = best?;
+    let odd: Vec<bool> = (0..record.len()).map(|row| stretch.contains(&row)).collect();
     let relabelled: Vec<f64> =
         (0..record.len()).map(|row| if odd[row] { left[row] } else { own[row] }).collect();
-    // The numbers of the base were drawn to the rows of both.
-    let gain = square(&own) - linear.square_of(&relabelled, &vec![true; record.len()])?;
+    // All with the numbers of the base drawn to them.
+    let all = vec![true; record.len()];
+    let [before, named, gain] = [&own, &minus(record.force(), &found.last().linear.force), &relabelled]
+        .map(|left| linear.square_of(left, &all));
+    let (named, gain) = (before? - named?, before? - gain?);
     let chance = by_chance(&relabelled);
     let name = shortened(record.specimens().get(other as usize)?);
-    let explains_more = gain - chance > named;
-    (gain > AS_WELL * named && gain > chance).then(|| Otherwise {
+    // Where nothing is named, half of the misfit.
+    let is_as_good = if named > 0.0 { gain > AS_WELL * named } else { 2.0 * gain > before? };
+    let is_so = 2 * stretch.len() <= record.len() && is_as_good && gain > chance;
+    is_so.then(|| Otherwise {
         odd,
         says: format!("the specimen `{name}` was measured"),
-        explains_more,
-        is_better: explains_more,
+        explains_all: gain >= named,
+        is_better: gain - chance > named,
     })
 }
 

@@ -28,12 +28,16 @@ const STRETCHES: usize = 24;
 const ODD: f64 = 4.0;
 /// Squared distance, in variances of the noise, of what the other rows show from what was named: 4 sigma.
 const DENIED: f64 = 16.0;
+/// The same if the other rows are too few for an answer: 6 sigma.
+const SURELY: f64 = 36.0;
 /// Fraction of what was named that they show at most if they deny it.
 const SHOWN: f64 = 0.5;
 /// Part of the misfit that the others may have if nothing is named, or if they could not show it.
 const FALLS: f64 = 0.5;
 /// Sum of squares of what was named that they could not show, in variances of the noise.
 const SILENT: f64 = 64.0;
+/// The same of what they show: at 3 sigma they bear it out.
+const BORNE_OUT: f64 = 9.0;
 /// Youden's index from which the odd rows lie at one end of a state, and from which hardly another row does.
 const APART: f64 = 0.75;
 const ALONE: f64 = 0.9;
@@ -49,29 +53,8 @@ pub(crate) fn odd(
     groups: &[Vec<usize>],
     Anew { without, .. }: Anew<'_>,
 ) -> Option<String> {
-    let base = found.search.stages.first()?;
-    let claimed = minus(&found.last().linear.force, &base.linear.force);
+    let doubt = Doubt::of(found, linear)?;
     let claims = found.claims();
-    // Why an answer may rest on these rows alone; none if the others bear it out.
-    let doubt = |odd: &[bool], otherwise: Option<&Otherwise>| {
-        let kept: Vec<bool> = odd.iter().map(|odd| !odd).collect();
-        let falls = |below: f64| linear.falls_to(&kept).is_some_and(|part| part < below);
-        if claims.is_empty() {
-            // What comes back at one state is no event.
-            return (falls(FALLS) && !comes_back(found.context.record, odd)).then_some(Others::Deny);
-        }
-        let share = linear.share(&claimed, &kept)?;
-        if share.shown < SHOWN && share.expected * (1.0 - share.shown).powi(2) > DENIED {
-            return Some(Others::Deny);
-        }
-        let part = count(odd) as f64 / odd.len() as f64;
-        // One reading that is wrong in these rows is as good a cause as what was named.
-        let is_enough = || match otherwise {
-            Some(otherwise) => 2.0 * part <= 1.0 && (otherwise.explains_more || falls(FALLS)),
-            None => FEW.iter().any(|(few, below)| part <= *few && falls(*below)),
-        };
-        (share.expected < SILENT && is_enough()).then_some(Others::AreSilent)
-    };
     let first = |place: &Vec<usize>| place.first().copied().unwrap_or_default();
     let sweep = |row: usize| data.sweeps().partition_point(|sweep| sweep.rows.end <= row);
     let file = |row: usize| data.line(row).0;
@@ -81,13 +64,13 @@ pub(crate) fn odd(
         let places = stand_out(found, groups, part)?;
         Some(groups.iter().map(|group| places.contains(&part(first(group)))).collect::<Vec<bool>>())
     });
-    let others = mislabelled(found, linear, data).into_iter().chain(shifts(found, linear));
+    let others = mislabelled(found, linear, data, groups).into_iter().chain(shifts(found, linear));
     let others = others.map(|other| (other.odd.clone(), Some(other)));
     let mut tried = BTreeSet::new();
     others.chain(parts.chain(linear.odd()).map(|odd| (odd, None))).find_map(|(odd, otherwise)| {
         let is_better = otherwise.as_ref().is_some_and(|otherwise| otherwise.is_better);
-        let others = if is_better { Some(Others::Deny) } else { doubt(&odd, otherwise.as_ref()) };
-        let others = others.filter(|_| tried.insert(odd.clone()))?;
+        let others = if is_better { Some(Others::Deny { surely: true }) } else { doubt.about(&odd, otherwise.as_ref()) };
+        let others = others.filter(|others| tried.insert((odd.clone(), *others)))?;
         let own = groups.iter().zip(&odd).filter(|(_, odd)| **odd);
         let mut rows: Vec<usize> = own.flat_map(|(group, _)| group.iter().copied()).collect();
         rows.sort_unstable();
@@ -97,13 +80,12 @@ pub(crate) fn odd(
             Verdict::Missing => !claims.is_empty() && !claims.iter().any(|claim| names(&rest, *claim)),
             // Most of the rows know nothing of what was named.
             Verdict::CannotTell => {
-                let is_denied = matches!(others, Others::Deny) && (is_better || !claims.is_empty());
-                is_denied && 2 * count(&odd) <= odd.len()
+                others == (Others::Deny { surely: true }) && 2 * count(&odd) <= odd.len()
             }
             Verdict::Unknown => false,
         };
         let asks = match others {
-            Others::Deny => "some rows ask for something that the others deny",
+            Others::Deny { .. } => "some rows ask for something that the others deny",
             Others::AreSilent => "some rows ask for something that the others could not show",
         };
         let as_if = otherwise.map_or_else(String::new, |otherwise| format!(", as if {} there", otherwise.says));
@@ -117,6 +99,62 @@ pub(crate) fn odd(
             )
         })
     })
+}
+
+/// Why an answer may rest on some rows alone.
+struct Doubt<'a> {
+    linear: &'a Linearised,
+    record: &'a Record,
+    /// Whether anything is named, what it explains \[N\], and by how much the squares fall with it, row by row.
+    is_named: bool,
+    claimed: Vec<f64>,
+    gains: Vec<f64>,
+}
+
+impl<'a> Doubt<'a> {
+    fn of(found: &Findings<'a>, linear: &'a Linearised) -> Option<Self> {
+        let record = found.context.record;
+        let [base, last] = [found.search.stages.first()?, found.last()].map(|stage| &stage.linear.force);
+        let [before, after] = [base, last].map(|force| minus(record.force(), force));
+        let gains =
+            before.iter().zip(&after).map(|(before, after)| before * before - after * after).collect();
+        Some(Self { linear, record, is_named: !found.claims().is_empty(), claimed: minus(last, base), gains })
+    }
+
+    /// What the others say; none if they bear it out.
+    fn about(&self, odd: &[bool], otherwise: Option<&Otherwise>) -> Option<Others> {
+        let kept: Vec<bool> = odd.iter().map(|odd| !odd).collect();
+        let falls = |below: f64| self.linear.falls_to(&kept).is_some_and(|part| part < below);
+        if !self.is_named {
+            // What comes back at one state is no event.
+            let is_event = falls(FALLS) && !comes_back(self.record, odd);
+            return is_event.then_some(Others::Deny { surely: false });
+        }
+        let share = self.linear.share(&self.claimed, &kept)?;
+        let distance = share.expected * (1.0 - share.shown).powi(2);
+        if share.shown < SHOWN && distance > DENIED {
+            return Some(Others::Deny { surely: distance > SURELY });
+        }
+        let is_borne_out = share.shown >= SHOWN && share.expected * share.shown.powi(2) >= BORNE_OUT;
+        let is_silent = share.expected < SILENT && !is_borne_out;
+        let part = count(odd) as f64 / odd.len() as f64;
+        let is_few = || {
+            let is_few = FEW.iter().any(|(few, below)| part <= *few && falls(*below));
+            // A few rows are no experiment, and their speed is that of the spoilt reading.
+            let is_experiment = || part > FEW[0].0 && is_driven_apart(self.record, odd);
+            is_few && self.is_in(odd) && !comes_back(self.record, odd) && !is_experiment()
+        };
+        // One reading that is wrong in these rows is as good a cause as what was named.
+        let is_as_good =
+            |otherwise: &Otherwise| 2.0 * part <= 1.0 && (otherwise.explains_all || falls(FALLS));
+        (is_silent && otherwise.map_or_else(is_few, is_as_good)).then_some(Others::AreSilent)
+    }
+
+    /// Whether most of what was named explains is in the odd rows.
+    fn is_in(&self, odd: &[bool]) -> bool {
+        let in_them: f64 = self.gains.iter().zip(odd).filter(|(_, odd)| **odd).map(|(gain, _)| gain).sum();
+        in_them >= SHOWN * self.gains.iter().sum::<f64>()
+    }
 }
 
 /// What else than an event would show in these rows alone, in words; empty if nothing would.
@@ -141,41 +179,63 @@ fn comes_back(record: &Record, odd: &[bool]) -> bool {
     record.sweeps().iter().filter(is_mixed).count() > 1 && end(record, odd).0 > APART
 }
 
+/// Whether the odd rows alone were driven so fast, or were so warm or cold: an experiment for what shows there.
+fn is_driven_apart(record: &Record, odd: &[bool]) -> bool {
+    let of: [State; 3] =
+        [|moment| moment.rate.abs(), |moment| moment.pressure_rate.abs(), |moment| moment.temperature];
+    // Rows at rest at the ends of a stroke are as slow as those of a slow one.
+    let moving: Vec<usize> = (0..odd.len()).filter(|row| record.moments()[*row].branch() != 0.0).collect();
+    let odd: Vec<bool> = moving.iter().map(|row| odd[*row]).collect();
+    of.into_iter().any(|state| {
+        let values = moving.iter().map(|row| state(&record.moments()[*row]));
+        apart(values, &odd, ["", ""]).0 >= ALONE
+    })
+}
+
+/// A number of a moment.
+type State = fn(&Moment) -> f64;
+
 /// The end of a state at which the odd rows lie, and how well it sets them apart: the fraction of them beyond a
 /// limit less that of the others (Youden's index of the best limit).
 fn end(record: &Record, odd: &[bool]) -> (f64, &'static str) {
-    type State = fn(&Moment) -> f64;
     let of: [(State, [&'static str; 2]); 2] = [
         (|moment| moment.contraction, ["a contraction as small", "a contraction as large"]),
         (|moment| moment.pressure, ["a pressure as low", "a pressure as high"]),
     ];
-    let rows = [true, false].map(|is_odd| odd.iter().filter(|odd| **odd == is_odd).count().max(1) as f64);
-    let best = |(state, [low, high]): (State, [&'static str; 2])| {
-        let mut sorted: Vec<(f64, bool)> =
-            record.moments().iter().map(state).zip(odd.iter().copied()).collect();
-        sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
-        // Of the rows up to a limit: odd ones less others.
-        let mut below = 0.0;
-        sorted
-            .chunk_by(|a, b| a.0 >= b.0)
-            .map(|tied| {
-                below += tied
-                    .iter()
-                    .map(|(_, odd)| if *odd { 1.0 / rows[0] } else { -1.0 / rows[1] })
-                    .sum::<f64>();
-                if below > 0.0 { (below, low) } else { (-below, high) }
-            })
-            .fold((0.0, low), |best, next| if next.0 > best.0 { next } else { best })
-    };
+    let best = |(state, ends): (State, _)| apart(record.moments().iter().map(state), odd, ends);
     let [contraction, pressure] = of.map(best);
     if pressure.0 > contraction.0 { pressure } else { contraction }
 }
 
+/// How well a limit sets the odd rows apart by a state, and the end at which they lie.
+fn apart(
+    state: impl Iterator<Item = f64>,
+    odd: &[bool],
+    [low, high]: [&'static str; 2],
+) -> (f64, &'static str) {
+    let rows = [true, false].map(|is_odd| odd.iter().filter(|odd| **odd == is_odd).count().max(1) as f64);
+    let mut sorted: Vec<(f64, bool)> = state.zip(odd.iter().copied()).collect();
+    sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
+    // Of the rows up to a limit: odd ones less others.
+    let mut below = 0.0;
+    sorted
+        .chunk_by(|a, b| a.0 >= b.0)
+        .map(|tied| {
+            below +=
+                tied.iter().map(|(_, odd)| if *odd { 1.0 / rows[0] } else { -1.0 / rows[1] }).sum::<f64>();
+            if below > 0.0 { (below, low) } else { (-below, high) }
+        })
+        .fold((0.0, low), |best, next| if next.0 > best.0 { next } else { best })
+}
+
 /// What the other rows say if a few are left out.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Others {
-    /// What was named is not there, although they could show it.
-    Deny,
+    /// What was named is not there, although they could show it; or something else explains the odd rows better.
+    Deny {
+        /// So far from it that they need not be enough for an answer of their own.
+        surely: bool,
+    },
     /// They could not show it.
     AreSilent,
 }

@@ -7,6 +7,7 @@ use rayon::prelude::*;
 use std::sync::Arc;
 
 use crate::comparison::requirements::check_needs;
+use crate::diagnosis::held_load::{LATE_FORCE, is_under_loads};
 use crate::diagnosis::tangents::Tangents;
 use crate::error::InferenceError;
 use crate::fit::nuisance::Prepared;
@@ -22,7 +23,6 @@ const SECANT: f64 = 0.5;
 /// A derivative counts as zero if its change of the force per usual size is below this fraction of full
 /// scale.
 const NOTHING: f64 = 1e-9;
-
 /// One form of an effect.
 #[derive(Debug, Clone)]
 pub(crate) struct Sensitivity {
@@ -128,6 +128,12 @@ impl Sensitivities {
             let untestable = check_needs(effect, record).err().map(|error| match error {
                 InferenceError::Needs { needs, .. } => format!("needs {needs}"),
                 other => other.to_string(),
+            });
+            let untestable = untestable.or_else(|| {
+                (card.family == LATE_FORCE && is_under_loads(record)).then(|| {
+                    "needs a force that rises and falls: a load that is held shows no late reading of it"
+                        .to_owned()
+                })
             });
             effects.push(Screened { effect: Arc::clone(effect), untestable, nuisance });
         }

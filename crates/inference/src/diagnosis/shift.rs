@@ -24,9 +24,9 @@ pub(crate) struct Otherwise {
     pub(crate) odd: Vec<bool>,
     /// What explains them, in words.
     pub(crate) says: String,
-    /// Whether it explains clearly more than what was named,
-    pub(crate) explains_more: bool,
-    /// and begins where no other state was set.
+    /// Whether it explains as much as what was named,
+    pub(crate) explains_all: bool,
+    /// and clearly more, and begins where no other state was set.
     pub(crate) is_better: bool,
 }
 
@@ -53,8 +53,8 @@ pub(crate) fn shifts(found: &Findings<'_>, linear: &Linearised) -> Vec<Otherwise
     };
     let Some((shift, named)) = of() else { return Vec::new() };
     let rows = found.context.record.len();
-    let explains_more = shift.more > named;
-    let is_better = explains_more && !is_another_state(found.context.record, shift.window.start);
+    let explains_all = shift.explained >= named;
+    let is_better = shift.more > named && !is_another_state(found.context.record, shift.window.start);
     let part = |is_window: bool| {
         let says = |(channel, by): &(Channel, f64)| {
             // The model's force needs another reading than the one that was taken.
@@ -69,7 +69,7 @@ pub(crate) fn shifts(found: &Findings<'_>, linear: &Linearised) -> Vec<Otherwise
         };
         let says = shift.by.iter().map(says).collect::<Vec<String>>().join(" or ");
         let odd = (0..rows).map(|place| shift.window.contains(&place) == is_window).collect();
-        Otherwise { odd, says, explains_more, is_better }
+        Otherwise { odd, says, explains_all, is_better }
     };
     let is_small = 2 * shift.window.len() <= rows;
     let leaves_enough = |part: &Otherwise| (rows - count(&part.odd)) as f64 >= LEAST * rows as f64;

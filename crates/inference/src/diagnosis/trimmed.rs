@@ -256,7 +256,7 @@ impl Linearised {
         let chance = by_chance(&rest);
         let alike = channels.iter().filter(|(gain, _, _)| *gain >= ALIKE * most);
         let by = alike.map(|(_, by, _)| *by).collect();
-        (*most > least && *most > chance).then(|| Shift { window, by, more: most - chance })
+        (*most > least && *most > chance).then(|| Shift { window, by, explained: *most, more: most - chance })
     }
 }
 
@@ -282,7 +282,9 @@ pub(crate) struct Shift {
     pub(crate) window: Range<usize>,
     /// The channel and by how much, in its unit; others that explain as much follow.
     pub(crate) by: Vec<(Channel, f64)>,
-    /// Sum of squares that it explains beyond chance \[N^2\].
+    /// Sum of squares that it explains \[N^2\],
+    pub(crate) explained: f64,
+    /// and beyond chance.
     pub(crate) more: f64,
 }
 

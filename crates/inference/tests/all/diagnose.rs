@@ -200,7 +200,7 @@ fn a_zero_that_wanders_is_no_physics() {
         columns.force_n.iter_mut().zip(drift).for_each(|(force, drift)| *force += drift);
         let found = diagnose(&Data::from_columns(columns).unwrap(), &muscle, &diagnosing(&[])).unwrap();
         assert_eq!((found.verdict, names(&found)), (Verdict::CannotTell, vec![]), "{seed}: {}", found.says);
-        assert!(found.says.contains("lowers the error from"), "{seed}: {}", found.says);
+        assert!(found.says.contains("hardly lowers the error"), "{seed}: {}", found.says);
     }
 }
 
@@ -373,8 +373,6 @@ fn damaged(name: &str) -> Diagnosis {
 ///   stretches that stand out ask for what the others deny. (Without looking at stretches it would be called
 ///   `force-nonlinearity`, which is what such a ceiling is, but of all rows.)
 /// - `shifted-zero-of-a-sweep-length-mixed-08`: the others deny it, and are too few to tell more.
-/// - `flipped-sign-length-isometric-14`: one of six held lengths has the wrong sign; the others could not show what it asks
-///   for, and the misfit falls to a fiftieth without it.
 /// - `shifted-zero-of-a-sweep-pressure-isobaric-10`: 0.1 bar in one of five sweeps are as good a cause as what was named.
 #[test]
 fn what_some_rows_ask_for_and_others_do_not_is_no_physics() {
@@ -383,10 +381,6 @@ fn what_some_rows_ask_for_and_others_do_not_is_no_physics() {
         (
             damaged("denied"),
             "some rows ask for something that the others deny: without line 2-30, 32-50 the rows don't tell",
-        ),
-        (
-            damaged("flipped"),
-            "some rows ask for something that the others could not show: without line 202-251 nothing is missing",
         ),
         (
             damaged("shifted"),
@@ -463,19 +457,44 @@ fn a_stretch_of_rows_under_the_name_of_another_specimen_is_no_physics() {
 }
 
 /// A load that is held shows no late reading of the force: what a model gives for it changes by noise alone, which a
-/// filter takes away.
+/// filter takes away. Small loops under a regulated pressure that ripples do, although their force hardly changes.
 #[test]
 fn a_late_force_is_not_looked_for_under_a_load_that_is_held() {
+    let looked_for = |columns| {
+        let found = found(columns);
+        ["force-filter", "force-lag"].map(|effect| {
+            let found = found.candidates.iter().find(|candidate| candidate.effect == effect).unwrap();
+            !found.why.as_deref().is_some_and(|why| why.contains("rises and falls"))
+        })
+    };
     let mut columns = recorded(|_, _| 0.0, false, 9);
     columns.force_n.iter_mut().enumerate().for_each(|(row, force)| *force = 300.0 + (row % 7) as f64);
     let Trace::Contraction(contraction) = &columns.motion else { panic!("a contraction") };
     // The pressure at which the cylinder carries 300 N.
     columns.pressure_pa = contraction.iter().map(|e| 300.0 / cylinder(1.0, *e)).collect();
-    let found = found(columns);
-    for effect in ["force-filter", "force-lag"] {
-        let found = found.candidates.iter().find(|candidate| candidate.effect == effect).unwrap();
-        assert!(found.why.as_deref().is_some_and(|why| why.contains("rises and falls")), "{found:?}");
+    assert_eq!(looked_for(columns), [false, false]);
+    let mut columns = recorded(|_, _| 0.0, false, 9);
+    let Trace::Contraction(contraction) = &mut columns.motion else { panic!("a contraction") };
+    for (row, contraction) in contraction.iter_mut().enumerate() {
+        *contraction = 0.05 + 0.05 * (*contraction - 0.09);
+        columns.pressure_pa[row] = 4e5 * (1.0 + 0.03 * (0.2 * row as f64).sin());
+        columns.force_n[row] = cylinder(columns.pressure_pa[row], *contraction) + (row % 3) as f64;
     }
+    assert_eq!(looked_for(columns), [true, true]);
+}
+
+/// A quarter of the rows is driven fifty times as fast as the others: an experiment for what goes with the speed, which
+/// the slow rows could not show.
+#[test]
+fn what_one_fast_sweep_shows_is_named() {
+    let slow =
+        Block { path: Path::Triangle, rows: 60, ..Block::loops(vec![2e5, 3e5, 4e5], [0.01, 0.18], 400.0) };
+    let fast = Block { path: Path::Triangle, rows: 60, ..Block::loops(vec![3e5], [0.01, 0.18], 8.0) };
+    let noise = ReadingNoise { force_n: 2.0, ..ReadingNoise::default() };
+    let protocol = Protocol { noise, ..Protocol::new(vec![slow, fast]) };
+    let found = diagnosed(&measured(&[("viscous-damping", &[1000.0])], &protocol, 3));
+    assert_eq!(found.verdict, Verdict::Missing, "{}", found.says);
+    assert!(found.missing[0].class.iter().any(|name| name == "viscous-damping"), "{}", found.says);
 }
 
 fn cylinder(pressure: f64, e: f64) -> f64 {

@@ -4,6 +4,7 @@
 
 use super::clipping::expected;
 use super::column::Column;
+use super::slower;
 use super::{Finding, FindingKind, Gate, Severity, rows_in_words};
 use crate::sweep::SweepKind;
 use std::ops::Range;
@@ -45,13 +46,20 @@ pub(super) enum Filled {
     Held,
     /// With a straight line to the next.
     Drawn,
+    /// With either, because it was read only every so many rows.
+    Slower(usize),
 }
 
 impl Filled {
-    pub(super) fn says(self) -> &'static str {
+    pub(super) fn says(self) -> String {
         match self {
-            Self::Held => "repeats the row before to the last digit while the rest moved on",
-            Self::Drawn => "lies on a straight line to the last digit, as if a gap was interpolated",
+            Self::Held => "repeats the row before to the last digit while the rest moved on".to_owned(),
+            Self::Drawn => {
+                "lies on a straight line to the last digit, as if a gap was interpolated".to_owned()
+            }
+            Self::Slower(every) => {
+                format!("comes late: it was read every {every} rows only, and filled in between")
+            }
         }
     }
 }
@@ -68,6 +76,11 @@ pub(super) fn rows(gate: &Gate) -> Frozen {
     for column in &gate.columns {
         let Column { name, values, resolution, is_noisy } = *column;
         let is_force = name == "force";
+        let tolerance = (LINE * resolution.step).max(column.rounding());
+        if let Some(slower) = slower::rows(gate, column, tolerance) {
+            alone.push((name, Filled::Slower(slower.every), slower.rows));
+            continue;
+        }
         let mut held = filled(gate, is_force, |row| repeats(values, row));
         held.retain(|run| !all.contains(run));
         if !is_noisy {
@@ -75,7 +88,6 @@ pub(super) fn rows(gate: &Gate) -> Frozen {
         }
         let mut drawn = Vec::new();
         if is_noisy {
-            let tolerance = (LINE * resolution.step).max(column.rounding());
             drawn = filled(gate, is_force, |row| is_between(gate, values, row, tolerance));
             // A level line is a reading that is held, or coarse.
             let rises = |line: &Range<usize>| (values[line.end] - values[line.start - 1]).abs();
@@ -133,12 +145,24 @@ fn filled(gate: &Gate, is_force: bool, is_filled: impl Fn(usize) -> bool) -> Vec
         // A sensor may be coarser here than elsewhere.
         let sides = run.start.saturating_sub(AROUND).max(sweep.start)..(run.end + AROUND).min(sweep.end);
         let near = |other: &&Range<usize>| other.start < sides.end && sides.start < other.end;
-        let below = found[..place].iter().rev().take_while(near);
-        let near = below.chain(found[place + 1..].iter().take_while(near)).map(Range::len);
-        // Runs by chance have all lengths: one as long, without short ones beside it, is filled in as well.
-        let (long, short): (Vec<usize>, Vec<usize>) = near.partition(|length| 2 * length >= run.len());
-        let rest = sides.len().saturating_sub(run.len() + long.iter().sum::<usize>()).max(1);
-        let here = (short.iter().sum::<usize>() as f64 + 1.0) / rest as f64;
+        let (mut rows, mut others) = (sides.len() - run.len(), 0);
+        for side in [
+            found[..place].iter().rev().take_while(near).collect(),
+            found[place + 1..].iter().take_while(near).collect::<Vec<_>>(),
+        ] {
+            for (order, other) in side.into_iter().enumerate() {
+                let within = other.end.min(sides.end) - other.start.max(sides.start);
+                let away =
+                    if other.start > run.start { other.start - run.end } else { run.start - other.end };
+                // Another gap that was filled in, with ordinary rows between.
+                if order == 0 && away >= RUN && 2 * other.len() >= run.len() {
+                    rows -= within;
+                } else {
+                    others += within;
+                }
+            }
+        }
+        let here = (others as f64 + 1.0) / rows.max(1) as f64;
         run.len() + 1 >= longest_by_chance(gate.data.len(), everywhere.max(here))
     };
     let long = (0..found.len()).filter(|place| is_long(*place) && is_measured(&found[*place]));

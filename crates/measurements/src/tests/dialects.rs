@@ -326,6 +326,33 @@ fn displacements_of_specimens_count_from_their_own_lengths() {
     is_near(own.with_lengths(|_| None).contraction(0.25), [0.0, 0.024, 0.0, 0.1]);
 }
 
+/// As a row that was written under the other name is read: 6 mm of 60 are 6 of 250, and a length of 54 mm is one of
+/// 1 - 54/250. A contraction stays.
+#[test]
+fn a_row_read_as_that_of_another_specimen() {
+    let rows = "2, A, 900, short\n2, B, 700, long\n";
+    for (heading, [a, b], as_long, as_short) in [
+        ("displacement [mm]", ["6", "25"], 6.0 / 250.0, 25.0 / 60.0),
+        ("length [mm]", ["54", "225"], 1.0 - 54.0 / 250.0, 1.0 - 225.0 / 60.0),
+        ("contraction [%]", ["10", "10"], 0.1, 0.1),
+    ] {
+        let text = format!(
+            "pressure [bar], {heading}, force [N], specimen\n{}",
+            rows.replace('A', a).replace('B', b)
+        );
+        let options = ReadOptions { l0_m: Some(0.25), ..ReadOptions::default() };
+        let data = Data::from_bytes(text.as_bytes(), "pull.csv", &options).unwrap();
+        let data = data.with_lengths(|name| (name == "short").then_some(0.06));
+        let read = data.contraction(0.25);
+        let found = [data.contraction_as(1, 0, read[0], 0.25), data.contraction_as(0, 1, read[1], 0.25)];
+        assert!(
+            (found[0] - as_long).abs() < 1e-12 && (found[1] - as_short).abs() < 1e-12,
+            "{heading}: {found:?}"
+        );
+        assert!((data.contraction_as(0, 0, read[0], 0.25) - read[0]).abs() < 1e-15);
+    }
+}
+
 #[test]
 fn displacements() {
     let table = |name: &str, values: [f64; 5]| {

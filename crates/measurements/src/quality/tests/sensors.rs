@@ -173,6 +173,21 @@ fn a_recording_that_stands_still() {
             }
         }
     });
+    // A plateau with flickers, and a ramp whose slope is corrected now and then, were read so.
+    for every in [10, 12, 15, 20] {
+        let mut columns = clean_loops(1, 1);
+        for row in 300..360 {
+            columns.pressure_pa[row] = 1.0001e5 + if row % every == 0 { 20.0 } else { 0.0 };
+        }
+        assert_eq!(quality(columns).of(FindingKind::Frozen).count(), 0, "{every}");
+        let mut columns = clean_loops(1, 1);
+        let mut pressure = columns.pressure_pa[300];
+        for row in 300..360 {
+            pressure += if row / every % 2 == 0 { 200.0 } else { 230.0 };
+            columns.pressure_pa[row] = pressure;
+        }
+        assert_eq!(quality(columns).of(FindingKind::Frozen).count(), 0, "{every}");
+    }
     // A load cell that shows full newtons, at the turning points of a slow loop, isn't frozen.
     let mut columns = clean_loops(1, 1);
     columns.force_n.iter_mut().for_each(|force| *force = (*force / 5.0).round() * 5.0);
@@ -190,6 +205,48 @@ fn a_recording_that_stands_still() {
     for (row, contraction) in motion(&mut columns).iter_mut().enumerate() {
         let part = (row % SWEEP % LOOP) as f64 / LOOP as f64;
         *contraction = 0.02 + 0.2 * (1.2 * (1.0 - (2.0 * part - 1.0).abs()) - 0.1).clamp(0.0, 1.0);
+    }
+    assert_eq!(quality(columns).of(FindingKind::Frozen).count(), 0);
+}
+
+/// Every so many rows of a channel are readings; the others are filled in, and don't count.
+#[test]
+fn a_channel_that_is_read_more_slowly_than_the_others() {
+    let fill = |values: &mut [f64], every: usize, is_drawn: bool| {
+        let read = values.to_vec();
+        for (row, value) in values.iter_mut().enumerate() {
+            let (before, after) = (row / every * every, (row / every + 1) * every);
+            let part = if is_drawn { (row % every) as f64 / every as f64 } else { 0.0 };
+            let after = read.get(after).copied().unwrap_or(read[before]);
+            *value = read[before] + (after - read[before]) * part;
+        }
+    };
+    for (every, is_drawn) in [(4, false), (12, false), (4, true), (12, true)] {
+        for channel in 0..2 {
+            let mut columns = clean_loops(2, 1);
+            let values = if channel == 0 { &mut columns.force_n } else { motion(&mut columns) };
+            fill(values, every, is_drawn);
+            let whole = values.len() / every * every;
+            let found = lines(&quality(columns), FindingKind::Frozen);
+            let filled: Vec<usize> = (1..whole).filter(|row| row % every != 0).map(|row| row + 1).collect();
+            let missed = filled.iter().filter(|row| !found.contains(row)).count();
+            let wrong = found.iter().filter(|line| (*line - 1) % every == 0).count();
+            assert!(
+                missed + wrong <= found.len() / 100,
+                "{every} {is_drawn} {channel}: {missed} {wrong} of {}",
+                found.len()
+            );
+        }
+    }
+    // Stairs: all channels rest and jump together, and the force creeps on each step.
+    let mut columns = clean_loops(2, 1);
+    let mut noise = Noise::new(5);
+    let step = |row: usize| [0_usize, 1, 2, 3, 4, 5, 4, 3, 2, 1][row / 20 % 10] as f64;
+    for (row, contraction) in motion(&mut columns).iter_mut().enumerate() {
+        *contraction = 0.02 + 0.03 * step(row);
+    }
+    for (row, force) in columns.force_n.iter_mut().enumerate() {
+        *force = 800.0 - 100.0 * step(row) - 5.0 * ((row % 20 + 1) as f64).ln() + 0.01 * noise.normal();
     }
     assert_eq!(quality(columns).of(FindingKind::Frozen).count(), 0);
 }
