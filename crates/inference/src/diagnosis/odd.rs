@@ -36,14 +36,14 @@ const SHOWN: f64 = 0.5;
 const FALLS: f64 = 0.5;
 /// Sum of squares of what was named that they could not show, in variances of the noise.
 const SILENT: f64 = 64.0;
-/// The same of what they show: at 3 sigma they bear it out.
-const BORNE_OUT: f64 = 9.0;
 /// Youden's index from which the odd rows lie at one end of a state, and from which hardly another row does.
 const APART: f64 = 0.75;
 const ALONE: f64 = 0.9;
 /// Fractions of the rows on which alone nothing is named, with the part of the misfit that the others may have: an
 /// effect of the muscle shows in its neighbours too, the more so if it is large.
-const FEW: [(f64, f64); 3] = [(0.01, f64::INFINITY), (0.1, FALLS), (0.3, 0.1)];
+const FEW: [(f64, f64); 2] = [(0.1, FALLS), (0.3, 0.1)];
+/// Fraction on which nothing is named if most of what was explained is there, whatever the others have.
+const SINGLE: f64 = 0.01;
 
 /// What is said of rows without which nothing of what was named is missing, if there are such.
 pub(crate) fn odd(
@@ -135,19 +135,16 @@ impl<'a> Doubt<'a> {
         if share.shown < SHOWN && distance > DENIED {
             return Some(Others::Deny { surely: distance > SURELY });
         }
-        let is_borne_out = share.shown >= SHOWN && share.expected * share.shown.powi(2) >= BORNE_OUT;
-        let is_silent = share.expected < SILENT && !is_borne_out;
         let part = count(odd) as f64 / odd.len() as f64;
         let is_few = || {
             let is_few = FEW.iter().any(|(few, below)| part <= *few && falls(*below));
-            // A few rows are no experiment, and their speed is that of the spoilt reading.
-            let is_experiment = || part > FEW[0].0 && is_driven_apart(self.record, odd);
-            is_few && self.is_in(odd) && !comes_back(self.record, odd) && !is_experiment()
+            let is_event = is_few || part <= SINGLE && self.is_in(odd);
+            is_event && !comes_back(self.record, odd) && !is_driven_apart(self.record, odd)
         };
         // One reading that is wrong in these rows is as good a cause as what was named.
         let is_as_good =
             |otherwise: &Otherwise| 2.0 * part <= 1.0 && (otherwise.explains_all || falls(FALLS));
-        (is_silent && otherwise.map_or_else(is_few, is_as_good)).then_some(Others::AreSilent)
+        (share.expected < SILENT && otherwise.map_or_else(is_few, is_as_good)).then_some(Others::AreSilent)
     }
 
     /// Whether most of what was named explains is in the odd rows.
@@ -179,8 +176,14 @@ fn comes_back(record: &Record, odd: &[bool]) -> bool {
     record.sweeps().iter().filter(is_mixed).count() > 1 && end(record, odd).0 > APART
 }
 
-/// Whether the odd rows alone were driven so fast, or were so warm or cold: an experiment for what shows there.
+/// Whether the odd rows are sweeps that alone were driven so fast, or were so warm or cold: an experiment for what shows
+/// there.
 fn is_driven_apart(record: &Record, odd: &[bool]) -> bool {
+    let touched = record.sweeps().iter().filter(|sweep| odd[(*sweep).clone()].contains(&true));
+    let rows: usize = touched.map(Range::len).sum();
+    if (count(odd) as f64) < ALONE * rows as f64 {
+        return false;
+    }
     let of: [State; 3] =
         [|moment| moment.rate.abs(), |moment| moment.pressure_rate.abs(), |moment| moment.temperature];
     // Rows at rest at the ends of a stroke are as slow as those of a slow one.
