@@ -179,11 +179,17 @@ fn comes_back(record: &Record, odd: &[bool]) -> bool {
 /// Whether the odd rows are sweeps that alone were driven so fast, or were so warm or cold: an experiment for what shows
 /// there.
 fn is_driven_apart(record: &Record, odd: &[bool]) -> bool {
-    let touched = record.sweeps().iter().filter(|sweep| odd[(*sweep).clone()].contains(&true));
-    let rows: usize = touched.map(Range::len).sum();
-    if (count(odd) as f64) < ALONE * rows as f64 {
+    // Stretches of the record end beside the sweep that they are.
+    let mut whole = vec![false; odd.len()];
+    for sweep in record.sweeps() {
+        let is_whole = count(&odd[sweep.clone()]) as f64 >= ALONE * sweep.len() as f64;
+        whole[sweep.clone()].fill(is_whole);
+    }
+    let inside = odd.iter().zip(&whole).filter(|(odd, whole)| **odd && **whole).count();
+    if (inside as f64) < ALONE * count(odd) as f64 {
         return false;
     }
+    let odd = whole;
     let of: [State; 3] =
         [|moment| moment.rate.abs(), |moment| moment.pressure_rate.abs(), |moment| moment.temperature];
     // Rows at rest at the ends of a stroke are as slow as those of a slow one.

@@ -483,13 +483,16 @@ fn a_late_force_is_not_looked_for_under_a_load_that_is_held() {
     assert_eq!(looked_for(columns), [true, true]);
 }
 
-/// A quarter of the rows is driven fifty times as fast as the others: an experiment for what goes with the speed, which
+/// A fifth of the rows is driven three hundred times as fast as the others: an experiment for what goes with the speed, which
 /// the slow rows could not show.
 #[test]
 fn what_one_fast_sweep_shows_is_named() {
-    let slow =
-        Block { path: Path::Triangle, rows: 60, ..Block::loops(vec![2e5, 3e5, 4e5], [0.01, 0.18], 400.0) };
-    let fast = Block { path: Path::Triangle, rows: 60, ..Block::loops(vec![3e5], [0.01, 0.18], 8.0) };
+    let slow = Block {
+        path: Path::Triangle,
+        rows: 60,
+        ..Block::loops(vec![2e5, 3e5, 4e5, 5e5], [0.01, 0.18], 1200.0)
+    };
+    let fast = Block { path: Path::Triangle, rows: 60, ..Block::loops(vec![3e5], [0.01, 0.18], 4.0) };
     let noise = ReadingNoise { force_n: 2.0, ..ReadingNoise::default() };
     let protocol = Protocol { noise, ..Protocol::new(vec![slow, fast]) };
     let found = diagnosed(&measured(&[("viscous-damping", &[1000.0])], &protocol, 3));
