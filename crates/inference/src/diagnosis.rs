@@ -13,6 +13,7 @@ pub(crate) mod decision_rule;
 pub(crate) mod diagnose;
 pub(crate) mod document;
 pub(crate) mod drawn;
+mod each_sweep;
 mod either;
 mod event;
 mod exchange;
@@ -42,6 +43,7 @@ mod rungs;
 pub(crate) mod search;
 pub(crate) mod sensitivity;
 pub(crate) mod setpoints;
+
 mod shift;
 pub(crate) mod smooth;
 pub(crate) mod something_else;

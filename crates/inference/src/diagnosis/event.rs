@@ -5,6 +5,7 @@
 //!   after it are diagnosed each on their own, and what is named on one side must be named on the other,
 //! - *odd rows* ask for what the others deny,
 //! - *a late column*: nothing is missing if it is moved by some rows,
+//! - *each sweep* has a zero or a gain of its own, which explains more, and within the sweeps nothing is seen,
 //! - *exchanged specimens*: if nothing is missing when two specimens have each other's numbers, they may have
 //!   each other's name.
 
@@ -13,6 +14,7 @@ use bulge_muscles::shown::shortened;
 
 use crate::comparison::rows::lines;
 use crate::diagnosis::document::{Diagnosis, Verdict};
+use crate::diagnosis::each_sweep::each_sweep;
 use crate::diagnosis::late::Late;
 use crate::diagnosis::odd::odd;
 use crate::diagnosis::trimmed::{Linearised, by_chance};
@@ -47,7 +49,9 @@ pub(crate) fn event(
     let among_the_rows = || {
         let base = &found.search.stages.first()?.confirmed;
         let linear = Linearised::of(&base.prepared, &base.theta, found.context.record).ok()?;
-        late(found, &linear, data, groups, anew).or_else(|| odd(found, &linear, data, groups, anew))
+        late(found, &linear, data, groups, anew)
+            .or_else(|| odd(found, &linear, data, groups, anew))
+            .or_else(|| each_sweep(found, &linear))
     };
     jump(found, data, groups, anew).or_else(among_the_rows).or_else(|| exchanged(found, data, anew))
 }

@@ -27,11 +27,11 @@ const STRETCHES: usize = 24;
 /// grows with pressure or length, which makes a factor of 2 or 3 between sweeps.
 const ODD: f64 = 4.0;
 /// Squared distance, in variances of the noise, of what the other rows show from what was named: 4 sigma.
-const DENIED: f64 = 16.0;
+pub(crate) const DENIED: f64 = 16.0;
 /// The same if the other rows are too few for an answer: 6 sigma.
 const SURELY: f64 = 36.0;
 /// Fraction of what was named that they show at most if they deny it.
-const SHOWN: f64 = 0.5;
+pub(crate) const SHOWN: f64 = 0.5;
 /// Part of the misfit that the others may have if nothing is named, or if they could not show it.
 const FALLS: f64 = 0.5;
 /// Sum of squares of what was named that they could not show, in variances of the noise.

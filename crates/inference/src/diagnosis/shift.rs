@@ -35,20 +35,13 @@ pub(crate) struct Otherwise {
 pub(crate) fn shifts(found: &Findings<'_>, linear: &Linearised) -> Vec<Otherwise> {
     let of = || {
         let (record, base) = (found.context.record, found.search.stages.first()?);
-        let wanted = Wanted { parameters: Vec::new(), readings: true };
-        let at = &base.confirmed;
-        let slopes = at.prepared.model.evaluate_warm(record, &at.theta, &wanted, &Warm::new()).ok()?;
+        let [pressure, motion, force] = slopes(found)?;
         let square = |force: &[f64]| {
             let left = minus(record.force(), force);
             dot(&left, &left)
         };
         let named = square(&base.linear.force) - square(&found.last().linear.force);
-        // A force that reads too much is no change of the model's.
-        let slopes = [
-            (Channel::Pressure, slopes.by_pressure),
-            (Channel::Motion, slopes.by_contraction),
-            (Channel::Force, vec![-1.0; record.len()]),
-        ];
+        let slopes = [(Channel::Pressure, pressure), (Channel::Motion, motion), (Channel::Force, force)];
         Some((linear.shift(&slopes, record.sweeps(), AS_WELL * named)?, named))
     };
     let Some((shift, named)) = of() else { return Vec::new() };
@@ -74,6 +67,16 @@ pub(crate) fn shifts(found: &Findings<'_>, linear: &Linearised) -> Vec<Otherwise
     let is_small = 2 * shift.window.len() <= rows;
     let leaves_enough = |part: &Otherwise| (rows - count(&part.odd)) as f64 >= LEAST * rows as f64;
     [part(is_small), part(!is_small)].into_iter().filter(leaves_enough).collect()
+}
+
+/// Derivatives of the base's force by pressure and contraction, and what the force reads too little.
+pub(crate) fn slopes(found: &Findings<'_>) -> Option<[Vec<f64>; 3]> {
+    let (record, base) = (found.context.record, found.search.stages.first()?);
+    let wanted = Wanted { parameters: Vec::new(), readings: true };
+    let at = &base.confirmed;
+    let slopes = at.prepared.model.evaluate_warm(record, &at.theta, &wanted, &Warm::new()).ok()?;
+    // A force that reads too much is no change of the model's.
+    Some([slopes.by_pressure, slopes.by_contraction, vec![-1.0; record.len()]])
 }
 
 /// Whether another state is set at a row: an effect of what is held then changes there as well.

@@ -39,6 +39,7 @@ const SEEN: f64 = 0.02;
 const CLEAR: f64 = 36.0;
 
 /// A model linearised at its numbers.
+#[derive(Clone)]
 pub(crate) struct Linearised {
     /// Derivative of the force by each free number.
     columns: Vec<Vec<f64>>,
@@ -67,6 +68,24 @@ impl Linearised {
         };
         let priors = tangents.free.iter().map(prior).collect();
         Ok(Self { columns: tangents.columns, priors, residual: tangents.residual })
+    }
+
+    /// The same with further free numbers, each with a prior.
+    pub(crate) fn with(&self, columns: Vec<Vec<f64>>, prior: Option<[f64; 2]>) -> Self {
+        let mut with = self.clone();
+        with.priors.resize(with.priors.len() + columns.len(), prior);
+        with.columns.extend(columns);
+        with
+    }
+
+    /// How many free numbers it has.
+    pub(crate) fn len(&self) -> usize {
+        self.columns.len()
+    }
+
+    /// What its free numbers change by to follow all readings, for noise of `sd` \[N\].
+    pub(crate) fn numbers(&self, sd: f64) -> Option<Vec<f64>> {
+        Some(self.on(&vec![true; self.residual.len()], sd)?.numbers(&self.residual, 1.0))
     }
 
     /// Rows that the model doesn't fit, if they are few.
@@ -147,9 +166,21 @@ impl Linearised {
         Some(left.iter().zip(kept).filter(|(_, kept)| **kept).map(|(left, _)| left * left).sum())
     }
 
+    /// The least sum of squares that the model leaves of all rows, with what its priors cost, for noise of `sd` \[N^2\].
+    pub(crate) fn cost(&self, sd: f64) -> Option<f64> {
+        let numbers = self.numbers(sd)?;
+        let mut left = self.residual.clone();
+        let mut cost = 0.0;
+        for ((column, prior), number) in self.columns.iter().zip(&self.priors).zip(numbers) {
+            add(&mut left, -number, column);
+            cost += prior.map_or(0.0, |[mean, width]| (sd * (number - mean) / width).powi(2));
+        }
+        Some(cost + dot(&left, &left))
+    }
+
     /// What the model leaves of the readings of all rows if its numbers are those of the rows that are kept
     /// \[N\].
-    fn left(&self, kept: &[bool]) -> Option<Vec<f64>> {
+    pub(crate) fn left(&self, kept: &[bool]) -> Option<Vec<f64>> {
         self.left_of(&self.residual, kept)
     }
 
@@ -162,7 +193,9 @@ impl Linearised {
     /// The numbers of the model as the rows that are kept determine them, for noise of `sd`; none if they can't.
     fn on<'a>(&'a self, kept: &'a [bool], sd: f64) -> Option<Determined<'a>> {
         let columns: Vec<Vec<f64>> = self.columns.iter().map(|column| chosen(column, kept)).collect();
-        let sizes: Vec<f64> = columns.iter().map(|column| norm(column).max(f64::MIN_POSITIVE)).collect();
+        // A number that these rows know nothing of.
+        let or_one = |size: f64| if size > 0.0 { size } else { 1.0 };
+        let sizes: Vec<f64> = columns.iter().map(|column| or_one(norm(column))).collect();
         let count = columns.len();
         let mut matrix =
             DMatrix::from_fn(count, count, |a, b| dot(&columns[a], &columns[b]) / (sizes[a] * sizes[b]));
@@ -201,16 +234,20 @@ impl Determined<'_> {
     /// Values without what the numbers of the model make of them; `towards` is 1 if the numbers are drawn to their
     /// priors, 0 if they are only held by them.
     fn outside(&self, values: &[f64], towards: f64) -> Vec<f64> {
-        let target = chosen(values, self.kept);
-        let columns = || self.model.columns.iter().zip(&self.sizes);
-        let right = columns().zip(&self.drawn);
-        let right = right.map(|((column, size), drawn)| dot(column, &target) / size + towards * drawn);
-        let numbers = self.factor.solve(&DVector::from_iterator(self.sizes.len(), right));
         let mut outside = values.to_vec();
-        for ((column, size), number) in columns().zip(numbers.iter()) {
-            add(&mut outside, -number / size, column);
+        for (column, number) in self.model.columns.iter().zip(self.numbers(values, towards)) {
+            add(&mut outside, -number, column);
         }
         outside
+    }
+
+    /// What the numbers of the model change by to follow values.
+    fn numbers(&self, values: &[f64], towards: f64) -> Vec<f64> {
+        let target = chosen(values, self.kept);
+        let right = self.model.columns.iter().zip(&self.sizes).zip(&self.drawn);
+        let right = right.map(|((column, size), drawn)| dot(column, &target) / size + towards * drawn);
+        let scaled = self.factor.solve(&DVector::from_iterator(self.sizes.len(), right));
+        scaled.iter().zip(&self.sizes).map(|(number, size)| number / size).collect()
     }
 }
 
@@ -262,7 +299,12 @@ impl Linearised {
 
 /// Sum of squares that a choice among some hundreds may explain of noise such as this \[N^2\].
 pub(crate) fn by_chance(left: &[f64]) -> f64 {
-    CLEAR * robust_sd(left).powi(2) * shared(left)
+    CLEAR * variance(left)
+}
+
+/// Variance of noise such as this, with what neighbours share \[N^2\].
+pub(crate) fn variance(left: &[f64]) -> f64 {
+    robust_sd(left).powi(2) * shared(left)
 }
 
 /// Windows in which a channel may be shifted: to the end of the record, to the end of a sweep, a whole sweep.
