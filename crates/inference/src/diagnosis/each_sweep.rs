@@ -16,12 +16,12 @@ use crate::vector::minus;
 /// Fewest sweeps, and fewest rows for each.
 const FEWEST: usize = 3;
 const ROWS: usize = 5;
-/// Sums of squares left that differ by less than this factor are alike.
-const ALIKE: f64 = 1.1;
-/// Twice the log odds from which they are the likelier cause, and what each of their numbers costs of it: a prior about e
-/// times as wide as what the number turns out to be.
+/// Twice the log odds from which one cause is likelier than another, and what each number of a sweep costs of them: a prior
+/// about e times as wide as what the number turns out to be.
 const LIKELIER: f64 = 9.0;
 const COST: f64 = 2.0;
+/// What is left over the noise, at most.
+const NOISE: f64 = 1.2;
 /// Least width of a zero, in standard deviations of the noise.
 const LEAST: f64 = 0.01;
 
@@ -94,20 +94,26 @@ pub(crate) fn each_sweep(found: &Findings<'_>, linear: &Linearised) -> Option<St
     let mut tried: Vec<Left> = wrong(found)?.into_iter().filter_map(each).collect();
     tried.sort_by(|a, b| a.square.total_cmp(&b.square));
     let best = tried.first()?;
-    let more = (named - best.square) / variance(&best.linear.left(&all)?);
+    let variance = variance(&best.linear.left(&all)?);
+    let more = (named - best.square) / variance;
+    let rmse = |square: f64| (square / rows as f64).sqrt();
+    let law = found.context.law;
+    if rmse(best.square) > NOISE * law.white_n.hypot(law.correlated_n) {
+        return None;
+    }
     let share = best.linear.share(&minus(&found.last().linear.force, &base.linear.force), &all)?;
-    let is_denied = share.shown < SHOWN && share.expected * (1.0 - share.shown).powi(2) > DENIED;
+    let is_denied =
+        more > 0.0 && share.shown < SHOWN && share.expected * (1.0 - share.shown).powi(2) > DENIED;
     let is_silent = share.expected < DENIED && more > LIKELIER + COST * sweeps.len() as f64;
+    let alike = || tried.iter().filter(|other| other.square - best.square < LIKELIER * variance);
     let names: Vec<&str> = found.claims().iter().map(|(name, _)| *name).collect();
-    (more > 0.0 && is_denied || is_silent).then(|| {
-        let rmse = |square: f64| significant((square / rows as f64).sqrt(), 3);
-        let alike = tried.iter().filter(|other| other.square < ALIKE * best.square);
+    (is_denied || is_silent).then(|| {
         format!(
-            "if {} had changed between the sweeps, {} N would be left, {} N with {}, which {} within the sweeps. See that nothing is zeroed, \
-             clamped or set anew between sweeps, and measure each set point twice, in another order",
-            alike.map(Left::says).collect::<Vec<_>>().join(" or "),
-            rmse(best.square),
-            rmse(named),
+            "if {} had changed between the sweeps, {} N would be left, {} N with {}, which {} within the sweeps. See that nothing is zeroed, clamped or set anew \
+             between sweeps, and measure each set point twice, in another order",
+            alike().map(Left::says).collect::<Vec<_>>().join(" or "),
+            significant(rmse(best.square), 3),
+            significant(rmse(named), 3),
             names.join(" and "),
             if is_denied { "is not seen" } else { "could hardly be seen" },
         )

@@ -16,7 +16,7 @@ use crate::diagnosis::shift::{Otherwise, shifts};
 use crate::diagnosis::trimmed::Linearised;
 use crate::diagnosis::write::Findings;
 use crate::median::median;
-use crate::vector::{count, minus};
+use crate::vector::{count, minus, range};
 
 /// Fewest parts among which one can be odd, and how many of them may be.
 const FEWEST: usize = 3;
@@ -39,9 +39,13 @@ const SILENT: f64 = 64.0;
 /// Youden's index from which the odd rows lie at one end of a state, and from which hardly another row does.
 const APART: f64 = 0.75;
 const ALONE: f64 = 0.9;
+/// Step between neighbouring rows over the range, from which no stroke makes it.
+const LEAP: f64 = 0.3;
 /// Fractions of the rows on which alone nothing is named, with the part of the misfit that the others may have: an
 /// effect of the muscle shows in its neighbours too, the more so if it is large.
 const FEW: [(f64, f64); 2] = [(0.1, FALLS), (0.3, 0.1)];
+/// The same where nothing is named, and no claim is lost.
+const NONE_NAMED: [(f64, f64); 2] = [(0.1, 0.75), (1.0, FALLS)];
 /// Fraction on which nothing is named if most of what was explained is there, whatever the others have.
 const SINGLE: f64 = 0.01;
 
@@ -125,9 +129,11 @@ impl<'a> Doubt<'a> {
     fn about(&self, odd: &[bool], otherwise: Option<&Otherwise>) -> Option<Others> {
         let kept: Vec<bool> = odd.iter().map(|odd| !odd).collect();
         let falls = |below: f64| self.linear.falls_to(&kept).is_some_and(|part| part < below);
+        let part = count(odd) as f64 / odd.len() as f64;
         if !self.is_named {
             // What comes back at one state is no event.
-            let is_event = falls(FALLS) && !comes_back(self.record, odd);
+            let is_event = NONE_NAMED.iter().any(|(few, below)| part <= *few && falls(*below));
+            let is_event = is_event && !comes_back(self.record, odd);
             return is_event.then_some(Others::Deny { surely: false });
         }
         let share = self.linear.share(&self.claimed, &kept)?;
@@ -135,7 +141,6 @@ impl<'a> Doubt<'a> {
         if share.shown < SHOWN && distance > DENIED {
             return Some(Others::Deny { surely: distance > SURELY });
         }
-        let part = count(odd) as f64 / odd.len() as f64;
         let is_few = || {
             let is_few = FEW.iter().any(|(few, below)| part <= *few && falls(*below));
             let is_event = is_few || part <= SINGLE && self.is_in(odd);
@@ -173,7 +178,33 @@ fn comes_back(record: &Record, odd: &[bool]) -> bool {
         let count = count(&odd[(*sweep).clone()]);
         count > 0 && count < sweep.len()
     };
-    record.sweeps().iter().filter(is_mixed).count() > 1 && end(record, odd).0 > APART
+    record.sweeps().iter().filter(is_mixed).count() > 1
+        && end(record, odd).0 > APART
+        && !is_leapt_to(record, odd)
+}
+
+/// Whether most of the odd rows' runs begin or end with a leap of pressure or contraction within a sweep: readings that fail
+/// lie at one end of a state as well, and no stroke leads there.
+fn is_leapt_to(record: &Record, odd: &[bool]) -> bool {
+    let moments = record.moments();
+    let [pressures, contractions]: [f64; 2] =
+        [|moment: &Moment| moment.pressure, |moment: &Moment| moment.contraction].map(
+            |state: fn(&Moment) -> f64| {
+                let [low, high] = range(moments.iter().map(state));
+                (high - low).max(f64::MIN_POSITIVE)
+            },
+        );
+    let edges = record
+        .sweeps()
+        .iter()
+        .flat_map(|sweep| (sweep.start + 1..sweep.end).filter(|row| odd[*row] != odd[row - 1]));
+    let leaps = edges.map(|row| {
+        let [before, after] = [&moments[row - 1], &moments[row]];
+        let by = ((after.pressure - before.pressure) / pressures).abs();
+        by.max(((after.contraction - before.contraction) / contractions).abs()) > LEAP
+    });
+    let leaps: Vec<bool> = leaps.collect();
+    2 * count(&leaps) > leaps.len()
 }
 
 /// Whether the odd rows are sweeps that alone were driven so fast, or were so warm or cold: an experiment for what shows
