@@ -370,6 +370,31 @@ mod tests {
     }
 
     #[test]
+    fn a_number_that_the_rows_know_nothing_of_changes_nothing() {
+        let with = line(5).with(vec![vec![0.0; 100]], None);
+        let kept: Vec<bool> = (0..100).map(|row| row % 5 > 0).collect();
+        assert_eq!(with.left(&kept), line(5).left(&kept));
+        assert_eq!(with.numbers(0.1).unwrap()[2], 0.0);
+    }
+
+    /// Mean m of n readings, drawn to a prior of width w around a by noise of sd: the least of
+    /// n (b - m)^2 + (sd/w)^2 (b - a)^2 is that of two springs in series.
+    #[test]
+    fn what_a_prior_costs_is_that_of_springs_in_series() {
+        let residual: Vec<f64> = (0..8).map(|row| 3.0 + f64::from([1, -1][row % 2])).collect();
+        let own = Linearised { columns: Vec::new(), priors: Vec::new(), residual };
+        for (mean, width, sd) in [(0.0, 0.5, 2.0), (4.0, 0.1, 0.3), (1.0, 10.0, 1.0)] {
+            let with = own.with(vec![vec![1.0; 8]], Some([mean, width]));
+            let stiff: f64 = (sd / width).powi(2);
+            let expected = 8.0 + 8.0 * stiff / (8.0 + stiff) * (3.0 - mean).powi(2);
+            let cost = with.cost(sd).unwrap();
+            assert!((cost / expected - 1.0).abs() < 1e-6, "{cost} {expected}");
+            let number = with.numbers(sd).unwrap()[0];
+            assert!((number - (24.0 + stiff * mean) / (8.0 + stiff)).abs() < 1e-6, "{number}");
+        }
+    }
+
+    #[test]
     fn a_channel_that_slips_is_found_with_its_row_and_size() {
         let mut line = line(200);
         line.residual[0] = 2.0;
