@@ -43,7 +43,6 @@ mod rungs;
 pub(crate) mod search;
 pub(crate) mod sensitivity;
 pub(crate) mod setpoints;
-
 mod shift;
 pub(crate) mod smooth;
 pub(crate) mod something_else;

@@ -2,24 +2,32 @@
 //! is clamped anew, an amplifier that is set anew. Sweeps that follow each other at rising pressures make an effect of the
 //! pressure of it, and those in any order heat, drift or creep.
 
-use bulge_measurements::Channel;
+use bulge_measurements::{Channel, Data};
 use bulge_muscles::units::significant;
 use std::ops::Range;
 
+use crate::comparison::rows::{full_scale, lines};
 use crate::diagnosis::odd::{DENIED, SHOWN};
 use crate::diagnosis::shift::slopes;
 use crate::diagnosis::trimmed::{Linearised, variance};
 use crate::diagnosis::write::Findings;
-use crate::median::{median, robust_sd};
+use crate::median::median;
 use crate::vector::minus;
+use bulge_numerics::vector::dot;
 
-/// Fewest sweeps, and fewest rows for each.
+/// Fewest sweeps, and fewest rows of one that has a number.
 const FEWEST: usize = 3;
 const ROWS: usize = 5;
-/// Twice the log odds from which one cause is likelier than another, and what each number of a sweep costs of them: a prior
-/// about e times as wide as what the number turns out to be.
-const LIKELIER: f64 = 9.0;
-const COST: f64 = 2.0;
+/// Twice the log of the number of effects among which the named one was chosen, some sixty.
+const CHOSEN: f64 = 8.0;
+/// Twice the log odds up to which two wrong readings are alike.
+const ALIKE: f64 = 9.0;
+/// Most of them that are said.
+const MOST: usize = 3;
+/// Standard deviation of a zero or a gain that is set anew, over the largest reading; of a contraction: itself. A tenth of
+/// full scale is rare.
+const ANEW: f64 = 0.03;
+const ANEW_CONTRACTION: f64 = 0.005;
 /// What is left over the noise, at most.
 const NOISE: f64 = 1.2;
 /// Least width of a zero, in standard deviations of the noise.
@@ -32,117 +40,163 @@ enum Wrong {
     Gain(Channel),
 }
 
-impl Wrong {
-    /// It in words, with the scale and the unit of its size.
-    fn words(self) -> (String, f64, &'static str) {
-        let (what, scale, unit) = match self {
-            Self::Zero(Channel::Pressure) => ("zero", 1e5, "bar"),
-            Self::Zero(Channel::Motion) => ("zero", 0.01, "points"),
-            Self::Zero(Channel::Force) => ("zero", 1.0, "N"),
-            Self::Gain(_) => ("gain", 0.01, "%"),
-        };
-        let (Self::Zero(channel) | Self::Gain(channel)) = self;
-        let name = if channel == Channel::Motion { "contraction" } else { channel.name() };
-        (format!("the {what} of the {name}"), scale, unit)
-    }
-}
-
-/// What one number of a reading in each sweep leaves.
-struct Left {
+/// What a number of a reading in each sweep, or from a sweep on, makes of the data.
+struct Each {
     wrong: Wrong,
-    /// Sum of squares \[N^2\].
-    square: f64,
-    /// The numbers, sweep by sweep.
-    numbers: Vec<f64>,
+    /// Rows that have one, and by how much the reading is too small there.
+    numbers: Vec<(Range<usize>, f64)>,
+    /// Twice the log evidence but for a constant.
+    evidence: f64,
     linear: Linearised,
 }
 
-/// What is said if one number of a reading in each sweep explains clearly more than what was named, and that doesn't
-/// show within the sweeps.
-pub(crate) fn each_sweep(found: &Findings<'_>, linear: &Linearised) -> Option<String> {
+/// What is said if a reading whose zero or gain changed between sweeps, each time or once, is as likely a cause as what was
+/// named, and that isn't seen within the sweeps.
+pub(crate) fn each_sweep(
+    found: &Findings<'_>,
+    linear: &Linearised,
+    data: &Data,
+    groups: &[Vec<usize>],
+) -> Option<String> {
     let (record, base) = (found.context.record, found.search.stages.first()?);
-    let (rows, sweeps) = (record.len(), record.sweeps());
-    if found.claims().is_empty() || sweeps.len() < FEWEST || rows < ROWS * sweeps.len() {
+    let sweeps: Vec<Range<usize>> =
+        record.sweeps().iter().filter(|sweep| sweep.len() >= ROWS).cloned().collect();
+    if found.claims().is_empty() || sweeps.len() < FEWEST {
         return None;
     }
-    let all = vec![true; rows];
     let last = &found.last().confirmed;
     let named = Linearised::of(&last.prepared, &last.theta, record).ok()?;
-    let sd = robust_sd(&named.left(&all)?);
+    let all = vec![true; record.len()];
+    let left = named.left(&all)?;
     // A zero that changes within the data sheet is noise, beside the named effect as without it.
     let stated = last.prepared.model.muscle().instruments().force.map(|force| force.zero());
-    let usual = stated.filter(|zero| *zero > 0.0).unwrap_or(found.context.law.offset_n).max(LEAST * sd);
-    let in_each = |slope: &[f64]| -> Vec<Vec<f64>> {
-        let column = |sweep: &Range<usize>| {
-            let mut column = vec![0.0; rows];
-            column[sweep.clone()].copy_from_slice(&slope[sweep.clone()]);
-            column
-        };
-        sweeps.iter().map(column).collect()
-    };
-    let zeros = in_each(&vec![1.0; rows]);
-    let named = named.with(zeros.clone(), Some([0.0, usual])).cost(sd)?;
-    let each = |(wrong, slope): (Wrong, Vec<f64>)| {
-        let beside = match wrong {
-            Wrong::Zero(Channel::Force) => linear.clone(),
-            Wrong::Zero(_) | Wrong::Gain(_) => linear.with(zeros.clone(), Some([0.0, usual])),
-        };
-        let linear = beside.with(in_each(&slope), None);
+    let usual = stated.filter(|zero| *zero > 0.0).unwrap_or(found.context.law.offset_n);
+    let usual = usual.max(LEAST * variance(&left).sqrt());
+    let zeros =
+        |linear: &Linearised, sd: f64| with_each(linear, &sweeps, &vec![1.0; record.len()], usual, sd);
+    let named_with = |sd: f64| zeros(&named, sd);
+    // The noise is what the named effect leaves beside such zeros.
+    let (beside, _) = named_with(variance(&left).sqrt())?;
+    let sd = variance(&beside.left(&all)?).sqrt();
+    let (beside, charge) = named_with(sd)?;
+    let named = evidence(&beside, charge, sd)?;
+    let beside_zeros = zeros(linear, sd)?;
+    // In each sweep, and once: from a sweep on, which is chosen.
+    let once = sweeps.iter().skip(1).map(|sweep| vec![sweep.start..record.len()]);
+    let places: Vec<Vec<Range<usize>>> = std::iter::once(sweeps.clone()).chain(once).collect();
+    let chosen = 2.0 * (places.len() as f64).ln();
+    let wrongs = wrong(found, usual)?;
+    let each = |(wrong, slope, width): &(Wrong, Vec<f64>, f64), places: &[Range<usize>]| {
+        let own = (linear.clone(), 0.0);
+        let is_zero = *wrong == Wrong::Zero(Channel::Force) && places.len() > 1;
+        let (beside, usually) = if is_zero { &own } else { &beside_zeros };
+        let (linear, charge) = with_each(beside, places, slope, *width, sd)?;
         let numbers = linear.numbers(sd)?.split_off(beside.len());
-        Some(Left { wrong, square: linear.cost(sd)?, numbers, linear })
+        let numbers = places.iter().cloned().zip(numbers).collect();
+        let evidence = evidence(&linear, usually + charge + chosen, sd)?;
+        Some(Each { wrong: *wrong, numbers, evidence, linear })
     };
-    let mut tried: Vec<Left> = wrong(found)?.into_iter().filter_map(each).collect();
-    tried.sort_by(|a, b| a.square.total_cmp(&b.square));
+    let each = |wrong| places.iter().filter_map(move |places| each(wrong, places)).collect::<Vec<Each>>();
+    let mut tried: Vec<Each> = wrongs.iter().flat_map(each).collect();
+    tried.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
     let best = tried.first()?;
-    let variance = variance(&best.linear.left(&all)?);
-    let more = (named - best.square) / variance;
-    let rmse = |square: f64| (square / rows as f64).sqrt();
-    let law = found.context.law;
-    if rmse(best.square) > NOISE * law.white_n.hypot(law.correlated_n) {
+    let rest = best.linear.left(&all)?;
+    let rmse = (dot(&rest, &rest) / rest.len() as f64).sqrt();
+    if rmse > NOISE * found.context.row_n.hypot(found.context.law.correlated_n) {
         return None;
     }
     let share = best.linear.share(&minus(&found.last().linear.force, &base.linear.force), &all)?;
-    let is_denied =
-        more > 0.0 && share.shown < SHOWN && share.expected * (1.0 - share.shown).powi(2) > DENIED;
-    let is_silent = share.expected < DENIED && more > LIKELIER + COST * sweeps.len() as f64;
-    let alike = || tried.iter().filter(|other| other.square - best.square < LIKELIER * variance);
-    let names: Vec<&str> = found.claims().iter().map(|(name, _)| *name).collect();
-    (is_denied || is_silent).then(|| {
-        format!(
-            "if {} had changed between the sweeps, {} N would be left, {} N with {}, which {} within the sweeps. See that nothing is zeroed, clamped or set anew \
-             between sweeps, and measure each set point twice, in another order",
-            alike().map(Left::says).collect::<Vec<_>>().join(" or "),
-            significant(rmse(best.square), 3),
-            significant(rmse(named), 3),
-            names.join(" and "),
-            if is_denied { "is not seen" } else { "could hardly be seen" },
-        )
-    })
+    let is_seen = share.expected > DENIED && share.shown >= SHOWN;
+    if is_seen || best.evidence - named < -CHOSEN {
+        return None;
+    }
+    let alike = tried.iter().filter(|other| best.evidence - other.evidence < ALIKE).take(MOST);
+    let claims: Vec<&str> = found.claims().iter().map(|(name, _)| *name).collect();
+    Some(format!(
+        "{} explains these data as well as {}, which isn't seen within the sweeps. See that nothing is zeroed, clamped or set anew \
+         between sweeps, and measure each set point twice, in another order",
+        alike.map(|each| each.says(data, groups)).collect::<Vec<_>>().join(", or "),
+        claims.join(" and "),
+    ))
 }
 
-/// What each wrong reading would add to the force, for each unit of its size.
-fn wrong(found: &Findings<'_>) -> Option<[(Wrong, Vec<f64>); 5]> {
+/// Twice the log evidence of a model but for a constant, for noise of `sd`; `charge` is what its numbers cost.
+fn evidence(linear: &Linearised, charge: f64, sd: f64) -> Option<f64> {
+    Some(-linear.cost(sd)? / (sd * sd) - charge)
+}
+
+/// A model with one more number in each sweep, with a prior of a width around 0; and what they cost of twice the log
+/// evidence, ln(1 + (width / sd of the number)^2) each.
+fn with_each(
+    linear: &Linearised,
+    sweeps: &[Range<usize>],
+    slope: &[f64],
+    width: f64,
+    sd: f64,
+) -> Option<(Linearised, f64)> {
+    let column = |sweep: &Range<usize>| {
+        let mut column = vec![0.0; slope.len()];
+        column[sweep.clone()].copy_from_slice(&slope[sweep.clone()]);
+        column
+    };
+    let columns: Vec<Vec<f64>> = sweeps.iter().map(column).collect();
+    let charge = columns.iter().map(|column| Some((width / sd).powi(2) * linear.seen(column, sd)?));
+    let charge = charge.map(|ratio| ratio.map(f64::ln_1p)).sum::<Option<f64>>()?;
+    Some((linear.with(columns, Some([0.0, width])), charge))
+}
+
+/// What each wrong reading would add to the force, for each unit that it reads too little; and the width of its number.
+fn wrong(found: &Findings<'_>, usual: f64) -> Option<[(Wrong, Vec<f64>, f64); 6]> {
+    let record = found.context.record;
     let [pressure, motion, force] = slopes(found)?;
-    let gain = pressure.iter().zip(found.context.record.moments()).map(|(slope, at)| slope * at.pressure);
-    let gain = gain.collect();
+    let by = |slope: &[f64], reading: &dyn Fn(usize) -> f64| -> Vec<f64> {
+        slope.iter().enumerate().map(|(row, slope)| slope * reading(row)).collect()
+    };
+    let moments = record.moments();
     // Not the measured force: that holds what is missing.
-    let computed = found.search.stages.first()?.linear.force.clone();
+    let computed = &found.search.stages.first()?.linear.force;
+    let gains = [
+        by(&force, &|row| computed[row]),
+        by(&motion, &|row| moments[row].contraction),
+        by(&pressure, &|row| moments[row].pressure),
+    ];
+    let largest = moments.iter().map(|moment| moment.pressure).fold(0.0, f64::max);
+    let [gain_f, gain_m, gain_p] = gains;
+    let full = ANEW * full_scale(record.force(), 0..record.len());
     Some([
-        (Wrong::Zero(Channel::Force), force),
-        (Wrong::Zero(Channel::Motion), motion),
-        (Wrong::Zero(Channel::Pressure), pressure),
-        (Wrong::Gain(Channel::Force), computed),
-        (Wrong::Gain(Channel::Pressure), gain),
+        (Wrong::Zero(Channel::Force), force, full.hypot(usual)),
+        (Wrong::Zero(Channel::Motion), motion, ANEW_CONTRACTION),
+        (Wrong::Zero(Channel::Pressure), pressure, ANEW * largest),
+        (Wrong::Gain(Channel::Force), gain_f, ANEW),
+        (Wrong::Gain(Channel::Motion), gain_m, ANEW),
+        (Wrong::Gain(Channel::Pressure), gain_p, ANEW),
     ])
 }
 
-impl Left {
+impl Each {
     /// The reading, and the sweep that is furthest from the others.
-    fn says(&self) -> String {
-        let usual = median(&mut self.numbers.clone());
-        let away = self.numbers.iter().map(|number| (number - usual).abs()).enumerate();
-        let (sweep, by) = away.max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or_default();
-        let (what, scale, unit) = self.wrong.words();
-        format!("{what} (in sweep {} by {} {unit})", sweep + 1, significant(by / scale, 2))
+    fn says(&self, data: &Data, groups: &[Vec<usize>]) -> String {
+        let mut numbers: Vec<f64> = self.numbers.iter().map(|(_, number)| *number).collect();
+        // Before it changed once there is no number.
+        let usual = if numbers.len() == 1 { 0.0 } else { median(&mut numbers) };
+        let away = |number: f64| (number - usual).abs();
+        let furthest = self.numbers.iter().max_by(|a, b| away(a.1).total_cmp(&away(b.1)));
+        let (sweep, number) = furthest.cloned().unwrap_or_default();
+        let (what, scale, unit) = match self.wrong {
+            Wrong::Zero(Channel::Pressure) => ("zero", 1e5, "bar"),
+            Wrong::Zero(Channel::Motion) => ("zero", 0.01, "points"),
+            Wrong::Zero(Channel::Force) => ("zero", 1.0, "N"),
+            Wrong::Gain(_) => ("gain", 0.01, "%"),
+        };
+        let (Wrong::Zero(channel) | Wrong::Gain(channel)) = self.wrong;
+        let name = if channel == Channel::Motion { "contraction" } else { channel.name() };
+        let rows: Vec<usize> = sweep.filter_map(|place| groups.get(place)).flatten().copied().collect();
+        let by = (usual - number) / scale;
+        let side = if by > 0.0 { "more" } else { "less" };
+        let by = significant(by.abs(), 2);
+        format!(
+            "a {what} of the {name} that changed (line {}: {by} {unit} {side} than before or after)",
+            lines(data, &rows)
+        )
     }
 }

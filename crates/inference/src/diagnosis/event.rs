@@ -5,11 +5,12 @@
 //!   after it are diagnosed each on their own, and what is named on one side must be named on the other,
 //! - *odd rows* ask for what the others deny,
 //! - *a late column*: nothing is missing if it is moved by some rows,
-//! - *each sweep* has a zero or a gain of its own, which explains more, and within the sweeps nothing is seen,
+//! - *each sweep* has a zero or a gain of its own, which is the likelier cause of what isn't seen within the sweeps,
+//! - *readings that are wrong* stand beside what no effect explains,
 //! - *exchanged specimens*: if nothing is missing when two specimens have each other's numbers, they may have
 //!   each other's name.
 
-use bulge_measurements::Data;
+use bulge_measurements::{Data, Disturbance};
 use bulge_muscles::shown::shortened;
 
 use crate::comparison::rows::lines;
@@ -24,6 +25,9 @@ use bulge_numerics::vector::dot;
 
 /// Most specimens that are compared with each other.
 pub(crate) const MOST_SPECIMENS: u32 = 5;
+
+/// Fewest wrong readings beside which nothing is said to be unknown: one or two spikes happen in any test.
+const DISTURBED: usize = 3;
 
 /// Diagnoses of the same data made anew; none if there is no answer.
 #[derive(Clone, Copy)]
@@ -51,9 +55,28 @@ pub(crate) fn event(
         let linear = Linearised::of(&base.prepared, &base.theta, found.context.record).ok()?;
         late(found, &linear, data, groups, anew)
             .or_else(|| odd(found, &linear, data, groups, anew))
-            .or_else(|| each_sweep(found, &linear))
+            .or_else(|| each_sweep(found, &linear, data, groups))
     };
-    jump(found, data, groups, anew).or_else(among_the_rows).or_else(|| exchanged(found, data, anew))
+    let event = jump(found, data, groups, anew).or_else(among_the_rows);
+    event.or_else(|| exchanged(found, data, anew)).or_else(|| disturbed(found, data))
+}
+
+/// What no effect explains beside readings that are known to be wrong: what spoilt those may have spoilt others, less
+/// visibly.
+fn disturbed(found: &Findings<'_>, data: &Data) -> Option<String> {
+    if found.verdict().0 != Verdict::Unknown {
+        return None;
+    }
+    let disturbed = data.disturbed();
+    let rows: usize = disturbed.iter().map(|disturbance| disturbance.rows.len()).sum();
+    let said = |one: &Disturbance| format!("line {} ({})", lines(data, &one.rows), one.why);
+    (rows >= DISTURBED).then(|| {
+        format!(
+            "no effect of the catalogue explains these data, and they hold readings that are wrong: {}. They don't count, but what spoilt them may have spoilt others \
+             that look sound: see what happened, repeat these sweeps, and ask again",
+            disturbed.iter().map(said).collect::<Vec<_>>().join("; ")
+        )
+    })
 }
 
 /// A column that is late, without which nothing is missing.

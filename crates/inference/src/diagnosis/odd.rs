@@ -183,28 +183,20 @@ fn comes_back(record: &Record, odd: &[bool]) -> bool {
         && !is_leapt_to(record, odd)
 }
 
-/// Whether most of the odd rows' runs begin or end with a leap of pressure or contraction within a sweep: readings that fail
-/// lie at one end of a state as well, and no stroke leads there.
+/// Whether most of the odd rows' edges within sweeps are leaps of pressure or contraction, such as no other rows make:
+/// readings that fail lie at one end of a state as well, and no stroke leads there.
 fn is_leapt_to(record: &Record, odd: &[bool]) -> bool {
     let moments = record.moments();
-    let [pressures, contractions]: [f64; 2] =
-        [|moment: &Moment| moment.pressure, |moment: &Moment| moment.contraction].map(
-            |state: fn(&Moment) -> f64| {
-                let [low, high] = range(moments.iter().map(state));
-                (high - low).max(f64::MIN_POSITIVE)
-            },
-        );
-    let edges = record
-        .sweeps()
-        .iter()
-        .flat_map(|sweep| (sweep.start + 1..sweep.end).filter(|row| odd[*row] != odd[row - 1]));
-    let leaps = edges.map(|row| {
-        let [before, after] = [&moments[row - 1], &moments[row]];
-        let by = ((after.pressure - before.pressure) / pressures).abs();
-        by.max(((after.contraction - before.contraction) / contractions).abs()) > LEAP
-    });
-    let leaps: Vec<bool> = leaps.collect();
-    2 * count(&leaps) > leaps.len()
+    let states: [State; 2] = [|moment| moment.pressure, |moment| moment.contraction];
+    states.into_iter().any(|state| {
+        let [low, high] = range(moments.iter().map(state));
+        let inside = record.sweeps().iter().flat_map(|sweep| sweep.start + 1..sweep.end);
+        let step = |row: usize| (state(&moments[row]) - state(&moments[row - 1])).abs();
+        let usual = inside.clone().filter(|row| !odd[*row] && !odd[row - 1]).map(step).fold(0.0, f64::max);
+        let edges: Vec<f64> = inside.filter(|row| odd[*row] != odd[row - 1]).map(step).collect();
+        let leaps = edges.iter().filter(|step| **step > (LEAP * (high - low)).max(usual)).count();
+        2 * leaps > edges.len()
+    })
 }
 
 /// Whether the odd rows are sweeps that alone were driven so fast, or were so warm or cold: an experiment for what shows

@@ -70,12 +70,18 @@ impl Linearised {
         Ok(Self { columns: tangents.columns, priors, residual: tangents.residual })
     }
 
-    /// The same with further free numbers, each with a prior.
+    /// The same with further free numbers, each with this prior.
     pub(crate) fn with(&self, columns: Vec<Vec<f64>>, prior: Option<[f64; 2]>) -> Self {
         let mut with = self.clone();
         with.priors.resize(with.priors.len() + columns.len(), prior);
         with.columns.extend(columns);
         with
+    }
+
+    /// Sum of squares of a column that its numbers leave, for noise of `sd`: what the readings know of its size.
+    pub(crate) fn seen(&self, column: &[f64], sd: f64) -> Option<f64> {
+        let outside = self.on(&vec![true; self.residual.len()], sd)?.outside(column, 0.0);
+        Some(dot(&outside, &outside))
     }
 
     /// How many free numbers it has.
