@@ -236,6 +236,37 @@ mod tests {
         Record::from_moments(moments, vec![0.0; n], std::iter::once(0..n).collect()).unwrap()
     }
 
+    /// Two cycles of a pressure that rests for five readings on each of nine levels and is read with noise, of which the
+    /// misfit holds -3 N/kPa: neighbours by reading would have the same noise, and differ by that of the force alone.
+    #[test]
+    fn noise_of_the_reading_that_orders_the_rows_of_a_rest_counts() {
+        let mut random = Random::new(8, 0);
+        let (mut moments, mut residual) = (Vec::new(), Vec::new());
+        for cycle in 0..20 {
+            for place in 0..18 {
+                let (level, up) = if place < 9 { (place, 1.0) } else { (17 - place, -1.0) };
+                for _ in 0..5 {
+                    let noise = 250.0 * random.normal();
+                    let clock = moments.len() as f64;
+                    moments.push(Moment {
+                        pressure_direction: up,
+                        cycle: f64::from(cycle),
+                        clock,
+                        time: clock,
+                        begins: moments.is_empty(),
+                        ..Moment::at_rest(1e5 + 5e4 * f64::from(level) + noise, 0.1)
+                    });
+                    residual.push(-3e-3 * noise + 0.3 * random.normal());
+                }
+            }
+        }
+        let n = moments.len();
+        let record = Record::from_moments(moments, vec![0.0; n], std::iter::once(0..n).collect()).unwrap();
+        let found = BetweenCycles::of(&record, &residual).unwrap().variance;
+        let ratio = (found / (0.75_f64.powi(2) + 0.09)).sqrt();
+        assert!((ratio - 1.0).abs() < 0.1, "{ratio}");
+    }
+
     #[test]
     fn a_ripple_that_repeats_is_no_noise_and_the_noise_stays_what_it_is() {
         for cycles in [2, 4, 12] {

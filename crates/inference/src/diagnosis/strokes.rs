@@ -5,6 +5,7 @@ use bulge_effects::Moment;
 use bulge_model::Record;
 
 use crate::comparison::levels::Levels;
+use crate::median::median;
 use crate::vector::range;
 
 /// Contractions that differ by less count as the same held length.
@@ -38,6 +39,29 @@ pub(crate) struct Stroke {
     pub(crate) points: Vec<Point>,
 }
 
+/// Gap between neighbouring places over the median of all, from which rests lie on either side. Places that are drawn at
+/// random have gaps of ten medians among some thousands.
+const GAP: f64 = 20.0;
+
+/// Orders the rows of each rest by time, on the places of all of them. What orders readings of one true state is their noise,
+/// which the misfit holds as well: neighbours would differ by less than their noise.
+fn by_time_in_rests(points: &mut [Point], is_up: bool) {
+    let gap = |pair: &[Point]| pair[1].place - pair[0].place;
+    let mut gaps: Vec<f64> = points.windows(2).map(gap).collect();
+    let usual = if gaps.is_empty() { return } else { median(&mut gaps) };
+    let has_rests = points.windows(2).any(|pair| gap(pair) > GAP * usual);
+    for rest in points.chunk_by_mut(|a, b| b.place - a.place <= GAP * usual).filter(|_| has_rests) {
+        let mut rows: Vec<usize> = rest.iter().map(|point| point.row).collect();
+        rows.sort_unstable();
+        if !is_up {
+            rows.reverse();
+        }
+        for (point, row) in rest.iter_mut().zip(rows) {
+            point.row = row;
+        }
+    }
+}
+
 /// All strokes of a record.
 pub(crate) fn strokes(record: &Record) -> Vec<Stroke> {
     let levels = Levels::of(record, &vec![true; record.len()]);
@@ -65,6 +89,7 @@ pub(crate) fn strokes(record: &Record) -> Vec<Stroke> {
                 })
                 .collect();
             points.sort_by(|a, b| a.place.total_cmp(&b.place));
+            by_time_in_rests(&mut points, up(run[0]));
             #[expect(clippy::cast_possible_truncation, reason = "a contraction over 0.2 %")]
             let length = (moment.contraction / HELD).round() as i64;
             let level = if is_held { length } else { i64::try_from(levels.at(run[0])).unwrap_or(0) };
