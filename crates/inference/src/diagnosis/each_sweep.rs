@@ -59,55 +59,18 @@ pub(crate) fn each_sweep(
     groups: &[Vec<usize>],
 ) -> Option<String> {
     let (record, base) = (found.context.record, found.search.stages.first()?);
-    let sweeps: Vec<Range<usize>> =
-        record.sweeps().iter().filter(|sweep| sweep.len() >= ROWS).cloned().collect();
-    if found.claims().is_empty() || sweeps.len() < FEWEST {
-        return None;
-    }
-    let last = &found.last().confirmed;
-    let named = Linearised::of(&last.prepared, &last.theta, record).ok()?;
-    let all = vec![true; record.len()];
-    let left = named.left(&all)?;
-    // A zero that changes within the data sheet is noise, beside the named effect as without it.
-    let stated = last.prepared.model.muscle().instruments().force.map(|force| force.zero());
-    let usual = stated.filter(|zero| *zero > 0.0).unwrap_or(found.context.law.offset_n);
-    let usual = usual.max(LEAST * variance(&left).sqrt());
-    let zeros =
-        |linear: &Linearised, sd: f64| with_each(linear, &sweeps, &vec![1.0; record.len()], usual, sd);
-    let named_with = |sd: f64| zeros(&named, sd);
-    // The noise is what the named effect leaves beside such zeros.
-    let (beside, _) = named_with(variance(&left).sqrt())?;
-    let sd = variance(&beside.left(&all)?).sqrt();
-    let (beside, charge) = named_with(sd)?;
-    let named = evidence(&beside, charge, sd)?;
-    let beside_zeros = zeros(linear, sd)?;
-    // In each sweep, and once: from a sweep on, which is chosen.
-    let once = sweeps.iter().skip(1).map(|sweep| vec![sweep.start..record.len()]);
-    let places: Vec<Vec<Range<usize>>> = std::iter::once(sweeps.clone()).chain(once).collect();
-    let chosen = 2.0 * (places.len() as f64).ln();
-    let wrongs = wrong(found, usual)?;
-    let each = |(wrong, slope, width): &(Wrong, Vec<f64>, f64), places: &[Range<usize>]| {
-        let own = (linear.clone(), 0.0);
-        let is_zero = *wrong == Wrong::Zero(Channel::Force) && places.len() > 1;
-        let (beside, usually) = if is_zero { &own } else { &beside_zeros };
-        let (linear, charge) = with_each(beside, places, slope, *width, sd)?;
-        let numbers = linear.numbers(sd)?.split_off(beside.len());
-        let numbers = places.iter().cloned().zip(numbers).collect();
-        let evidence = evidence(&linear, usually + charge + chosen, sd)?;
-        Some(Each { wrong: *wrong, numbers, evidence, linear })
-    };
-    let each = |wrong| places.iter().filter_map(move |places| each(wrong, places)).collect::<Vec<Each>>();
-    let mut tried: Vec<Each> = wrongs.iter().flat_map(each).collect();
+    let sweeps = record.sweeps().iter().filter(|sweep| sweep.len() >= ROWS).cloned().collect();
+    let named = Named::of(found, sweeps).filter(|_| !found.claims().is_empty())?;
+    let mut tried = named.others(found, linear)?;
     tried.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
     let best = tried.first()?;
-    let rest = best.linear.left(&all)?;
-    let rmse = (dot(&rest, &rest) / rest.len() as f64).sqrt();
-    if rmse > NOISE * found.context.row_n.hypot(found.context.law.correlated_n) {
-        return None;
-    }
+    let all = vec![true; record.len()];
+    let left = best.linear.left(&all)?;
+    let rmse = (dot(&left, &left) / left.len() as f64).sqrt();
+    let is_noise = rmse < NOISE * found.context.row_n.hypot(found.context.law.correlated_n);
     let share = best.linear.share(&minus(&found.last().linear.force, &base.linear.force), &all)?;
     let is_seen = share.expected > DENIED && share.shown >= SHOWN;
-    if is_seen || best.evidence - named < -CHOSEN {
+    if is_seen || !is_noise || best.evidence - named.evidence < -CHOSEN {
         return None;
     }
     let alike = tried.iter().filter(|other| best.evidence - other.evidence < ALIKE).take(MOST);
@@ -118,6 +81,62 @@ pub(crate) fn each_sweep(
         alike.map(|each| each.says(data, groups)).collect::<Vec<_>>().join(", or "),
         claims.join(" and "),
     ))
+}
+
+/// What was named, beside zeros of the force that change between sweeps by no more than usual: noise.
+struct Named {
+    sweeps: Vec<Range<usize>>,
+    /// Width of the zeros \[N\]: that of the data sheet, or what the law of the noise found.
+    usual: f64,
+    /// Noise of a row, with what its neighbours share \[N\].
+    sd: f64,
+    /// Twice the log evidence but for a constant.
+    evidence: f64,
+}
+
+impl Named {
+    fn of(found: &Findings<'_>, sweeps: Vec<Range<usize>>) -> Option<Self> {
+        let record = found.context.record;
+        let last = &found.last().confirmed;
+        let linear = Linearised::of(&last.prepared, &last.theta, record).ok()?;
+        let sd = |linear: &Linearised| Some(variance(&linear.left(&vec![true; record.len()])?).sqrt());
+        let without = sd(&linear)?;
+        let stated = last.prepared.model.muscle().instruments().force.map(|force| force.zero());
+        let usual = stated.filter(|zero| *zero > 0.0).unwrap_or(found.context.law.offset_n);
+        let named = Self { sweeps, usual: usual.max(LEAST * without), sd: without, evidence: 0.0 };
+        let sd = sd(&named.with_zeros(&linear)?.0)?;
+        let named = Self { sd, ..named };
+        let (linear, charge) = named.with_zeros(&linear)?;
+        let evidence = evidence(&linear, charge, sd)?;
+        (named.sweeps.len() >= FEWEST).then_some(Self { evidence, ..named })
+    }
+
+    fn with_zeros(&self, linear: &Linearised) -> Option<(Linearised, f64)> {
+        let ones = vec![1.0; linear.rows()];
+        with_each(linear, &self.sweeps, &ones, self.usual, self.sd)
+    }
+
+    /// Each wrong reading beside the base, with a number in each sweep; and once, from a sweep on, which is chosen.
+    fn others(&self, found: &Findings<'_>, base: &Linearised) -> Option<Vec<Each>> {
+        let with_zeros = self.with_zeros(base)?;
+        let alone = (base.clone(), 0.0);
+        let once = self.sweeps.iter().skip(1).map(|sweep| vec![sweep.start..base.rows()]);
+        let places: Vec<Vec<Range<usize>>> = std::iter::once(self.sweeps.clone()).chain(once).collect();
+        let chosen = 2.0 * (places.len() as f64).ln();
+        let wrongs = wrong(found, self.usual)?;
+        let each = |(wrong, slope, width): &(Wrong, Vec<f64>, f64), places: &[Range<usize>]| {
+            let is_zero = *wrong == Wrong::Zero(Channel::Force) && places.len() > 1;
+            let (beside, usually) = if is_zero { &alone } else { &with_zeros };
+            let (linear, charge) = with_each(beside, places, slope, *width, self.sd)?;
+            let numbers = linear.numbers(self.sd)?.split_off(beside.len());
+            let numbers = places.iter().cloned().zip(numbers).collect();
+            let evidence = evidence(&linear, usually + charge + chosen, self.sd)?;
+            Some(Each { wrong: *wrong, numbers, evidence, linear })
+        };
+        let each = &each;
+        let all = wrongs.iter().flat_map(|wrong| places.iter().filter_map(move |places| each(wrong, places)));
+        Some(all.collect())
+    }
 }
 
 /// Twice the log evidence of a model but for a constant, for noise of `sd`; `charge` is what its numbers cost.

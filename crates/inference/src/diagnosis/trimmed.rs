@@ -84,6 +84,10 @@ impl Linearised {
         Some(dot(&outside, &outside))
     }
 
+    pub(crate) fn rows(&self) -> usize {
+        self.residual.len()
+    }
+
     /// How many free numbers it has.
     pub(crate) fn len(&self) -> usize {
         self.columns.len()
