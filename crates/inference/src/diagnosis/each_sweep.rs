@@ -5,6 +5,7 @@
 use bulge_measurements::{Channel, Data};
 use bulge_muscles::units::significant;
 use std::ops::Range;
+use std::rc::Rc;
 
 use crate::comparison::rows::{full_scale, lines};
 use crate::diagnosis::odd::{DENIED, SHOWN};
@@ -45,9 +46,11 @@ struct Each {
     wrong: Wrong,
     /// Rows that have one, and by how much the reading is too small there.
     numbers: Vec<(Range<usize>, f64)>,
+    /// What each unit of it adds to the force \[N\], and the width of its number.
+    slope: Rc<[f64]>,
+    width: f64,
     /// Twice the log evidence but for a constant.
     evidence: f64,
-    linear: Linearised,
 }
 
 /// What is said if a reading whose zero or gain changed between sweeps, each time or once, is as likely a cause as what was
@@ -65,10 +68,11 @@ pub(crate) fn each_sweep(
     tried.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
     let best = tried.first()?;
     let all = vec![true; record.len()];
-    let left = best.linear.left(&all)?;
+    let beside = named.with(linear, best)?;
+    let left = beside.left(&all)?;
     let rmse = (dot(&left, &left) / left.len() as f64).sqrt();
     let is_noise = rmse < NOISE * found.context.row_n.hypot(found.context.law.correlated_n);
-    let share = best.linear.share(&minus(&found.last().linear.force, &base.linear.force), &all)?;
+    let share = beside.share(&minus(&found.last().linear.force, &base.linear.force), &all)?;
     let is_seen = share.expected > DENIED && share.shown >= SHOWN;
     if is_seen || !is_noise || best.evidence - named.evidence < -CHOSEN {
         return None;
@@ -118,25 +122,51 @@ impl Named {
 
     /// Each wrong reading beside the base, with a number in each sweep; and once, from a sweep on, which is chosen.
     fn others(&self, found: &Findings<'_>, base: &Linearised) -> Option<Vec<Each>> {
-        let with_zeros = self.with_zeros(base)?;
-        let alone = (base.clone(), 0.0);
-        let once = self.sweeps.iter().skip(1).map(|sweep| vec![sweep.start..base.rows()]);
-        let places: Vec<Vec<Range<usize>>> = std::iter::once(self.sweeps.clone()).chain(once).collect();
-        let chosen = 2.0 * (places.len() as f64).ln();
-        let wrongs = wrong(found, self.usual)?;
-        let each = |(wrong, slope, width): &(Wrong, Vec<f64>, f64), places: &[Range<usize>]| {
-            let is_zero = *wrong == Wrong::Zero(Channel::Force) && places.len() > 1;
-            let (beside, usually) = if is_zero { &alone } else { &with_zeros };
-            let (linear, charge) = with_each(beside, places, slope, *width, self.sd)?;
-            let numbers = linear.numbers(self.sd)?.split_off(beside.len());
-            let numbers = places.iter().cloned().zip(numbers).collect();
-            let evidence = evidence(&linear, usually + charge + chosen, self.sd)?;
-            Some(Each { wrong: *wrong, numbers, evidence, linear })
-        };
-        let each = &each;
-        let all = wrongs.iter().flat_map(|wrong| places.iter().filter_map(move |places| each(wrong, places)));
-        Some(all.collect())
+        let (with_zeros, usually) = self.with_zeros(base)?;
+        let sd = self.sd;
+        let once = evidence(&with_zeros, usually, sd)?;
+        let chosen = 2.0 * (self.sweeps.len() as f64).ln();
+        let starts: Vec<Range<usize>> =
+            self.sweeps.iter().skip(1).map(|sweep| sweep.start..base.rows()).collect();
+        let mut all = Vec::new();
+        for (wrong, slope, width) in wrong(found, self.usual)? {
+            let is_zero = wrong == Wrong::Zero(Channel::Force);
+            let (beside, usually) = if is_zero { (base, 0.0) } else { (&with_zeros, usually) };
+            let (linear, charge) = with_each(beside, &self.sweeps, &slope, width, sd)?;
+            let numbers = linear.numbers(sd)?.split_off(beside.len());
+            let numbers = self.sweeps.iter().cloned().zip(numbers).collect();
+            let own = evidence(&linear, usually + charge, sd)? - chosen;
+            let slope: Rc<[f64]> = slope.into();
+            all.push(Each { wrong, numbers, slope: Rc::clone(&slope), width, evidence: own });
+            let each = with_zeros.one_more(&columns(&starts, &slope), width, sd)?.into_iter().zip(&starts);
+            all.extend(each.map(|(one, rows)| Each {
+                wrong,
+                numbers: vec![(rows.clone(), one.number)],
+                slope: Rc::clone(&slope),
+                width,
+                evidence: once + one.gain / (sd * sd) - one.charge - chosen,
+            }));
+        }
+        Some(all)
     }
+
+    /// The base with the numbers of a wrong reading.
+    fn with(&self, base: &Linearised, other: &Each) -> Option<Linearised> {
+        let is_zero = other.wrong == Wrong::Zero(Channel::Force) && other.numbers.len() > 1;
+        let beside = if is_zero { base.clone() } else { self.with_zeros(base)?.0 };
+        let places: Vec<Range<usize>> = other.numbers.iter().map(|(rows, _)| rows.clone()).collect();
+        Some(beside.with(columns(&places, &other.slope), Some([0.0, other.width])))
+    }
+}
+
+/// Columns of a slope in some rows each.
+fn columns(places: &[Range<usize>], slope: &[f64]) -> Vec<Vec<f64>> {
+    let column = |rows: &Range<usize>| {
+        let mut column = vec![0.0; slope.len()];
+        column[rows.clone()].copy_from_slice(&slope[rows.clone()]);
+        column
+    };
+    places.iter().map(column).collect()
 }
 
 /// Twice the log evidence of a model but for a constant, for noise of `sd`; `charge` is what its numbers cost.
@@ -145,7 +175,7 @@ fn evidence(linear: &Linearised, charge: f64, sd: f64) -> Option<f64> {
 }
 
 /// A model with one more number in each sweep, with a prior of a width around 0; and what they cost of twice the log
-/// evidence, ln(1 + (width / sd of the number)^2) each.
+/// evidence.
 fn with_each(
     linear: &Linearised,
     sweeps: &[Range<usize>],
@@ -153,14 +183,8 @@ fn with_each(
     width: f64,
     sd: f64,
 ) -> Option<(Linearised, f64)> {
-    let column = |sweep: &Range<usize>| {
-        let mut column = vec![0.0; slope.len()];
-        column[sweep.clone()].copy_from_slice(&slope[sweep.clone()]);
-        column
-    };
-    let columns: Vec<Vec<f64>> = sweeps.iter().map(column).collect();
-    let charge = columns.iter().map(|column| Some((width / sd).powi(2) * linear.seen(column, sd)?));
-    let charge = charge.map(|ratio| ratio.map(f64::ln_1p)).sum::<Option<f64>>()?;
+    let columns = columns(sweeps, slope);
+    let charge = linear.one_more(&columns, width, sd)?.iter().map(|one| one.charge).sum();
     Some((linear.with(columns, Some([0.0, width])), charge))
 }
 

@@ -49,6 +49,16 @@ pub(crate) struct Linearised {
     residual: Vec<f64>,
 }
 
+/// One more number of a model.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct OneMore {
+    pub(crate) number: f64,
+    /// What the cost falls by \[N^2\].
+    pub(crate) gain: f64,
+    /// What the number costs of twice the log evidence: ln(1 + (width / sd of the number)^2).
+    pub(crate) charge: f64,
+}
+
 /// What a claim explains in some rows.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Share {
@@ -78,10 +88,22 @@ impl Linearised {
         with
     }
 
-    /// Sum of squares of a column that its numbers leave, for noise of `sd`: what the readings know of its size.
-    pub(crate) fn seen(&self, column: &[f64], sd: f64) -> Option<f64> {
-        let outside = self.on(&vec![true; self.residual.len()], sd)?.outside(column, 0.0);
-        Some(dot(&outside, &outside))
+    /// Each column as one more number with a prior of a `width` around 0, for noise of `sd`; the others make room for it.
+    pub(crate) fn one_more(&self, columns: &[Vec<f64>], width: f64, sd: f64) -> Option<Vec<OneMore>> {
+        let all = vec![true; self.residual.len()];
+        let numbers = self.on(&all, sd)?;
+        let left = numbers.outside(&self.residual, 1.0);
+        let each = |column: &Vec<f64>| {
+            // What the priors hold of the others counts as readings do, and is outside of the column.
+            let seen = dot(column, &numbers.outside(column, 0.0));
+            let (along, stiff) = (dot(column, &left), (sd / width).powi(2));
+            OneMore {
+                charge: (seen / stiff).max(0.0).ln_1p(),
+                number: along / (seen + stiff),
+                gain: along * along / (seen + stiff),
+            }
+        };
+        Some(columns.iter().map(each).collect())
     }
 
     pub(crate) fn rows(&self) -> usize {

@@ -200,7 +200,8 @@ fn a_zero_that_wanders_is_no_physics() {
         columns.force_n.iter_mut().zip(drift).for_each(|(force, drift)| *force += drift);
         let found = diagnose(&Data::from_columns(columns).unwrap(), &muscle, &diagnosing(&[])).unwrap();
         assert_eq!((found.verdict, names(&found)), (Verdict::CannotTell, vec![]), "{seed}: {}", found.says);
-        assert!(found.says.contains("hardly lowers the error"), "{seed}: {}", found.says);
+        let says = ["hardly lowers the error", "a zero of the force that changed"];
+        assert!(says.iter().any(|says| found.says.contains(says)), "{seed}: {}", found.says);
     }
 }
 
@@ -514,7 +515,13 @@ fn a_zero_that_is_another_in_each_sweep_is_no_effect() {
     }
     let found = diagnose(&Data::from_columns(columns).unwrap(), &muscle, &diagnosing(&[])).unwrap();
     assert_eq!(found.verdict, Verdict::CannotTell, "{}", found.says);
-    assert!(found.says.contains("the zero of the force (in sweep 4 by 9.7 N)"), "{}", found.says);
+    assert!(
+        found
+            .says
+            .contains("a zero of the force that changed (line 904-1204: 9.7 N more than before or after)"),
+        "{}",
+        found.says
+    );
 }
 
 fn cylinder(pressure: f64, e: f64) -> f64 {
