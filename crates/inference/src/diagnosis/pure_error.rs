@@ -236,7 +236,7 @@ mod tests {
         Record::from_moments(moments, vec![0.0; n], std::iter::once(0..n).collect()).unwrap()
     }
 
-    /// Two cycles of a pressure that rests for five readings on each of nine levels and is read with noise, of which the
+    /// Cycles of a pressure that rests for five readings on each of nine levels and is read with noise, of which the
     /// misfit holds -3 N/kPa: neighbours by reading would have the same noise, and differ by that of the force alone.
     #[test]
     fn noise_of_the_reading_that_orders_the_rows_of_a_rest_counts() {

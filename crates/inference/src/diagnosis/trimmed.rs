@@ -426,6 +426,20 @@ mod tests {
         }
     }
 
+    /// One more number lowers the cost by what is said without solving for it, beside numbers with and without priors.
+    #[test]
+    fn one_more_number_gains_what_the_cost_falls_by() {
+        let slope: Vec<f64> = (0..100).map(|row| (f64::from(row) / 7.0).sin()).collect();
+        let base = line(5).with(vec![(0..100).map(|row| f64::from(row % 9)).collect()], Some([0.3, 0.2]));
+        for (width, sd) in [(0.05, 0.4), (2.0, 0.4), (0.3, 3.0)] {
+            let one = base.one_more(std::slice::from_ref(&slope), width, sd).unwrap()[0];
+            let with = base.with(vec![slope.clone()], Some([0.0, width]));
+            let falls = base.cost(sd).unwrap() - with.cost(sd).unwrap();
+            assert!((one.gain / falls - 1.0).abs() < 1e-5, "{} {falls}", one.gain);
+            assert!((one.number / with.numbers(sd).unwrap()[3] - 1.0).abs() < 1e-5);
+        }
+    }
+
     #[test]
     fn a_channel_that_slips_is_found_with_its_row_and_size() {
         let mut line = line(200);
