@@ -74,6 +74,13 @@ const QUESTIONS: &[Question] = &[
         runs: 1,
     },
     Question {
+        name: "square airbag, 51200 triangles",
+        file: "airbag.toml",
+        changes: &[("[40, 40]", "[160, 160]")],
+        error: volume,
+        runs: 1,
+    },
+    Question {
         name: "pleated muscle, 18 x 60 cells, 1 to 35 % at 1, 2, 3 bar",
         file: "ppam.toml",
         changes: &[],

@@ -4,6 +4,7 @@ mod document;
 mod ends;
 mod example;
 mod materials;
+mod nested;
 mod parts;
 mod read;
 mod run;
@@ -30,10 +31,14 @@ pub struct Case {
     pub name: String,
     /// The mesh, in m.
     pub mesh: Mesh,
+    /// How the mesh was made, if a coarser one can be made in the same way.
+    lattice: Option<nested::Lattice>,
     /// What the groups of the mesh are made of.
     pub parts: Vec<(String, Part)>,
     /// Supports of the groups.
     pub supports: Vec<(String, Support)>,
+    /// Groups of supports whose plane of symmetry the cloth doesn't pass through.
+    pub contacts: Vec<String>,
     /// The end fittings with their names.
     pub fittings: Vec<(String, Fitting)>,
     /// The fittings between which a contraction is measured; `None` without fittings.

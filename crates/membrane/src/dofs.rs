@@ -252,6 +252,20 @@ impl Dofs {
             x
         }));
     }
+
+    /// Values for positions of the nodes and of the fittings: what [`Self::places`] undoes.
+    pub(crate) fn values(&self, places: &[Vector], fittings: &[f64]) -> Vec<f64> {
+        let mut y = vec![0.0; self.all];
+        for (node, place) in self.nodes.iter().zip(places) {
+            for (dof, axis) in node.dof.iter().zip(&node.axis).filter(|(dof, _)| **dof != NONE) {
+                y[*dof as usize] = dot(*place, *axis);
+            }
+        }
+        for (dof, place) in self.fittings.iter().zip(fittings) {
+            y[*dof as usize] = *place;
+        }
+        y
+    }
 }
 
 #[expect(

@@ -7,11 +7,13 @@
 )]
 
 mod cable;
+mod contact;
 mod ring;
 mod shape;
 mod triangle;
 
 pub(crate) use cable::Cable;
+pub(crate) use contact::{Contact, Mirror};
 pub use ring::RingLayer;
 pub(crate) use ring::{Carried as CarriedByRing, Layer, Ring};
 pub(crate) use triangle::{Carried, Triangle};

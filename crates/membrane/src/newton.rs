@@ -42,6 +42,8 @@ const HALVINGS: usize = 5;
 const SHIFTS: usize = 30;
 /// First shift of a stiffness that isn't positive definite, relative to its mean diagonal.
 const LEAST_SHIFT: f64 = 1e-6;
+/// Largest shift with which an iteration begins, relative to the mean diagonal and to the residual.
+const MOST_SHIFT: f64 = 1e-3;
 /// Largest displacement of a node in one solution, relative to the size of the structure; beyond, the
 /// iteration diverges.
 const FARTHEST: f64 = 3.0;
@@ -232,9 +234,10 @@ impl Solver {
         let floor = 1e-13 * (self.totals.energy.abs() + now.potential.abs());
         let mut trial = y.to_vec();
         let mut is_dead = guard.is_dead;
+        // It vanishes with the residual, so that the last steps are Newton's (Fan and Yuan 2005).
+        guard.shift = guard.shift.min(MOST_SHIFT * now.residual * unit);
         for _ in 0..SHIFTS {
-            let applied = if is_dead { guard.shift } else { 0.0 };
-            let (step, negative) = match self.factorise(applied) {
+            let (step, negative) = match self.factorise(guard.shift) {
                 Inertia::Negative(negative) => self.step(&now.gradient, closure, negative),
                 Inertia::Singular => (Step { by: Vec::new(), pressure: 0.0, slope: f64::NAN }, 1),
             };
@@ -260,8 +263,9 @@ impl Solver {
                 let is_lower = fell <= 1e-4 * length * step.slope + floor;
                 let is_first = halving == 0;
                 if is_lower || (is_first && self.is_calmer(load, now, (y, &trial), step.slope, is_dead)) {
-                    // A quadratic potential decreases by slope/2.
-                    let expected = length * (1.0 - 0.5 * length) * step.slope;
+                    // What a quadratic potential does whose stiffness is that without the shift.
+                    let bent = -step.slope - guard.shift * dot(&step.by, &step.by);
+                    let expected = length * step.slope + 0.5 * length * length * bent;
                     let is_as_expected = (fell - expected).abs() < 0.3 * expected.abs() + floor;
                     if is_as_expected {
                         guard.shift *= if length < 1.0 { 0.5 } else { 0.1 };

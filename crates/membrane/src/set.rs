@@ -4,7 +4,7 @@
 //! ([`crate::assembly`]), so that results are identical for any number of threads.
 
 use crate::dofs::NodeDofs;
-use crate::element::{Cable, Local, Ring, Triangle, Vector, dot};
+use crate::element::{Cable, Contact, Local, Ring, Triangle, Vector, dot};
 use rayon::prelude::*;
 
 /// One kind of element with N nodes.
@@ -70,6 +70,20 @@ impl<const N: usize> Element<N> for Triangle<N> {
         Self::local(self, x, pressure, rule)
     }
     fn hold(&mut self, _: &[Vector; N], _: f64) -> f64 {
+        0.0
+    }
+}
+
+impl Element<1> for Contact {
+    type Rule = ();
+    fn rule() {}
+    fn measure(&self, x: &[Vector; 1], penalty: f64, (): &()) -> [f64; 2] {
+        [self.energy(x, penalty), 0.0]
+    }
+    fn local(&self, x: &[Vector; 1], penalty: f64, _: f64, (): &()) -> Local<1> {
+        Self::local(self, x, penalty)
+    }
+    fn hold(&mut self, _: &[Vector; 1], _: f64) -> f64 {
         0.0
     }
 }

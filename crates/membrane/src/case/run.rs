@@ -5,6 +5,7 @@ use serde::Serialize;
 use thiserror::Error;
 
 use super::{Case, Filling, Step};
+use crate::element::Vector;
 use crate::error::MembraneError;
 use crate::fields::Fields;
 use crate::load::{Gas, Inflation, Load};
@@ -104,6 +105,8 @@ pub struct CaseRun<'a> {
     made: usize,
     under_way: Option<(Load, Load)>,
     states: usize,
+    /// What coarser meshes took.
+    coarser: Effort,
     /// The last equilibrium on the way to a state that wasn't reached.
     rescued: Option<(usize, State)>,
 }
@@ -117,6 +120,7 @@ impl Case {
     pub fn start(&self) -> Result<CaseRun<'_>, CaseError> {
         let fittings: Vec<Fitting> = self.fittings.iter().map(|(_, fitting)| *fitting).collect();
         let structure = Structure::new(&self.mesh, &self.parts, &self.supports, &fittings)?;
+        let structure = structure.stopped(&self.mesh, &self.supports, &self.contacts)?;
         let mut solver = Solver::new(structure, self.copies, self.tolerance)?;
         let last = solver.at_rest();
         Ok(CaseRun {
@@ -128,6 +132,7 @@ impl Case {
             made: 0,
             under_way: None,
             states: 0,
+            coarser: Effort::default(),
             rescued: None,
         })
     }
@@ -140,10 +145,12 @@ impl Case {
 }
 
 impl CaseRun<'_> {
-    /// The computational effort so far.
+    /// The computational effort so far, on coarser meshes as well.
     #[must_use]
     pub fn effort(&self) -> Effort {
-        self.solver.effort()
+        let mut effort = self.solver.effort();
+        effort += self.coarser;
+        effort
     }
 
     /// Number of unknowns, and of entries of the stiffness matrix and its factors.
@@ -194,10 +201,16 @@ impl CaseRun<'_> {
         let share = |made: usize| made as f64 / step.states as f64;
         let (from, to) = (begin.towards(&end, share(self.made)), begin.towards(&end, share(self.made + 1)));
         let mut on_the_way = None;
-        let followed = self.solver.follow(&from, &self.last, &to, |share, state| {
-            on_the_way = Some(state.clone());
-            seen(share, state);
-        });
+        let followed = match self.nested(&to) {
+            Some(state) => {
+                seen(1.0, &state);
+                Ok(state)
+            }
+            None => self.solver.follow(&from, &self.last, &to, |share, state| {
+                on_the_way = Some(state.clone());
+                seen(share, state);
+            }),
+        };
         let state = followed.and_then(|state| self.upright(&state).map(|()| state));
         let state = match state {
             Ok(state) => state,
@@ -217,6 +230,22 @@ impl CaseRun<'_> {
         let row = self.row(row_step, &state, &fields);
         self.last = state.clone();
         Ok((row, state, fields))
+    }
+
+    /// The first state of a mesh at rest, from that of a coarser one.
+    fn nested(&mut self, load: &Load) -> Option<State> {
+        let is_at_rest = self.made == 0 && self.last.iterations == 0;
+        let coarse = is_at_rest.then(|| self.case.coarsely(self.at)).flatten()?;
+        self.coarser += coarse.effort;
+        let start = self.solver.placed(&coarse.places, coarse.state)?;
+        self.solver.solve(load, &start).ok().filter(|state| state.unstable == 0)
+    }
+
+    /// Positions of the nodes in a state, m.
+    pub(super) fn places(&self, state: &State) -> Vec<Vector> {
+        let mut places = Vec::new();
+        self.solver.structure().dofs.places(&state.y, &mut places);
+        places
     }
 
     /// Refuses a state whose ends have passed each other.

@@ -5,6 +5,7 @@ use bulge_muscles::{Dimension, FileError, Length, Muscle, Parameter};
 use std::io::Read as _;
 use std::path::Path;
 
+use super::nested::Lattice;
 use super::read::{copies, in_range, name, needed, number, positive};
 use crate::mesh::Mesh;
 use crate::mesher::{Grading, Pleated, Surface, grid, revolved, tube};
@@ -43,12 +44,15 @@ const MOST_BYTES: u64 = 1 << 31;
 /// A mesh with its known properties.
 pub(super) struct Source {
     pub(super) mesh: Mesh,
+    pub(super) lattice: Option<Lattice>,
     pub(super) copies: Copies,
     pub(super) length: Option<f64>,
     pub(super) unfolded_radius: Option<f64>,
     pub(super) muscle: Option<Muscle>,
     /// Supports that follow from its symmetry.
     pub(super) supports: Vec<(String, Support)>,
+    /// Groups of these in whose plane the cloth meets its mirror image.
+    pub(super) contacts: Vec<String>,
     pub(super) fittings: Vec<(String, Fitting)>,
 }
 
@@ -119,11 +123,13 @@ fn from_file(settings: &Settings<'_>, folder: Option<&Path>) -> Result<Source, F
     }
     Ok(Source {
         mesh,
+        lattice: None,
         copies: copies(&scale)?,
         length: positive(&scale, "length", Dimension::LENGTH)?,
         unfolded_radius: None,
         muscle: None,
         supports: Vec::new(),
+        contacts: Vec::new(),
         fittings: Vec::new(),
     })
 }
@@ -195,6 +201,9 @@ fn made(table: &Settings<'_>, folder: Option<&Path>) -> Result<Source, FileError
         Mesher::Square => wish.square(),
         Mesher::Pleated => wish.pleated(),
     }?;
+    if let [nu, nv] = wish.cells[..] {
+        source.lattice = Some(Lattice { cells: [nu, nv], is_quadratic });
+    }
     source.muscle = wish.muscle;
     Ok(source)
 }
@@ -212,7 +221,17 @@ fn plane(normal: [f64; 3]) -> Support {
 }
 
 fn source(mesh: Mesh, copies: Copies, supports: Vec<(String, Support)>) -> Source {
-    Source { mesh, copies, supports, length: None, unfolded_radius: None, fittings: Vec::new(), muscle: None }
+    Source {
+        mesh,
+        copies,
+        supports,
+        lattice: None,
+        length: None,
+        unfolded_radius: None,
+        contacts: Vec::new(),
+        fittings: Vec::new(),
+        muscle: None,
+    }
 }
 
 impl MesherOptions<'_, '_> {
@@ -299,7 +318,9 @@ impl MesherOptions<'_, '_> {
             held("u1", plane([0.0, 0.0, 1.0])),
             held("v1", plane([0.0, 0.0, 1.0])),
         ];
-        Ok(source(mesh, Copies { around: 4.0, along: 2.0 }, supports))
+        // Where an edge is pulled in, the cloth folds, and would pass through itself.
+        let contacts = ["u0", "v0"].map(str::to_owned).to_vec();
+        Ok(Source { contacts, ..source(mesh, Copies { around: 4.0, along: 2.0 }, supports) })
     }
 
     fn pleated(&self) -> Result<Source, FileError> {

@@ -16,6 +16,7 @@ const KEYS: Keys = &[
     ("fitting", "fitting = \"top\""),
     ("motion", "motion = \"placed\""),
     ("normal", "normal = [0, 0, 1]"),
+    ("contact", "contact = true"),
     ("partner", "partner = \"left\""),
     ("angle", "angle = \"30 deg\""),
 ];
@@ -44,11 +45,17 @@ const MOTIONS: &[(&str, Fitting)] = &[("placed", Fitting::Placed), ("loaded", Fi
 /// Supports and fittings.
 pub(super) struct Supports {
     pub(super) held: Vec<(String, Support)>,
+    /// Groups of these in whose plane the cloth meets its mirror image.
+    pub(super) contacts: Vec<String>,
     pub(super) fittings: Vec<(String, Fitting)>,
 }
 
 pub(super) fn read(settings: &Settings<'_>, source: &Source) -> Result<Supports, FileError> {
-    let mut all = Supports { held: source.supports.clone(), fittings: source.fittings.clone() };
+    let mut all = Supports {
+        held: source.supports.clone(),
+        contacts: source.contacts.clone(),
+        fittings: source.fittings.clone(),
+    };
     // The motions that tables state, by the names of the fittings.
     let mut stated = Vec::new();
     for table in settings.tables("support", "a `[[support]]`", KEYS)?.unwrap_or_default() {
@@ -57,11 +64,11 @@ pub(super) fn read(settings: &Settings<'_>, source: &Source) -> Result<Supports,
         let kind = table.word("kind", KINDS)?.ok_or_else(|| table.missing("kind"))?;
         let used: &[&str] = match kind {
             Kind::Fixed | Kind::Axis | Kind::Slide => &[],
-            Kind::Plane => &["normal"],
+            Kind::Plane => &["normal", "contact"],
             Kind::Fitting => &["fitting", "motion"],
             Kind::Cyclic => &["partner", "angle"],
         };
-        for key in ["fitting", "motion", "normal", "partner", "angle"] {
+        for key in ["fitting", "motion", "normal", "contact", "partner", "angle"] {
             if table.get(key).is_some() && !used.contains(&key) {
                 let what = format!("this kind of support has no `{key}`");
                 return Err(table.error(table.key_span(key), what, "leave it out"));
@@ -74,6 +81,9 @@ pub(super) fn read(settings: &Settings<'_>, source: &Source) -> Result<Supports,
         }
         if let Support::Cyclic { partner, angle } = &support {
             check_turn(&table, group, partner, *angle)?;
+        }
+        if table.flag("contact")?.unwrap_or(false) {
+            all.contacts.push(group.to_owned());
         }
         all.held.push((group.to_owned(), support));
     }
