@@ -23,10 +23,12 @@ const BEND: f64 = 4.0;
 pub(crate) fn setpoints(record: &Record) -> Record {
     let levels = Levels::of(record, &vec![true; record.len()]);
     let pressures: Vec<f64> = record.moments().iter().map(|m| m.pressure).collect();
-    let pressure = if is_kept(&pressures, &levels) {
+    let pressure: Vec<f64> = if is_kept(&pressures, &levels) {
         (0..record.len()).map(|row| levels.mean[levels.at(row)]).collect()
     } else {
-        by_neighbours(record, &pressures)
+        // Beside a step a parabola may lead below zero, where no model has a state.
+        let is_state = |(set, read): (f64, &f64)| if set > 0.0 { set } else { *read };
+        by_neighbours(record, &pressures).into_iter().zip(&pressures).map(is_state).collect()
     };
     let contractions: Vec<f64> = record.moments().iter().map(|m| m.contraction).collect();
     record.clone().at(&pressure, &by_neighbours(record, &contractions))
@@ -132,6 +134,23 @@ mod tests {
         let own: f64 = noise.iter().map(|d| d * d).sum();
         // The few readings beyond 4 sd of their neighbours keep their noise.
         assert!((along / own).abs() < 0.15, "{}", along / own);
+    }
+
+    #[test]
+    fn a_pressure_beside_a_step_is_not_set_below_zero() {
+        let mut random = Random::new(7, 0);
+        let read = |i: u32| if i < 30 { 5e5 } else { 4e3 };
+        // Steps all along make the scatter about a smooth path as large as they are.
+        let moments: Vec<Moment> = (0..60)
+            .map(|i| {
+                let own = read(i) * (1.0 + 0.5 * f64::from(i % 2)) + 10.0 * random.normal();
+                Moment { direction: 1.0, begins: i == 0, ..Moment::at_rest(own, 0.01 * f64::from(i)) }
+            })
+            .collect();
+        let record = Record::from_moments(moments, vec![0.0; 60], std::iter::once(0..60).collect()).unwrap();
+        let pressures: Vec<f64> = record.moments().iter().map(|moment| moment.pressure).collect();
+        assert!(by_neighbours(&record, &pressures).iter().any(|set| *set < 0.0));
+        assert!(setpoints(&record).moments().iter().all(|moment| moment.pressure > 0.0));
     }
 
     #[test]
