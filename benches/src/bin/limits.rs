@@ -337,7 +337,9 @@ fn instructions(kernel: &Kernel, table: &Path) -> Option<f64> {
 /// factor, and the operations that a factor with so many entries needs at least, sum c_j^2 >= (sum c_j)^2/n of its columns.
 fn membrane() -> Result<[f64; 3], Failure> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../meshes/airbag.toml");
-    let case = Case::from_toml(&std::fs::read_to_string(&path)?, "airbag.toml", path.parent())?;
+    // Odd numbers of cells have no coarser mesh to start from, whose iterations would count.
+    let text = std::fs::read_to_string(&path)?.replace("[40, 40]", "[41, 39]");
+    let case = Case::from_toml(&text, "airbag.toml", path.parent())?;
     let mut run = case.start()?;
     run.last_row(|_| ())?;
     let effort = run.effort();
