@@ -87,6 +87,7 @@ pub const CHECKS: &[fn() -> Check] = &[
     membrane::cloth::facets_order,
     membrane::cloth::sectors,
     membrane::cloth::airbag,
+    membrane::cloth::airbag_stress,
     membrane::cloth::wrinkled_panel,
     membrane::cloth::wrinkled_panel_order,
     tables::lookups,

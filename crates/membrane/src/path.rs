@@ -59,6 +59,14 @@ impl Solver {
         found
     }
 
+    /// The equilibrium that is reached from `start` at once, within the effort of a path.
+    pub(crate) fn attempt(&mut self, load: &Load, start: &State) -> Result<State, MembraneError> {
+        self.deadline = self.effort.factorisations + BUDGET.max(2 * self.tolerance.iterations);
+        let found = self.solve(load, start);
+        self.deadline = usize::MAX;
+        found
+    }
+
     fn steps(
         &mut self,
         before: &Load,

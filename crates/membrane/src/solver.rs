@@ -62,7 +62,7 @@ impl Solver {
         let [matrix, shifted] = [0, 1].map(|_| zeros(assembly.rows.len(), structure.dofs.free));
         let (matrix, shifted) = (matrix?, shifted?);
         let size = structure.size();
-        Ok(Self {
+        let mut solver = Self {
             shifted,
             matrix,
             factor,
@@ -76,7 +76,22 @@ impl Solver {
             size,
             effort: Effort::default(),
             deadline: usize::MAX,
-        })
+        };
+        solver.stiffen_contacts();
+        Ok(solver)
+    }
+
+    /// Gives contacts the stiffness that a node of the mesh has at rest.
+    fn stiffen_contacts(&mut self) {
+        if self.structure.contacts.elements.is_empty() {
+            return;
+        }
+        let start = self.structure.start.clone();
+        self.work(&start, 0.0);
+        let node = self.mean_diagonal();
+        for contact in &mut self.structure.contacts.elements {
+            contact.stiffened(node);
+        }
     }
 
     /// The computational effort so far.
@@ -119,12 +134,10 @@ impl Solver {
         }
     }
 
-    /// A state with the nodes at `places`, as another mesh has it; none with inextensible threads, whose tensions
-    /// belong to their elements.
-    pub(crate) fn placed(&mut self, places: &[Vector], other: State) -> Option<State> {
+    /// A state with the nodes at `places`, as another mesh without inextensible threads has it.
+    pub(crate) fn placed(&self, places: &[Vector], other: State) -> State {
         let y = self.structure.dofs.values(places, &other.fittings);
-        let held = self.held().is_empty().then(Vec::new)?;
-        Some(State { y, held, penalty: self.penalty, ..other })
+        State { y, held: Vec::new(), penalty: self.penalty, ..other }
     }
 
     fn held(&mut self) -> Vec<&mut f64> {

@@ -179,7 +179,7 @@ impl Structure {
     /// groups of `supports` that are edges held in such a plane. A plane on which the whole mesh lies stops nothing.
     ///
     /// # Errors
-    /// A group that is no such edge, or with cloth on both sides of its plane.
+    /// An unknown group, cloth on both sides of a plane, or no triangles.
     pub fn stopped(
         mut self,
         mesh: &Mesh,

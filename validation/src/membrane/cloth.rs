@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 
 use super::rig::{order, plane, solver, to};
 use super::rows;
-use crate::check::{Check, Claim, Trouble};
+use crate::check::{Check, Claim, Tally, Trouble};
 
 /// Force of N inextensible fibres with flat facets without stiffness: R = 16, l0 = 110 mm, 20 %, 3 bar.
 fn facets_force(fibres: u32, elements: usize) -> Result<f64, Trouble> {
@@ -145,28 +145,45 @@ fn airbag_of(thickness: f64) -> Result<[f64; 4], Trouble> {
     Ok([row.volume, fields.places[middle][2], fields.displacements[corner][0], stress])
 }
 
+/// Measures of the square airbag, with those of an independent prototype: 0.6 and 0.1 mm thick.
+fn airbags(whats: [&str; 4], measure: impl Fn(usize) -> bool, tally: &mut Tally) -> Result<(), Trouble> {
+    let known = [
+        (0.6e-3, [0.124_995, 0.216_7, -0.034_78, 3.90e6]),
+        (0.1e-3, [0.129_694, 0.223_91, -0.031_259, 17.505e6]),
+    ];
+    for (thickness, exact) in known {
+        let found = airbag_of(thickness)?;
+        for (i, what) in whats.into_iter().enumerate().filter(|(i, _)| measure(*i)) {
+            tally.relative(found[i], exact[i], || format!("{what}, {} mm", 1e3 * thickness));
+        }
+    }
+    Ok(())
+}
+
+const AIRBAG: [&str; 4] = ["volume", "height", "corner", "stress"];
+
 /// The square airbag.
 pub(crate) fn airbag() -> Check {
     Claim {
         group: "membrane",
-        name: "square airbag of 1.2 m diagonal, 0.6 and 0.1 mm, 5 kPa: volume, height, corner, stress",
+        name: "square airbag of 1.2 m diagonal, 0.6 and 0.1 mm, 5 kPa: volume, height, corner",
+        source: "an independent prototype, 12800 triangles (0.1 mm: 3200)",
+        tolerance: 2e-3,
+        why: "3200 triangles, and the prototype's cloth may pass through itself",
+    }
+    .run(|tally| airbags(AIRBAG, |i| i < 3, tally))
+}
+
+/// The stress in its middle.
+pub(crate) fn airbag_stress() -> Check {
+    Claim {
+        group: "membrane",
+        name: "stress in the middle of the same airbags",
         source: "an independent prototype, 12800 triangles (0.1 mm: 3200)",
         tolerance: 8e-3,
-        why: "the stress in a single cell of 3200, and the prototype's cloth may pass through itself; volumes and lengths 2e-3",
+        why: "a single cell of 3200, and the prototype's cloth may pass through itself",
     }
-    .run(|tally| {
-        let known = [
-            (0.6e-3, [0.124_995, 0.216_7, -0.034_78, 3.90e6]),
-            (0.1e-3, [0.129_694, 0.223_91, -0.031_259, 17.505e6]),
-        ];
-        for (thickness, exact) in known {
-            let found = airbag_of(thickness)?;
-            for (i, what) in ["volume", "height", "corner", "stress"].into_iter().enumerate() {
-                tally.relative(found[i], exact[i], || format!("{what}, {} mm", 1e3 * thickness));
-            }
-        }
-        Ok(())
-    })
+    .run(|tally| airbags(AIRBAG, |i| i == 3, tally))
 }
 
 /// A panel of unit height, width and stiffness that is bent until a band of it is slack: M/(P h), largest

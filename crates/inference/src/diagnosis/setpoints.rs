@@ -18,6 +18,9 @@ const NEIGHBOURS: usize = 4;
 /// path bends there.
 const BEND: f64 = 4.0;
 
+/// Least pressure that neighbours set, over the reading.
+const LEAST: f64 = 0.1;
+
 /// The record with pressures and contractions as set: the mean of a pressure level, or values interpolated
 /// from the neighbours along a path.
 pub(crate) fn setpoints(record: &Record) -> Record {
@@ -27,8 +30,8 @@ pub(crate) fn setpoints(record: &Record) -> Record {
         (0..record.len()).map(|row| levels.mean[levels.at(row)]).collect()
     } else {
         // Beside a step a parabola may lead below zero, where no model has a state.
-        let is_state = |(set, read): (f64, &f64)| if set > 0.0 { set } else { *read };
-        by_neighbours(record, &pressures).into_iter().zip(&pressures).map(is_state).collect()
+        let sound = |(set, read): (f64, &f64)| if set > LEAST * read { set } else { *read };
+        by_neighbours(record, &pressures).into_iter().zip(&pressures).map(sound).collect()
     };
     let contractions: Vec<f64> = record.moments().iter().map(|m| m.contraction).collect();
     record.clone().at(&pressure, &by_neighbours(record, &contractions))

@@ -29,6 +29,10 @@ impl Lattice {
         self.cells.map(|cells| if self.is_quadratic { 2 * cells } else { cells })
     }
 
+    fn nodes(self) -> usize {
+        self.intervals().iter().map(|count| count + 1).product()
+    }
+
     /// Half as many cells along each side; `None` if they are odd or too few.
     fn halved(self) -> Option<Self> {
         let is_good = |cells: &usize| cells.is_multiple_of(2) && *cells >= 2 * FEWEST;
@@ -79,26 +83,29 @@ impl Lattice {
 pub(super) struct Coarse {
     /// Where it puts the nodes of the fine mesh, m.
     pub(super) places: Vec<Vector>,
-    pub(super) state: State,
+    /// None if there is no equilibrium.
+    pub(super) state: Option<State>,
     /// What it took.
     pub(super) effort: Effort,
 }
 
 impl Case {
-    /// The first state of step `at` on a coarser mesh. `None` if there is no such mesh, or if it has no such state.
+    /// The first state of step `at` on a coarser mesh. `None` if there is no such mesh.
     pub(super) fn coarsely(&self, at: usize) -> Option<Coarse> {
-        let lattice = self.lattice?;
+        let lattice = self.lattice.filter(|lattice| lattice.nodes() == self.mesh.nodes.len())?;
         let half = lattice.halved()?;
         let mesh = lattice.coarser(half, &self.mesh);
         let tolerance = Tolerance { residual: self.tolerance.residual.max(RESIDUAL), ..self.tolerance };
         let steps = vec![self.steps.get(at)?.clone()];
         let coarse = Self { mesh, steps, tolerance, lattice: Some(half), ..self.clone() };
         let mut run = coarse.start().ok()?;
-        let (_, state, _) = run.advance(|_, _| ()).and_then(Result::ok)?;
-        let nodes = run.places(&state).into_iter().zip(&coarse.mesh.nodes);
-        let moved: Vec<Vector> = nodes.map(|(place, rest)| sub(place, *rest)).collect();
-        let moved = lattice.prolonged(&moved);
-        let places = self.mesh.nodes.iter().zip(&moved).map(|(rest, by)| add(*rest, *by)).collect();
+        let state = run.advance(|_, _| ()).and_then(Result::ok).map(|(_, state, _)| state);
+        let places = state.as_ref().map_or(Vec::new(), |state| {
+            let nodes = run.places(state).into_iter().zip(&coarse.mesh.nodes);
+            let moved: Vec<Vector> = nodes.map(|(place, rest)| sub(place, *rest)).collect();
+            let moved = lattice.prolonged(&moved);
+            self.mesh.nodes.iter().zip(&moved).map(|(rest, by)| add(*rest, *by)).collect()
+        });
         Some(Coarse { places, state, effort: run.effort() })
     }
 }

@@ -98,6 +98,8 @@ pub struct CaseRun<'a> {
     pub(super) case: &'a Case,
     solver: Solver,
     last: State,
+    /// Whether that is the mesh at rest, from which nothing is remembered.
+    is_fresh: bool,
     /// Prescribed positions and forces.
     fittings: Vec<f64>,
     /// The current step: its number, its load at the beginning and at the end, and the states done.
@@ -127,6 +129,7 @@ impl Case {
             case: self,
             solver,
             last,
+            is_fresh: true,
             fittings: vec![0.0; fittings.len()],
             at: 0,
             made: 0,
@@ -193,6 +196,7 @@ impl CaseRun<'_> {
         if self.under_way.is_none() {
             if step.is_restart {
                 self.last = self.solver.at_rest();
+                self.is_fresh = true;
                 self.fittings.fill(0.0);
             }
             self.under_way = Some(self.loads(step)?);
@@ -234,11 +238,14 @@ impl CaseRun<'_> {
 
     /// The first state of a mesh at rest, from that of a coarser one.
     fn nested(&mut self, load: &Load) -> Option<State> {
-        let is_at_rest = self.made == 0 && self.last.iterations == 0;
-        let coarse = is_at_rest.then(|| self.case.coarsely(self.at)).flatten()?;
+        // The tensions of inextensible threads belong to their elements.
+        if !(std::mem::take(&mut self.is_fresh) && self.last.held.is_empty()) {
+            return None;
+        }
+        let coarse = self.case.coarsely(self.at)?;
         self.coarser += coarse.effort;
-        let start = self.solver.placed(&coarse.places, coarse.state)?;
-        self.solver.solve(load, &start).ok().filter(|state| state.unstable == 0)
+        let start = self.solver.placed(&coarse.places, coarse.state?);
+        self.solver.attempt(load, &start).ok().filter(|state| state.unstable == 0)
     }
 
     /// Positions of the nodes in a state, m.

@@ -82,8 +82,9 @@ pub(super) fn read(settings: &Settings<'_>, source: &Source) -> Result<Supports,
         if let Support::Cyclic { partner, angle } = &support {
             check_turn(&table, group, partner, *angle)?;
         }
-        if table.flag("contact")?.unwrap_or(false) {
-            all.contacts.push(group.to_owned());
+        if let Some(contact) = table.flag("contact")? {
+            all.contacts.retain(|known| known != group);
+            all.contacts.extend(contact.then(|| group.to_owned()));
         }
         all.held.push((group.to_owned(), support));
     }

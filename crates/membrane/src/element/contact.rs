@@ -3,6 +3,9 @@
 //! ```text
 //! energy = sum over planes of k g^2/2 where g < 0,   g = n.x - d
 //! ```
+//!
+//! k is [`STIFF`] times what a node of the sheets resists at rest, or the penalty of the pressure's forces if that is
+//! more. The energy of a structure contains it; it is as small as the depths g, which nobody sees.
 
 use super::{Local, Vector, dot, scaled};
 
@@ -19,11 +22,25 @@ pub(crate) struct Contact {
     planes: Vec<Mirror>,
     /// Length over which the penalty, a force, acts.
     size: f64,
+    /// Least stiffness k \[N/m\].
+    least: f64,
 }
+
+/// Stiffness over that of a node: depths are smaller than strains, and factors keep their digits.
+const STIFF: f64 = 100.0;
 
 impl Contact {
     pub(crate) fn new(planes: Vec<Mirror>, size: f64) -> Self {
-        Self { planes, size }
+        Self { planes, size, least: 0.0 }
+    }
+
+    /// With the stiffness of a node at rest.
+    pub(crate) fn stiffened(&mut self, node: f64) {
+        self.least = STIFF * node;
+    }
+
+    fn stiffness(&self, penalty: f64) -> f64 {
+        self.least.max(penalty / self.size)
     }
 
     /// The planes behind which the node is, with its distance.
@@ -35,11 +52,11 @@ impl Contact {
     }
 
     pub(crate) fn energy(&self, [x]: &[Vector; 1], penalty: f64) -> f64 {
-        0.5 * penalty / self.size * self.behind(*x).map(|(_, gap)| gap * gap).sum::<f64>()
+        0.5 * self.stiffness(penalty) * self.behind(*x).map(|(_, gap)| gap * gap).sum::<f64>()
     }
 
     pub(crate) fn local(&self, x: &[Vector; 1], penalty: f64) -> Local<1> {
-        let stiffness = penalty / self.size;
+        let stiffness = self.stiffness(penalty);
         let mut out = Local { energy: self.energy(x, penalty), ..Local::ZERO };
         for (normal, gap) in self.behind(x[0]) {
             for (i, part) in scaled(normal, stiffness).into_iter().enumerate() {
@@ -60,13 +77,15 @@ mod tests {
     #[test]
     fn force_and_stiffness_are_derivatives_of_the_energy_behind_a_plane_and_nothing_is_before_it() {
         let normal = [0.6, 0.8, 0.0];
-        let contact = Contact::new(
+        let mut contact = Contact::new(
             vec![Mirror { normal, offset: 1.0 }, Mirror { normal: [0.0, 0.0, 1.0], offset: 0.0 }],
             2.0,
         );
+        contact.stiffened(0.02);
+        assert!((contact.energy(&[[0.0, 0.0, -0.1]], 0.0) - (0.01 + 1.0)).abs() < 1e-15);
         let energy = |x: Vector| contact.energy(&[x], 6.0);
         assert!(energy([1.0, 0.6, 0.1]) < 1e-30);
-        // k = 6/2, g = -0.5 and -0.2.
+        // k = 6/2, or 100 times 0.02; g = -0.5 and -0.2.
         let behind = [0.5, 0.25, -0.2];
         assert!((energy(behind) - 1.5 * (0.25 + 0.04)).abs() < 1e-15);
         let local = contact.local(&[behind], 6.0);

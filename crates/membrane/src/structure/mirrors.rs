@@ -26,10 +26,20 @@ pub(super) fn contacts(
     }
     nodes.sort_unstable();
     nodes.dedup();
+    if let (Some(name), true) = (names.first(), nodes.is_empty()) {
+        return Err(MembraneError::Structure(format!(
+            "`{name}` has `contact`, which stops triangles, and there are none: leave it out"
+        )));
+    }
     let mut planes: Vec<(Mirror, Vec<usize>)> = Vec::new();
     for (name, support) in supports.iter().filter(|(name, _)| names.contains(name)) {
         let Support::Plane { normal } = support else { continue };
-        planes.extend(mirror(mesh, &nodes, name, *normal)?);
+        let found = mirror(mesh, &nodes, name, *normal)?;
+        // A plane that two supports state stops the cloth once.
+        let is_new = |(plane, _): &(Mirror, Vec<usize>)| planes.iter().all(|(known, _)| known != plane);
+        if let Some(found) = found.filter(is_new) {
+            planes.push(found);
+        }
     }
     let with = |node: &u32| {
         let own = planes.iter().filter(|(_, on)| on.binary_search(&(*node as usize)).is_err());

@@ -42,6 +42,58 @@ fn slack_cloth_starts_from_a_coarser_mesh_and_stops_at_its_mirror_image() {
     assert!((-2e-6..0.0).contains(&least), "{least}");
 }
 
+/// The rows of a case, or its error.
+fn rows_of(text: &str) -> Result<Vec<Row>, String> {
+    let case = Case::from_toml(text, "case.toml", None).map_err(|error| error.to_string())?;
+    let mut rows = Vec::new();
+    let mut run = case.start().map_err(|error| error.to_string())?;
+    run.last_row(|row| rows.push(row.clone())).map_err(|error| error.to_string())?;
+    Ok(rows)
+}
+
+const TUBE: &str = "[mesher]\nkind = \"tube\"\nradius = \"10 mm\"\nlength = \"20 mm\"\ncells = [16, 16]\n\
+    [[material]]\nname = \"rubber\"\nlaw = \"gent\"\nlimit = 100\nthickness = \"1 mm\"\nshear = \"0.4 MPa\"\n\
+    [[part]]\ngroup = \"wall\"\nkind = \"membrane\"\nmaterial = \"rubber\"\n";
+
+/// Beyond its limit point a tube has two states under one pressure; a step stays on the one that it starts from.
+#[test]
+fn a_step_from_a_state_that_was_held_remembers_it() {
+    let steps = "[[step]]\npressure = \"10 kPa\"\n[[step]]\nvolume = \"200 ml\"\nstates = 20\n\
+        [[step]]\npressure = \"54.5 kPa\"\n[[step]]\npressure = \"54.5 kPa\"\n[[step]]\npressure = \"54.6 kPa\"\n";
+    let rows = rows_of(&format!("{TUBE}{steps}[[step]]\nrestart = true\npressure = \"54.6 kPa\"\n")).unwrap();
+    let [.., held, last, anew] = &rows[..] else { panic!() };
+    assert_eq!(held.iterations, 0);
+    assert!((last.volume / 198.5e-6 - 1.0).abs() < 1e-3, "{}", last.volume);
+    assert!((anew.volume / 16.9e-6 - 1.0).abs() < 1e-2, "{}", anew.volume);
+}
+
+#[test]
+fn contact_is_for_triangles_on_one_side_and_can_be_left_out() {
+    let held = |contact: &str| {
+        format!("[[support]]\ngroup = \"left\"\nkind = \"plane\"\nnormal = [0, 1, 0]\n{contact}")
+    };
+    let step = "[[step]]\npressure = \"10 kPa\"\n";
+    let volume = |contact: &str| rows_of(&format!("{TUBE}{}{step}", held(contact))).unwrap()[0].volume;
+    // A bulging tube touches nothing.
+    let free = volume("");
+    assert!((volume("contact = true\n") / free - 1.0).abs() < 1e-12);
+    let rings =
+        TUBE.replace("tube", "sphere").replace("length = \"20 mm\"\n", "").replace("[16, 16]", "[16]");
+    let rings = rings.replace("membrane", "sheet");
+    let level = "[[support]]\ngroup = \"first\"\nkind = \"plane\"\nnormal = [0, 0, 1]\ncontact = true\n";
+    let error = rows_of(&format!("{rings}{level}{step}"));
+    assert!(error.as_ref().is_err_and(|error| error.contains("stops triangles")), "{error:?}");
+    let error =
+        rows_of(&format!("{TUBE}[[support]]\ngroup = \"left\"\nkind = \"fixed\"\ncontact = true\n{step}"));
+    assert!(error.as_ref().is_err_and(|error| error.contains("no `contact`")), "{error:?}");
+    // The airbag passes through itself where that is asked for.
+    let bag = include_str!("../../../../meshes/airbag.toml").replace("40", "33");
+    let crossing =
+        bag.clone() + "[[support]]\ngroup = \"u0\"\nkind = \"plane\"\nnormal = [1, 0, 0]\ncontact = false\n";
+    assert!(Case::from_toml(&crossing, "case.toml", None).unwrap().contacts == ["v0"]);
+    assert!(Case::from_toml(&bag, "case.toml", None).unwrap().contacts == ["u0", "v0"]);
+}
+
 fn rubber(law: Law) -> RingLayer {
     let sheet = Sheet { cloth: Cloth::Isotropic(law), wrinkles: false, residual: 0.0 };
     RingLayer::Sheet { sheet, fullness: 1.0 }
