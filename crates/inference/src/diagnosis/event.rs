@@ -6,7 +6,7 @@
 //! - *odd rows* ask for what the others deny,
 //! - *a late column*: nothing is missing if it is moved by some rows,
 //! - *each sweep* has a zero or a gain of its own, which is the likelier cause of what isn't seen within the sweeps,
-//! - *readings that are wrong* stand beside what no effect explains,
+//! - *readings that are wrong*, or a specimen that changes within a sweep, stand beside what no effect explains,
 //! - *exchanged specimens*: if nothing is missing when two specimens have each other's numbers, they may have
 //!   each other's name.
 
@@ -28,6 +28,9 @@ pub(crate) const MOST_SPECIMENS: u32 = 5;
 
 /// Fewest wrong readings beside which nothing is said to be unknown: one or two spikes happen in any test.
 const DISTURBED: usize = 3;
+
+/// Fewest sweeps for each change of the specimen within a sweep label that is taken for an error.
+const RELABELLED: usize = 4;
 
 /// Diagnoses of the same data made anew; none if there is no answer.
 #[derive(Clone, Copy)]
@@ -61,11 +64,20 @@ pub(crate) fn event(
     event.or_else(|| exchanged(found, data, anew)).or_else(|| disturbed(found, data))
 }
 
-/// What no effect explains beside readings that are known to be wrong: what spoilt those may have spoilt others, less
-/// visibly.
+/// What no effect explains beside a specimen that changes within a sweep, or beside readings that are known to be wrong:
+/// what spoilt those may have spoilt others, less visibly.
 fn disturbed(found: &Findings<'_>, data: &Data) -> Option<String> {
     if found.verdict().0 != Verdict::Unknown {
         return None;
+    }
+    let changes = data.specimen_changes();
+    // Labels of several specimens each are a habit, not an error.
+    if !changes.is_empty() && RELABELLED * changes.len() <= data.sweeps().len() {
+        return Some(format!(
+            "no effect of the catalogue explains these data, and the specimen changes within a sweep (line {}): have rows there the name of another one? See which \
+             was on the bench, and ask again",
+            lines(data, &changes)
+        ));
     }
     let disturbed = data.disturbed();
     let rows: usize = disturbed.iter().map(|disturbance| disturbance.rows.len()).sum();

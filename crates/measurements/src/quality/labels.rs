@@ -1,6 +1,7 @@
 //! Labels that contradict the rows: stated directions, interrupted runs, duplicated rows.
 
 use super::{Finding, FindingKind, Gate, Severity, rows_in_words};
+use crate::data::Data;
 use crate::stretch;
 use crate::sweep::{self, Contradiction, SweepKind};
 use std::collections::HashSet;
@@ -83,6 +84,15 @@ fn interrupted(gate: &Gate) -> Option<Finding> {
         },
         "keep the rows of a run together and in the order in which they were measured",
     )
+}
+
+impl Data {
+    /// Rows at which the specimen changes within a sweep label.
+    #[must_use]
+    pub fn specimen_changes(&self) -> Vec<usize> {
+        let changes = self.contradictions.iter().filter(|(_, what)| *what == Contradiction::Specimen);
+        changes.map(|(row, _)| *row).collect()
+    }
 }
 
 /// Labels that continue although their run has ended: each part is taken as a run of its own.

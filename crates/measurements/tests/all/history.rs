@@ -339,6 +339,18 @@ fn droop_and_pressure_that_drives_split_nothing() {
 }
 
 #[test]
+fn rows_at_which_the_specimen_changes_within_a_label() {
+    let column = |value: f64| vec![value; 90];
+    let mut columns = Columns::new(column(2e5), Trace::Contraction(column(0.1)), column(300.0));
+    columns.time_s = Some((0..90).map(|row| 0.1 * f64::from(row)).collect());
+    columns.sweep = Some((0..90).map(|row| if row < 45 { "one" } else { "two" }).collect());
+    // The second specimen has a label of its own, but for ten rows of the first.
+    columns.specimen =
+        Some((0..90).map(|row| if (20..30).contains(&row) || row >= 45 { "b" } else { "a" }).collect());
+    assert_eq!(Data::from_columns(columns).unwrap().specimen_changes(), [20, 30]);
+}
+
+#[test]
 fn labels_that_contradict_their_rows_fall_apart() {
     let state = |row: usize| {
         let (p, c) = (1e5 * (1 + row / 100) as f64, 0.1 - 0.1 * (TAU * row as f64 / 100.0).cos());
