@@ -48,16 +48,15 @@ impl Lattice {
             j * (nu + 1) + i
         };
         let mut flat = vec![[0.0; 2]; fine.nodes.len()];
-        let patterns = fine.blocks.iter().filter_map(|block| Some((&block.cells, block.pattern.as_ref()?)));
-        for (cells, pattern) in patterns.clone() {
-            for (node, place) in cells.iter().zip(pattern) {
+        for block in &fine.blocks {
+            for (node, place) in block.cells.iter().zip(block.pattern.iter().flatten()) {
                 flat[*node] = *place;
             }
         }
+        let is_flat = fine.blocks.iter().any(|block| block.pattern.is_some());
         let place = |u: f64, v: f64| fine.nodes[number(u, v)];
         let pattern = |u: f64, v: f64| flat[number(u, v)];
-        let pattern: Option<&dyn Fn(f64, f64) -> [f64; 2]> =
-            patterns.count().min(1).eq(&1).then_some(&pattern);
+        let pattern: Option<&dyn Fn(f64, f64) -> [f64; 2]> = if is_flat { Some(&pattern) } else { None };
         let Self { cells, is_quadratic } = half;
         let mut mesh = grid(&Surface { place: &place, pattern, cells, is_quadratic });
         for (own, block) in mesh.blocks.iter_mut().zip(&fine.blocks) {
@@ -79,18 +78,11 @@ impl Lattice {
     }
 }
 
-/// A state of a coarser mesh, seen from the fine one.
-pub(super) struct Coarse {
-    /// Where it puts the nodes of the fine mesh, m.
-    pub(super) places: Vec<Vector>,
-    /// None if there is no equilibrium.
-    pub(super) state: Option<State>,
-    /// What it took.
-    pub(super) effort: Effort,
-}
+/// A state of a coarser mesh, with where it puts the nodes of the fine one, m; and the effort for it.
+type Coarse = (Option<(Vec<Vector>, State)>, Effort);
 
 impl Case {
-    /// The first state of step `at` on a coarser mesh. `None` if there is no such mesh.
+    /// The first state of step `at` on a coarser mesh, if it has an equilibrium. `None` if there is no such mesh.
     pub(super) fn coarsely(&self, at: usize) -> Option<Coarse> {
         let lattice = self.lattice.filter(|lattice| lattice.nodes() == self.mesh.nodes.len())?;
         let half = lattice.halved()?;
@@ -99,14 +91,13 @@ impl Case {
         let steps = vec![self.steps.get(at)?.clone()];
         let coarse = Self { mesh, steps, tolerance, lattice: Some(half), ..self.clone() };
         let mut run = coarse.start().ok()?;
-        let state = run.advance(|_, _| ()).and_then(Result::ok).map(|(_, state, _)| state);
-        let places = state.as_ref().map_or(Vec::new(), |state| {
-            let nodes = run.places(state).into_iter().zip(&coarse.mesh.nodes);
+        let found = run.advance(|_, _| ()).and_then(Result::ok).map(|(_, state, _)| {
+            let nodes = run.places(&state).into_iter().zip(&coarse.mesh.nodes);
             let moved: Vec<Vector> = nodes.map(|(place, rest)| sub(place, *rest)).collect();
             let moved = lattice.prolonged(&moved);
-            self.mesh.nodes.iter().zip(&moved).map(|(rest, by)| add(*rest, *by)).collect()
+            (self.mesh.nodes.iter().zip(&moved).map(|(rest, by)| add(*rest, *by)).collect(), state)
         });
-        Some(Coarse { places, state, effort: run.effort() })
+        Some((found, run.effort()))
     }
 }
 

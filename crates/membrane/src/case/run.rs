@@ -107,8 +107,6 @@ pub struct CaseRun<'a> {
     made: usize,
     under_way: Option<(Load, Load)>,
     states: usize,
-    /// What coarser meshes took.
-    coarser: Effort,
     /// The last equilibrium on the way to a state that wasn't reached.
     rescued: Option<(usize, State)>,
 }
@@ -135,7 +133,6 @@ impl Case {
             made: 0,
             under_way: None,
             states: 0,
-            coarser: Effort::default(),
             rescued: None,
         })
     }
@@ -151,9 +148,7 @@ impl CaseRun<'_> {
     /// The computational effort so far, on coarser meshes as well.
     #[must_use]
     pub fn effort(&self) -> Effort {
-        let mut effort = self.solver.effort();
-        effort += self.coarser;
-        effort
+        self.solver.effort()
     }
 
     /// Number of unknowns, and of entries of the stiffness matrix and its factors.
@@ -242,9 +237,10 @@ impl CaseRun<'_> {
         if !(std::mem::take(&mut self.is_fresh) && self.last.held.is_empty()) {
             return None;
         }
-        let coarse = self.case.coarsely(self.at)?;
-        self.coarser += coarse.effort;
-        let start = self.solver.placed(&coarse.places, coarse.state?);
+        let (coarse, effort) = self.case.coarsely(self.at)?;
+        self.solver.effort += effort;
+        let (places, state) = coarse?;
+        let start = self.solver.placed(&places, state);
         self.solver.attempt(load, &start).ok().filter(|state| state.unstable == 0)
     }
 
