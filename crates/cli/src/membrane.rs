@@ -132,7 +132,7 @@ fn kept(output: &CaseFolder, is_rescued: bool) -> String {
             line(row)
         ),
         None => {
-            "\n  no state of the case was reached: begin with a smaller load, or in smaller steps".to_owned()
+            "\n  no state of the case was reached: begin with a smaller load, in smaller steps, or with a `[[step]]` of pressure before one of volume".to_owned()
         }
     }
 }
