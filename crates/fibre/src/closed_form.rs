@@ -24,18 +24,20 @@
 //! No term cancels as eps -> 0, where m -> 0 and the inextensible force diverges. Newton's method runs on
 //! (ln t, ln y).
 
+use bulge_numerics::Lanes;
 use bulge_numerics::elliptic::{Pair, incomplete};
-use bulge_numerics::root::illinois;
 use std::f64::consts::{FRAC_PI_2, PI};
+use wide::f64x4;
+
+mod starts;
 
 use crate::FibreError;
+use starts::{contracted_start, starts, straight_d};
 
 /// Iterations after which the solve is given up; four are usual.
 const MAX_ITERATIONS: u32 = 60;
 /// Largest Newton step in the logarithms.
 const MAX_STEP: f64 = 0.7;
-/// Relative change of the stretched length at which the starting values are as good as their fit.
-const ENOUGH: f64 = 3e-3;
 /// Size of the last step. The error of the derivatives is of this size, that of the values of its square.
 const LAST_STEP: f64 = 1e-10;
 /// The same in a fit: values to 1e-13, derivatives to 3e-7.
@@ -111,7 +113,7 @@ impl Near {
             moves[1] += by[1] * (new - old);
         }
         let is_near = moves.iter().all(|step| step.abs() <= FARTHEST) && (of[0] < 0.0) == (self.of[0] < 0.0);
-        is_near.then(|| [self.at[0] * moves[0].exp(), self.at[1] * moves[1].exp()])
+        is_near.then(|| [self.at[0].grown(moves[0]), self.at[1].grown(moves[1])])
     }
 }
 
@@ -125,7 +127,7 @@ impl ClosedForm {
     /// Largest radius over R: 1/cos(phi_R).
     #[must_use]
     pub fn max_radius(&self) -> f64 {
-        self.t.hypot(1.0)
+        (self.t * self.t + 1.0).sqrt()
     }
 
     /// Angle of the meridian against the axis at the left fitting, as in [`Self::point`] but without the
@@ -149,69 +151,79 @@ impl ClosedForm {
 }
 
 /// The two integrals at (t, m), with the terms that Newton's method needs for their derivatives.
-struct Integrals {
-    f: f64,
-    d: f64,
-    /// sin, cos of phi_R and Delta = sqrt(1 - m sin^2 phi).
-    s: f64,
-    c: f64,
-    delta: f64,
+struct Integrals<L> {
+    f: L,
+    d: L,
+    /// sin, cos of phi_R and their product over Delta = sqrt(1 - m sin^2 phi), which has its inverse too.
+    s2: L,
+    c2: L,
+    sc: L,
+    delta: L,
+    per_delta: L,
     /// dF/dm = (F - D - s c/Delta)/(2 (1 - m)).
-    f_m: f64,
+    f_m: L,
 }
 
-impl Integrals {
-    fn at(t: f64, m: f64) -> Self {
+impl<L: Lanes> Integrals<L> {
+    #[inline]
+    fn at(t: L, m: L) -> Self {
         #[cfg(test)]
         crate::work::count();
         let Pair { f, d } = incomplete(t, m);
-        let c2 = 1.0 / (1.0 + t * t);
-        let (c, s) = (c2.sqrt(), t * c2.sqrt());
-        let delta = (1.0 - m * s * s).sqrt();
-        let f_m = (f - d - s * c / delta) / (2.0 * (1.0 - m));
-        Self { f, d, s, c, delta, f_m }
+        let c2 = L::from(1.0) / (t * t + 1.0);
+        let (sc, s2) = (t * c2, t * t * c2);
+        let delta = (-(m * s2) + 1.0).sqrt();
+        let per_delta = L::from(1.0) / delta;
+        let f_m = (f - d - sc * per_delta) / (m * -2.0 + 2.0);
+        Self { f, d, s2, c2, sc, delta, per_delta, f_m }
     }
 }
 
-/// Jacobian of (ln left - ln right) of both equations with respect to (ln t, ln y), and the residuals.
-struct Equations {
-    residual: [f64; 2],
-    jacobian: [[f64; 2]; 2],
-    /// eps y + kappa/y and y + kappa/y.
-    a: f64,
-    b: f64,
+/// Jacobian of (ln left - ln right) of both equations with respect to (ln t, ln y), and the residuals, right to their
+/// third power.
+struct Equations<L> {
+    residual: [L; 2],
+    jacobian: [[L; 2]; 2],
+    /// Inverses of eps y + kappa/y and y + kappa/y.
+    per_a: L,
+    per_b: L,
 }
 
-impl Equations {
-    fn at(
-        i: &Integrals,
-        [m, t, y]: [f64; 3],
-        a: f64,
-        contraction: f64,
-        slenderness: f64,
-        kappa: f64,
-    ) -> Self {
+impl<L: Lanes> Equations<L> {
+    #[inline]
+    fn at(i: &Integrals<L>, [m, y]: [L; 2], a: L, [contraction, slenderness, kappa]: [L; 3]) -> Self {
         let elastic = kappa / y;
         let b = y + elastic;
-        let md_m = i.f_m - 0.5 * i.d; // m dD/dm
-        let phi_t = t * i.c * i.c; // dphi/d(ln t)
-        let m_t = 2.0 * i.s * i.s; // d(ln m)/d(ln t);  d(ln m)/d(ln y) = 2
-        let residual = [(2.0 * m * i.d / (slenderness * a)).ln(), (i.f / (slenderness * b)).ln()];
+        let one = L::from(1.0);
+        let (per_a, per_b, per_d, per_f) = (one / a, one / b, one / i.d, one / i.f);
+        let md_m = i.f_m - i.d * 0.5; // m dD/dm
+        let bent = i.sc * i.per_delta; // dphi/d(ln t) / Delta
+        let m_t = i.s2 * 2.0; // d(ln m)/d(ln t);  d(ln m)/d(ln y) = 2
+        // ln(u/v) = 2 (u - v)/(u + v) up to its third power, which Newton's method doesn't notice.
+        let log = |u: L, v: L| (u - v) * 2.0 / (u + v);
+        let residual = [log(m * i.d * 2.0, slenderness * a), log(i.f, slenderness * b)];
         let jacobian = [
             [
-                m_t + (i.s * i.s * phi_t / i.delta + md_m * m_t) / i.d,
-                2.0 + 2.0 * md_m / i.d - (contraction * y - elastic) / a,
+                m_t + (i.s2 * bent + md_m * m_t) * per_d,
+                md_m * per_d * 2.0 + 2.0 - (contraction * y - elastic) * per_a,
             ],
-            [(phi_t / i.delta + i.f_m * m * m_t) / i.f, 2.0 * m * i.f_m / i.f - (y - elastic) / b],
+            [(bent + i.f_m * m * m_t) * per_f, m * i.f_m * per_f * 2.0 - (y - elastic) * per_b],
         ];
-        Self { residual, jacobian, a, b }
+        Self { residual, jacobian, per_a, per_b }
     }
 
-    fn solve(&self, right: [f64; 2]) -> [f64; 2] {
+    /// The inverse of the Jacobian.
+    #[inline]
+    fn inverse(&self) -> [[L; 2]; 2] {
         let [[a, b], [c, d]] = self.jacobian;
-        let det = a * d - b * c;
-        [(right[0] * d - b * right[1]) / det, (a * right[1] - c * right[0]) / det]
+        let per = L::from(1.0) / (a * d - b * c);
+        [[d * per, -(b * per)], [-(c * per), a * per]]
     }
+}
+
+#[inline]
+fn times<L: Lanes>([[a, b], [c, d]]: [[L; 2]; 2], [x, y]: [L; 2]) -> [L; 2] {
+    [a * x + b * y, c * x + d * y]
 }
 
 /// Solves the closed form at a contraction (below 0 only with elastic fibres), for a slenderness L = l0/R and
@@ -226,7 +238,7 @@ impl Equations {
 pub fn solve(contraction: f64, slenderness: f64, kappa: f64) -> Result<ClosedForm, FibreError> {
     let mut answer = Err(FibreError::NotConverged { contraction, residual: f64::INFINITY, iterations: 0 });
     for start in starts(contraction, slenderness, kappa).into_iter().flatten() {
-        answer = search(start.into(), [contraction, slenderness, kappa], LAST_STEP, f64::INFINITY);
+        answer = search(start.into(), [contraction, slenderness, kappa], LAST_STEP, f64::INFINITY).found(0);
         // A strain above 1 belongs to the other root, a muscle that has ballooned.
         if answer.as_ref().is_ok_and(|found| found.strain < 1.0) {
             break;
@@ -235,196 +247,212 @@ pub fn solve(contraction: f64, slenderness: f64, kappa: f64) -> Result<ClosedFor
     answer
 }
 
-/// The same within a fit, from a neighbour's solution if there is one: values to 1e-13, derivatives to 3e-7.
+/// Solves the closed form for many triples (contraction, slenderness, kappa), four at a time. The answers are those of
+/// [`solve`] to the last bit, whatever stands beside a triple.
+#[must_use]
+pub fn solve_many(asked: &[[f64; 3]]) -> Vec<Result<ClosedForm, FibreError>> {
+    let unsolved =
+        |of: &[f64; 3]| FibreError::NotConverged { contraction: of[0], residual: 0.0, iterations: 0 };
+    let mut answers: Vec<_> = asked.iter().map(|of| Err(unsolved(of))).collect();
+    let (together, alone): (Vec<usize>, Vec<usize>) = (0..asked.len()).partition(|i| asked[*i][0] > 0.0);
+    for four in together.chunks(f64x4::COUNT) {
+        let place = |lane: usize| four.get(lane).copied().unwrap_or(four[0]);
+        let of = [0, 1, 2].map(|number| f64x4::each(|lane| asked[place(lane)][number]));
+        let searched = search(contracted_start(of), of, LAST_STEP, f64::INFINITY);
+        for (lane, i) in four.iter().enumerate() {
+            answers[*i] = searched.found(lane);
+        }
+    }
+    for i in alone {
+        let [contraction, slenderness, kappa] = asked[i];
+        answers[i] = solve(contraction, slenderness, kappa);
+    }
+    answers
+}
+
+/// The same as [`solve`] within a fit, from a neighbour's solution if there is one: values to 1e-13, derivatives to 3e-7.
 ///
 /// # Errors
 /// Those of [`solve`].
 pub(crate) fn solve_near(near: Option<&Near>, of: [f64; 3]) -> Result<ClosedForm, FibreError> {
     near.and_then(|near| near.towards(of))
-        .and_then(|start| search(start, of, LAST_STEP_OF_FITS, NEAR).ok())
+        .and_then(|start| search(start, of, LAST_STEP_OF_FITS, NEAR).found(0).ok())
         .map_or_else(|| solve(of[0], of[1], of[2]), Ok)
 }
 
-/// Newton's method from (t, y) until a step is below `last`; the first one must not be longer than `first`.
-fn search(start: [f64; 2], of: [f64; 3], last_step: f64, first: f64) -> Result<ClosedForm, FibreError> {
+/// Where a search has ended, of one triple or of several.
+struct Searched<L: Lanes> {
+    of: [L; 3],
+    /// Where it has converged; the outputs of others mean nothing.
+    is_found: L::Mask,
+    outputs: Outputs<L>,
+    /// The last residual where it was lost.
+    residual: L,
+    iterations: L,
+}
+
+impl<L: Lanes> Searched<L> {
+    #[inline]
+    fn found(&self, lane: usize) -> Result<ClosedForm, FibreError> {
+        let [contraction, residual, iterations] =
+            [self.of[0], self.residual, self.iterations].map(|of| of.lane(lane));
+        // At most `MAX_ITERATIONS`.
+        let iterations = iterations as u32;
+        if L::is_set(self.is_found, lane) {
+            Ok(self.outputs.lane(lane, iterations))
+        } else {
+            Err(FibreError::NotConverged { contraction, residual, iterations })
+        }
+    }
+}
+
+/// Newton's method from (t, y) until a step is below `last`; the first one must not be longer than `first`. Of several
+/// triples, all must be contracted or all stretched.
+#[inline]
+fn search<L: Lanes>(start: [L; 2], of: [L; 3], last_step: f64, first: f64) -> Searched<L> {
     let [contraction, slenderness, kappa] = of;
-    let failed = |residual: f64, iterations| FibreError::NotConverged { contraction, residual, iterations };
     let [mut t, mut y] = start;
-    let stretched = contraction < 0.0;
+    let stretched = L::all(contraction.is_below(L::from(0.0)));
     // A stretched muscle is nearly straight and T/EA is nearly -eps. The gap eps + T/EA therefore takes the
     // place of y.
-    let mut gap = if stretched { 2.0 * y * (1.0 + t * t) * straight_d(t) / slenderness } else { 0.0 };
-    let mut last = f64::INFINITY;
-    for iteration in 1..=MAX_ITERATIONS {
+    let mut gap =
+        if stretched { y * 2.0 * (t * t + 1.0) * straight_d(t) / slenderness } else { L::from(0.0) };
+    let (mut residual, mut iterations) = (L::from(f64::INFINITY), L::from(1.0));
+    let mut iteration = 1;
+    loop {
         if stretched {
             y = (kappa / (gap - contraction)).sqrt();
         }
         let a = if stretched { y * gap } else { contraction * y + kappa / y };
-        let m = y * y * (1.0 + t * t);
+        let m = y * y * (t * t + 1.0);
         let integrals = Integrals::at(t, m);
-        let equations = Equations::at(&integrals, [m, t, y], a, contraction, slenderness, kappa);
-        let step = equations.solve(equations.residual);
+        let equations = Equations::at(&integrals, [m, y], a, of);
+        let inverse = equations.inverse();
+        let step = times(inverse, equations.residual);
         let gap_step = if stretched { step[1] * -2.0 * (gap - contraction) / gap } else { step[1] };
-        let size = step[0].abs().max(step[1].abs()).max(gap_step.abs());
-        if !size.is_finite() || (iteration == 1 && size > first) {
-            return Err(failed(last, iteration));
-        }
-        if size < last_step {
+        let size = step[0].abs().larger(gap_step.abs()).larger(step[1].abs());
+        let is_found = size.is_below(L::from(last_step));
+        let longest = if iteration == 1 { first } else { f64::MAX };
+        // What isn't a number is lost.
+        let goes_on = !is_found & size.is_below(L::from(longest));
+        if L::all(!goes_on) || iteration == MAX_ITERATIONS {
             // The derivatives at this point serve for the outputs as well. Their error is of the size of the
             // step, and that of the corrected values of its square.
-            return Ok(outputs(&integrals, &equations, [t, y], of, step, iteration));
+            let outputs = Outputs::at(&integrals, &equations, inverse, [m, t, y], of, step);
+            return Searched { of, is_found, outputs, residual, iterations };
         }
-        last = equations.residual[0].abs().max(equations.residual[1].abs());
-        let damping = (MAX_STEP / size).min(1.0);
-        t *= (-damping * step[0]).exp();
-        y *= (-damping * step[1]).exp();
+        let going = |next: L, now: L| L::select(goes_on, next, now);
+        residual = going(equations.residual[0].abs().larger(equations.residual[1].abs()), residual);
+        let damping = L::from(-MAX_STEP) / size.larger(L::from(MAX_STEP));
+        t = going(t.grown(damping * step[0]), t);
+        y = going(y.grown(damping * step[1]), y);
         if stretched {
-            gap *= (-damping * gap_step).exp();
+            gap = going(gap.grown(damping * gap_step), gap);
+        }
+        iteration += 1;
+        iterations = going(iterations + 1.0, iterations);
+    }
+}
+
+/// A value with its derivatives by contraction, slenderness and elastic group.
+type GradedLanes<L> = [L; 4];
+
+/// What a search has found, before it is told apart.
+struct Outputs<L> {
+    m: L,
+    t: L,
+    y: L,
+    strain: L,
+    force: GradedLanes<L>,
+    volume: GradedLanes<L>,
+    radius: GradedLanes<L>,
+    residual: L,
+    follow: [[L; 2]; 3],
+}
+
+impl<L: Lanes> Outputs<L> {
+    /// Force and volume with their derivatives, corrected by the last Newton step (-step in ln t and ln y).
+    #[inline]
+    fn at(
+        i: &Integrals<L>,
+        equations: &Equations<L>,
+        inverse: [[L; 2]; 2],
+        [m, t, y]: [L; 3],
+        [_, l, kappa]: [L; 3],
+        step: [L; 2],
+    ) -> Self {
+        let m_t = m * i.s2 * 2.0;
+        let m_y = m * 2.0;
+        let one = L::from(1.0);
+        let (per_l, per_y) = (one / l, one / y);
+        // Implicit function theorem: dz/dparameter = -J^-1 (d residual / d parameter).
+        let (per_a, per_b) = (equations.per_a, equations.per_b);
+        let by_contraction = times(inverse, [y * per_a, L::from(0.0)]);
+        let by_slenderness = times(inverse, [per_l, per_l]);
+        let by_compliance = times(inverse, [per_y * per_a, per_y * per_b]);
+        let graded = |value: L, z: [L; 2], slenderness_power: f64| {
+            let along = |direction: [L; 2]| z[0] * direction[0] + z[1] * direction[1];
+            let by_scale = value * per_l * slenderness_power;
+            [
+                value - along(step),
+                along(by_contraction),
+                along(by_slenderness) + by_scale,
+                along(by_compliance),
+            ]
+        };
+        // f = (pi/2)(1 - 2m)/(y^2 L^2)
+        let per_yl = per_y * per_l;
+        let f_scale = per_yl * per_yl * FRAC_PI_2;
+        let push = m * -2.0 + 1.0;
+        let f = f_scale * push;
+        let force = graded(f, [f_scale * m_t * -2.0, (f + f_scale * m_y) * -2.0], -2.0);
+        // v = (pi/3)(1 + t^2)/(y L^3) G,   G = F + (1 - 2m) D + 2 s c Delta
+        let wide = t * t + 1.0;
+        let g = i.f + push * i.d + i.sc * i.delta * 2.0;
+        let scale = wide * per_yl * per_l * per_l * (PI / 3.0);
+        let g_phi =
+            (push * i.s2 + 1.0 - m * i.sc * i.sc * 2.0) * i.per_delta + (i.s2 * -2.0 + 1.0) * i.delta * 2.0;
+        let mg_m = m * (i.f_m - i.d * 2.0 - i.sc * i.s2 * i.per_delta) + push * (i.f_m - i.d * 0.5);
+        let v = scale * g;
+        let v_t = scale * (g_phi * t * i.c2 + mg_m * i.s2 * 2.0) + i.s2 * v * 2.0;
+        let v_y = scale * mg_m * 2.0 - v;
+        let volume = graded(v, [v_t, v_y], -3.0);
+        let largest = wide.sqrt();
+        let radius = graded(largest, [t * t / largest, L::from(0.0)], 0.0);
+        let (t, y) = (t * (-step[0] + 1.0), y * (-step[1] + 1.0));
+        let size = step[0].abs().larger(step[1].abs());
+        Self {
+            m: y * y * (t * t + 1.0),
+            t,
+            y,
+            strain: kappa / (y * y),
+            force,
+            volume,
+            radius,
+            residual: (size * size).larger(L::from(f64::EPSILON)),
+            follow: [by_contraction, by_slenderness, by_compliance],
         }
     }
-    Err(failed(last, MAX_ITERATIONS))
-}
 
-/// Starting values (t, y), a few per cent off: the small- and large-bulge limits of
-/// `2 F D (1 + t^2) = eps L^2`, joined. A muscle longer than at rest has two of them. If it is short, its
-/// bulge is no shallow arc, and its strain is below [`natural_strain`].
-fn starts(contraction: f64, slenderness: f64, kappa: f64) -> [Option<(f64, f64)>; 2] {
-    if kappa == 0.0 {
-        return [(contraction > 0.0).then(|| inextensible_start(contraction, slenderness)), None];
-    }
-    let contracted = contracted_start(contraction, slenderness, kappa);
-    if contraction >= 0.0 {
-        return [Some(contracted), None];
-    }
-    let stretched = stretched_start(contraction, slenderness, kappa);
-    if -contraction < 0.5 * natural_strain(slenderness, kappa) {
-        [Some(contracted), stretched]
-    } else {
-        [stretched, Some(contracted)]
-    }
-}
-
-/// Size of the fibre strain at zero contraction (shallow arc, T^3 ~ EA (p l0)^2).
-fn natural_strain(slenderness: f64, kappa: f64) -> f64 {
-    kappa.cbrt() * slenderness.powf(2.0 / 3.0)
-}
-
-/// Elastic fibres, muscle contracted or hardly stretched. A fixed-point iteration on the inextensible muscle
-/// with the stretched length gives the strain.
-fn contracted_start(contraction: f64, slenderness: f64, kappa: f64) -> (f64, f64) {
-    let mut strain = natural_strain(slenderness, kappa);
-    let mut inner = (contraction, slenderness);
-    for _ in 0..6 {
-        inner = (((contraction + strain) / (1.0 + strain)).clamp(1e-12, 0.6), slenderness * (1.0 + strain));
-        let (t, y) = inextensible_start(inner.0, inner.1);
-        let next = (strain * kappa).sqrt().min(3.0 * y) / y;
-        // An error of some per cent in a strain of some per cent is nothing to Newton's method.
-        if (next - strain).abs() < ENOUGH * (1.0 + strain) {
-            return (t, y);
+    #[inline]
+    fn lane(&self, lane: usize, iterations: u32) -> ClosedForm {
+        let at = |of: L| of.lane(lane);
+        let graded = |of: GradedLanes<L>| {
+            let [value, by_contraction, by_slenderness, by_compliance] = of.map(at);
+            Graded { value, by_contraction, by_slenderness, by_compliance }
+        };
+        ClosedForm {
+            m: at(self.m),
+            t: at(self.t),
+            y: at(self.y),
+            strain: at(self.strain),
+            force: graded(self.force),
+            volume: graded(self.volume),
+            radius: graded(self.radius),
+            iterations,
+            evaluations: iterations,
+            residual: at(self.residual),
+            follow: self.follow.map(|by| by.map(at)),
         }
-        strain = next;
-    }
-    inextensible_start(inner.0, inner.1)
-}
-
-/// Elastic fibres, muscle longer than at rest. For a given t the fibre length `F = L (y + kappa/y)` is a
-/// quadratic in y. The end distance `eps = 2 y (1 + t^2) D/L - kappa/y^2` rises with t. This leaves one
-/// monotone equation, here with F and D at m = 0.
-fn stretched_start(contraction: f64, slenderness: f64, kappa: f64) -> Option<(f64, f64)> {
-    let y_at = |phi: f64| {
-        let half = 0.5 * phi / slenderness;
-        half + (half * half - kappa).max(0.0).sqrt()
-    };
-    let excess = |ln_t: f64| {
-        let t = ln_t.exp();
-        let phi = t.atan();
-        let y = y_at(phi);
-        2.0 * y * (1.0 + t * t) * straight_d(t) / slenderness - kappa / (y * y) - contraction
-    };
-    let phi_min = 2.0 * slenderness * kappa.sqrt();
-    let low = (phi_min < 1.55).then(|| phi_min.tan().ln())?;
-    let t = illinois(excess, low, (2.0 * slenderness).max(2.0).ln(), 0.1).exp();
-    Some((t, y_at(t.atan())))
-}
-
-/// D at m = 0: (phi - sin phi cos phi)/2, without cancellation for a small t.
-fn straight_d(t: f64) -> f64 {
-    if t < 1e-3 { t * t * t / 3.0 } else { 0.5 * (t.atan() - t / (1.0 + t * t)) }
-}
-
-fn inextensible_start(contraction: f64, slenderness: f64) -> (f64, f64) {
-    // phi (phi - sin phi cos phi)(1 + t^2) = X at m = 0, solved to 1 % by a fit between t^4 = 3X/2 and
-    // t^2 = 4X/pi^2; the product F D grows with m, which tends to eps for a slender muscle.
-    let growth = contraction * (0.65 + 0.75 * contraction);
-    let guess = |x: f64| (x * (1.5 + 0.98 * x.sqrt() + 0.1643 * x)).sqrt();
-    let whole = contraction * slenderness * slenderness;
-    let t2 = guess(whole);
-    let s2 = t2 / (1.0 + t2);
-    let t2 = guess(whole / (1.0 + growth * s2 * s2));
-    let t = t2.sqrt();
-    let phi = t.atan();
-    let d0 = 0.5 * (phi - t / (1.0 + t2));
-    let m = 0.5 * contraction * phi / d0;
-    (t, (phi + 0.5 * m.min(0.5) * d0 * (1.0 + 0.7 * m.min(0.5))) / slenderness)
-}
-
-/// Force and volume with their derivatives, corrected by the last Newton step (-step in ln t and ln y).
-fn outputs(
-    i: &Integrals,
-    equations: &Equations,
-    [t, y]: [f64; 2],
-    of: [f64; 3],
-    step: [f64; 2],
-    iterations: u32,
-) -> ClosedForm {
-    let [_, l, kappa] = of;
-    let m = y * y * (1.0 + t * t);
-    let m_t = 2.0 * m * i.s * i.s;
-    let m_y = 2.0 * m;
-    // Implicit function theorem: dz/dparameter = -J^-1 (d residual / d parameter).
-    let by_contraction = equations.solve([y / equations.a, 0.0]);
-    let by_slenderness = equations.solve([1.0 / l, 1.0 / l]);
-    let by_compliance = equations.solve([1.0 / (y * equations.a), 1.0 / (y * equations.b)]);
-    let graded = |value: f64, z: [f64; 2], slenderness_power: f64| {
-        let along = |direction: [f64; 2]| z[0] * direction[0] + z[1] * direction[1];
-        Graded {
-            value: value - along(step),
-            by_contraction: along(by_contraction),
-            by_slenderness: along(by_slenderness) + slenderness_power * value / l,
-            by_compliance: along(by_compliance),
-        }
-    };
-    // f = (pi/2)(1 - 2m)/(y^2 L^2)
-    let f_scale = FRAC_PI_2 / (y * y * l * l);
-    let f = f_scale * (1.0 - 2.0 * m);
-    let force = graded(f, [-2.0 * f_scale * m_t, -2.0 * f - 2.0 * f_scale * m_y], -2.0);
-    // v = (pi/3)(1 + t^2)/(y L^3) G,   G = F + (1 - 2m) D + 2 s c Delta
-    let sc = i.s * i.c;
-    let g = i.f + (1.0 - 2.0 * m) * i.d + 2.0 * sc * i.delta;
-    let scale = PI / 3.0 * (1.0 + t * t) / (y * l * l * l);
-    let s2 = i.s * i.s;
-    let g_phi = (1.0 + (1.0 - 2.0 * m) * s2 - 2.0 * m * sc * sc) / i.delta + 2.0 * (1.0 - 2.0 * s2) * i.delta;
-    let mg_m = m * (i.f_m - 2.0 * i.d - sc * s2 / i.delta) + (1.0 - 2.0 * m) * (i.f_m - 0.5 * i.d);
-    let v = scale * g;
-    let v_t = scale * (g_phi * t * i.c * i.c + mg_m * 2.0 * s2) + 2.0 * s2 * v;
-    let v_y = scale * 2.0 * mg_m - v;
-    let volume = graded(v, [v_t, v_y], -3.0);
-    let largest = t.hypot(1.0);
-    let radius = graded(largest, [t * t / largest, 0.0], 0.0);
-    let (t, y) = (t * (1.0 - step[0]), y * (1.0 - step[1]));
-    let size = step[0].abs().max(step[1].abs());
-    let residual = (size * size).max(f64::EPSILON);
-    ClosedForm {
-        m: y * y * (1.0 + t * t),
-        t,
-        y,
-        strain: kappa / (y * y),
-        force,
-        volume,
-        radius,
-        iterations,
-        evaluations: iterations,
-        residual,
-        follow: [by_contraction, by_slenderness, by_compliance],
     }
 }

@@ -7,6 +7,8 @@
 //! The second argument `m` is the *parameter* k^2, not the modulus k and not the modular angle (S1 writes `F(phi\m)`, which
 //! elsewhere means the angle).
 
+use crate::Lanes;
+
 /// The pair `F(phi|m)` and `D(phi|m)`.
 ///
 /// ```text
@@ -17,11 +19,11 @@
 ///
 /// D is the well-behaved companion of F: formulas written with it keep all digits as m -> 0, where `(F - E)/m` loses them.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Pair {
+pub struct Pair<L = f64> {
     /// First kind, F.
-    pub f: f64,
+    pub f: L,
     /// (F - E)/m.
-    pub d: f64,
+    pub d: L,
 }
 
 /// Deviation below which the series after the duplications is exact to rounding: its error is about 0.1 x^8.
@@ -38,59 +40,71 @@ const MAX_DUPLICATIONS: u32 = 300;
 /// Relative error below 2e-15 (F) and 4e-15 (D); NaN outside the range.
 #[must_use]
 #[inline]
-pub fn incomplete(t: f64, m: f64) -> Pair {
-    let t2 = t * t;
-    let (rf, rd) = carlson(1.0, 1.0 + (1.0 - m) * t2, 1.0 + t2);
-    Pair { f: t * rf, d: t * t2 * rd / 3.0 }
+pub fn incomplete<L: Lanes>(t: L, m: L) -> Pair<L> {
+    let [x, y, z] = arguments(t, m);
+    let (rf, rd) = carlson(x, y, z);
+    Pair { f: t * rf, d: t * t * t * rd * (1.0 / 3.0) }
 }
 
-/// Number of duplications that [`incomplete`] makes: what it costs.
+/// Number of duplications that [`incomplete`] makes: what it costs. Of several numbers, the most.
 #[must_use]
-pub fn duplications(t: f64, m: f64) -> u32 {
+pub fn duplications<L: Lanes>(t: L, m: L) -> u32 {
+    let [x, y, z] = arguments(t, m);
+    Duplicated::of(x, y, z).count
+}
+
+#[inline]
+fn arguments<L: Lanes>(t: L, m: L) -> [L; 3] {
     let t2 = t * t;
-    Duplicated::of(1.0, 1.0 + (1.0 - m) * t2, 1.0 + t2).count
+    [L::from(1.0), (-m + 1.0) * t2 + 1.0, t2 + 1.0]
 }
 
 /// Carlson's RF(x, y, z) and RD(x, y, z) for positive arguments, sharing the duplications.
 #[must_use]
 #[inline]
-pub fn carlson(x: f64, y: f64, z: f64) -> (f64, f64) {
+pub fn carlson<L: Lanes>(x: L, y: L, z: L) -> (L, L) {
     let Duplicated { x, y, z, a, sum, quarter, .. } = Duplicated::of(x, y, z);
-    (rf_series(x, y, z), quarter * rd_series(x, y, z, a) + 3.0 * sum)
+    (rf_series(x, y, z), quarter * rd_series(x, y, z, a) + sum * 3.0)
 }
 
 /// Arguments that are nearly equal after so many duplications, with the sum that RD keeps of them.
-struct Duplicated {
-    x: f64,
-    y: f64,
-    z: f64,
+struct Duplicated<L> {
+    x: L,
+    y: L,
+    z: L,
     /// Mean of the arguments, with z three times.
-    a: f64,
-    sum: f64,
+    a: L,
+    sum: L,
     /// 4^-count.
-    quarter: f64,
+    quarter: L,
     count: u32,
 }
 
-impl Duplicated {
+impl<L: Lanes> Duplicated<L> {
     #[inline]
-    fn of(x: f64, y: f64, z: f64) -> Self {
-        let mut at = Self { x, y, z, a: (x + y + 3.0 * z) * 0.2, sum: 0.0, quarter: 1.0, count: 0 };
+    fn of(x: L, y: L, z: L) -> Self {
+        let a = (x + y + z * 3.0) * 0.2;
+        let mut at = Self { x, y, z, a, sum: L::from(0.0), quarter: L::from(1.0), count: 0 };
         while at.count < MAX_DUPLICATIONS {
-            let Self { x, y, z, a, .. } = at;
-            if (a - x).abs().max((a - y).abs()).max((a - z).abs()) < SERIES * a {
+            let Self { x, y, z, a, sum, quarter, count } = at;
+            let spread = (a - x).abs().larger((a - y).abs()).larger((a - z).abs());
+            // What isn't a number is not far.
+            let is_far = (a * SERIES).is_below(spread);
+            if L::all(!is_far) {
                 break;
             }
             let (sx, sy, sz) = (x.sqrt(), y.sqrt(), z.sqrt());
             let lambda = sx * (sy + sz) + sy * sz;
+            // A number that is done waits for its company, lest its last digits depend on it.
+            let next = |now: L, next: L| L::select(is_far, next, now);
             at = Self {
-                x: 0.25 * (x + lambda),
-                y: 0.25 * (y + lambda),
-                z: 0.25 * (z + lambda),
-                a: 0.25 * (a + lambda),
-                sum: at.sum + at.quarter / (sz * (z + lambda)),
-                quarter: 0.25 * at.quarter,
-                count: at.count + 1,
+                x: next(x, (x + lambda) * 0.25),
+                y: next(y, (y + lambda) * 0.25),
+                z: next(z, (z + lambda) * 0.25),
+                a: next(a, (a + lambda) * 0.25),
+                sum: next(sum, sum + quarter / (sz * (z + lambda))),
+                quarter: next(quarter, quarter * 0.25),
+                count: count + 1,
             };
         }
         at
@@ -99,39 +113,44 @@ impl Duplicated {
 
 /// Series of RF about equal arguments (DLMF 19.36.1).
 #[inline]
-fn rf_series(x: f64, y: f64, z: f64) -> f64 {
-    let a = (x + y + z) / 3.0;
-    let inverse = 1.0 / a;
-    let (dx, dy) = (1.0 - x * inverse, 1.0 - y * inverse);
-    let dz = -dx - dy;
+fn rf_series<L: Lanes>(x: L, y: L, z: L) -> L {
+    let inverse = L::from(3.0) / (x + y + z);
+    let (dx, dy) = (-(x * inverse) + 1.0, -(y * inverse) + 1.0);
+    let dz = -(dx + dy);
     let e2 = dx * dy - dz * dz;
     let e3 = dx * dy * dz;
-    let series =
-        1.0 - e2 / 10.0 + e3 / 14.0 + e2 * e2 / 24.0 - 3.0 * e2 * e3 / 44.0 - 5.0 * e2 * e2 * e2 / 208.0
-            + 3.0 * e3 * e3 / 104.0
-            + e2 * e2 * e3 / 16.0;
+    let (second, third) = (e2 * e2, e3 * e3);
+    let series = e2 * (-1.0 / 10.0) + e3 * (1.0 / 14.0) + second * (1.0 / 24.0)
+        - e2 * e3 * (3.0 / 44.0)
+        - second * e2 * (5.0 / 208.0)
+        + third * (3.0 / 104.0)
+        + second * e3 * (1.0 / 16.0)
+        + 1.0;
     series * inverse.sqrt()
 }
 
 /// Series of RD about equal arguments (DLMF 19.36.2).
 #[inline]
-fn rd_series(x: f64, y: f64, z: f64, a: f64) -> f64 {
-    let inverse = 1.0 / a;
-    let (dx, dy) = (1.0 - x * inverse, 1.0 - y * inverse);
-    let dz = (z - a) * -inverse;
+fn rd_series<L: Lanes>(x: L, y: L, z: L, a: L) -> L {
+    let inverse = L::from(1.0) / a;
+    let (dx, dy) = (-(x * inverse) + 1.0, -(y * inverse) + 1.0);
+    let dz = (a - z) * inverse;
     let (xy, z2) = (dx * dy, dz * dz);
-    let e2 = xy - 6.0 * z2;
-    let e3 = (3.0 * xy - 8.0 * z2) * dz;
-    let e4 = 3.0 * (xy - z2) * z2;
+    let e2 = xy - z2 * 6.0;
+    let e3 = (xy * 3.0 - z2 * 8.0) * dz;
+    let e4 = (xy - z2) * z2 * 3.0;
     let e5 = xy * z2 * dz;
-    let series =
-        1.0 - 3.0 * e2 / 14.0 + e3 / 6.0 + 9.0 * e2 * e2 / 88.0 - 3.0 * e4 / 22.0 - 9.0 * e2 * e3 / 52.0
-            + 3.0 * e5 / 26.0
-            - e2 * e2 * e2 / 16.0
-            + 3.0 * e3 * e3 / 40.0
-            + 3.0 * e2 * e4 / 20.0
-            + 45.0 * e2 * e2 * e3 / 272.0
-            - 9.0 * (e3 * e4 + e2 * e5) / 68.0;
+    let second = e2 * e2;
+    let series = e2 * (-3.0 / 14.0) + e3 * (1.0 / 6.0) + second * (9.0 / 88.0)
+        - e4 * (3.0 / 22.0)
+        - e2 * e3 * (9.0 / 52.0)
+        + e5 * (3.0 / 26.0)
+        - second * e2 * (1.0 / 16.0)
+        + e3 * e3 * (3.0 / 40.0)
+        + e2 * e4 * (3.0 / 20.0)
+        + second * e3 * (45.0 / 272.0)
+        - (e3 * e4 + e2 * e5) * (9.0 / 68.0)
+        + 1.0;
     series * inverse * inverse.sqrt()
 }
 
@@ -150,7 +169,7 @@ mod tests {
             })
             .collect();
         assert_eq!(rows.len(), 132);
-        let worst = |value: fn(Pair) -> f64, column: usize| {
+        let worst = |value: fn(Pair<f64>) -> f64, column: usize| {
             rows.iter()
                 .map(|row| (value(incomplete(row[0], row[1])) / row[column] - 1.0).abs())
                 .fold(0.0, f64::max)

@@ -1,7 +1,8 @@
-//! The only scalar abstraction of Bulge: the operations that the integrator and the equilibrium laws need.
+//! Numbers with derivatives: the operations that the integrator and the equilibrium laws need.
 //!
 //! Solvers are written once against [`Real`]; with `f64` they compute a value, with [`crate::Dual`] the same code also
-//! carries exact derivatives. Nothing else in the workspace is generic over its scalar.
+//! carries exact derivatives. The elliptic integrals and the closed form need no derivatives of this kind; they are
+//! written against [`crate::Lanes`].
 
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
