@@ -7,6 +7,7 @@ mod cylinder;
 mod draw;
 mod equator;
 mod error;
+mod follow;
 mod formulas;
 mod groups;
 mod isobars;

@@ -60,6 +60,13 @@ pub(crate) enum Solution {
     Cylinder { radius: f64, tension: f64 },
 }
 
+impl Solution {
+    /// Start for a neighbour's shooting.
+    pub(crate) fn unknowns(self) -> Option<Unknowns> {
+        if let Self::Shooting(unknowns) = self { Some(unknowns) } else { None }
+    }
+}
+
 /// An equilibrium; dimensionless.
 #[derive(Debug, Clone)]
 pub(crate) struct Outcome<const N: usize> {
@@ -169,20 +176,33 @@ impl Problem {
     }
 
     /// The equilibrium at a contraction. `net` is that of the problem, with derivatives by variables in the
-    /// places 2 .. of the dual numbers. `from` is a start for the shooting, such as a neighbour's solution.
+    /// places 2 .. of the dual numbers. `from` is a start for the shooting, such as a neighbour's solution, or the closed form
+    /// if it is solved already.
     pub(crate) fn outcome<const N: usize>(
         &self,
         scheme: Scheme,
         contraction: f64,
         net: &Net<Dual<N>>,
-        (from, ending): (Option<Unknowns>, Ending),
+        (from, ending): (Option<Solution>, Ending),
     ) -> Result<Outcome<N>, FibreError> {
-        self.judged(contraction, || match scheme {
+        let plain = &self.net;
+        self.judged(contraction, || match (scheme, from) {
             _ if self.is_cylinder() => by_cylinder(net, contraction),
-            Scheme::ClosedForm => by_closed_form(net, contraction),
-            Scheme::Shooting(way) => {
-                by_shooting(&self.net, net, contraction, from, (ending, way)).map(|(outcome, _)| outcome)
+            (Scheme::ClosedForm, Some(Solution::ClosedForm(found))) => Ok(of_closed_form(net, found)),
+            (Scheme::ClosedForm, _) => by_closed_form(plain, net, contraction),
+            (Scheme::Shooting(way), from) => {
+                let from = from.and_then(Solution::unknowns);
+                by_shooting(plain, net, contraction, from, (ending, way)).map(|(outcome, _)| outcome)
             }
+        })
+    }
+
+    /// What the closed form depends on at a contraction: (contraction, slenderness, elastic group). `None` where another way
+    /// leads to the equilibrium.
+    pub(crate) fn asks_closed_form(&self, scheme: Scheme, contraction: f64) -> Option<[f64; 3]> {
+        (scheme == Scheme::ClosedForm && !self.is_cylinder()).then(|| {
+            let [slenderness, kappa] = groups_of_closed_form(&self.net);
+            [contraction, slenderness, kappa]
         })
     }
 
@@ -197,7 +217,7 @@ impl Problem {
     ) -> Result<Outcome<N>, FibreError> {
         self.judged(contraction, || match scheme {
             _ if self.is_cylinder() => by_cylinder(net, contraction),
-            Scheme::ClosedForm => by_closed_form(net, contraction),
+            Scheme::ClosedForm => by_closed_form(&self.net, net, contraction),
             Scheme::Shooting(_) => {
                 let groups = Groups::of(net);
                 let plain = &self.net;
@@ -297,14 +317,27 @@ fn by_cylinder<const N: usize>(net: &Net<Dual<N>>, contraction: f64) -> Result<O
     })
 }
 
-/// Pleats of depth h give A = a pi (r + h)^2: the muscle of radius R + h, whose fibres lie h inside.
-fn by_closed_form<const N: usize>(net: &Net<Dual<N>>, contraction: f64) -> Result<Outcome<N>, FibreError> {
+/// Slenderness and elastic group of the closed form. Pleats of depth h give A = a pi (r + h)^2: the muscle of radius R + h,
+/// whose fibres lie h inside.
+fn groups_of_closed_form<D: Real>(net: &Net<D>) -> [D; 2] {
     let crest = net.depth + 1.0;
     // kappa = p sin(2 pi/n) R^2/(4 EA) of one fibre = (area factor) (2 pi)/4 * p R^2/(n EA).
     let kappa = net.area_factor * net.compliance * crest * crest * std::f64::consts::FRAC_PI_2;
-    let length = net.half_fibre * 2.0;
-    let slenderness = length / crest;
-    let found = closed_form::solve(contraction, slenderness.value(), kappa.value())?;
+    [net.half_fibre * 2.0 / crest, kappa]
+}
+
+fn by_closed_form<const N: usize>(
+    plain: &Net<f64>,
+    net: &Net<Dual<N>>,
+    contraction: f64,
+) -> Result<Outcome<N>, FibreError> {
+    let [slenderness, kappa] = groups_of_closed_form(plain);
+    closed_form::solve(contraction, slenderness, kappa).map(|found| of_closed_form(net, found))
+}
+
+fn of_closed_form<const N: usize>(net: &Net<Dual<N>>, found: ClosedForm) -> Outcome<N> {
+    let [slenderness, kappa] = groups_of_closed_form(net);
+    let (crest, length) = (net.depth + 1.0, net.half_fibre * 2.0);
     // In units of p R^2 and R^3: F = a (l0/R)^2 f, V = (l0/R)^3 v.
     let total = |scale: Dual<N>, g: &Graded, less: Dual<N>| {
         let carried = (slenderness - slenderness.value()) * g.by_slenderness
@@ -324,7 +357,7 @@ fn by_closed_form<const N: usize>(net: &Net<Dual<N>>, contraction: f64) -> Resul
     let force = total(net.area_factor * length.squared(), &found.force, nothing);
     let end_slope = found.end_slope();
     let integral = tension * end_slope.cos() - a - force.value;
-    Ok(Outcome {
+    Outcome {
         force,
         volume: total(length.squared() * length, &found.volume, nothing),
         mid_radius: total(crest, &found.radius, net.depth),
@@ -340,7 +373,7 @@ fn by_closed_form<const N: usize>(net: &Net<Dual<N>>, contraction: f64) -> Resul
         },
         solution: Solution::ClosedForm(found),
         follow: None,
-    })
+    }
 }
 
 fn by_shooting<const N: usize>(
@@ -410,7 +443,7 @@ fn by_groups<const N: usize, const M: usize>(
     let mut outcome = by_some(0, from)?;
     // Groups for which there is no room take another integration, at the same equilibrium.
     for first in (M - 2..groups.count()).step_by(M - 2) {
-        let from = if let Solution::Shooting(unknowns) = outcome.solution { Some(unknowns) } else { from };
+        let from = outcome.solution.unknowns().or(from);
         outcome.add_derivatives(&by_some(first, from)?);
     }
     Ok(outcome)

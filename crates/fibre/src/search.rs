@@ -6,7 +6,7 @@ use bulge_numerics::root::{RootError, newton_bracketed};
 use crate::FibreError;
 use crate::continuation::drawn_taut;
 use crate::net::Net;
-use crate::outcome::Scheme;
+use crate::outcome::{Scheme, Solution};
 use crate::path::{Paths, Place};
 use crate::problem::Problem;
 use crate::shooting::{self, ALONE, USUAL};
@@ -93,7 +93,8 @@ impl<E: Fn(&Found) -> f64> Walk<'_, E> {
     /// The equilibrium at a contraction. With `alone`, the last one is the only start.
     fn at(&mut self, contraction: f64, alone: bool) -> Result<Found, FibreError> {
         let ending = if alone && self.near.is_some() { ALONE } else { USUAL };
-        let found = self.problem.at_with(self.scheme, contraction, (self.near, ending))?;
+        let from = self.near.map(Solution::Shooting);
+        let found = self.problem.at_with(self.scheme, contraction, (from, ending))?;
         self.near = found.unknowns();
         self.seen.add(&found);
         Ok(found)

@@ -5,7 +5,8 @@ use bulge_muscles::{Muscle, Parameter};
 use bulge_numerics::Dual;
 
 use crate::FibreError;
-use crate::outcome::{Approach, BURSTING, Outcome, Scheme, Solution};
+use crate::follow::is_lost;
+use crate::outcome::{Approach, Outcome, Scheme, Solution};
 use crate::parts::{OWN_PARTS, PARTS, Parts};
 use crate::problem::Problem;
 use crate::search::{FAR, Goal, LEAST_ROOM, Seen};
@@ -101,7 +102,7 @@ pub(crate) struct Found {
 impl Found {
     /// Start for a neighbour's shooting.
     pub(crate) fn unknowns(&self) -> Option<Unknowns> {
-        if let Solution::Shooting(unknowns) = self.solution { Some(unknowns) } else { None }
+        self.solution.unknowns()
     }
 }
 
@@ -113,78 +114,6 @@ impl Problem {
     /// See [`FibreError`]; every variant carries the numbers.
     pub fn solve(&self, given: Given, approach: Approach) -> Result<Response, FibreError> {
         self.find(given, approach).map(|found| found.response)
-    }
-
-    /// The equilibrium at a contraction even where the force is negative (the muscle would have to push): for
-    /// fits and tables that must not end at the limit.
-    ///
-    /// # Errors
-    /// See [`FibreError`].
-    pub fn follow(&self, contraction: f64, approach: Approach) -> Result<Response, FibreError> {
-        self.followed(self.scheme(approach)?, contraction, approach).map(|found| found.response)
-    }
-
-    fn followed(&self, scheme: Scheme, contraction: f64, approach: Approach) -> Result<Found, FibreError> {
-        self.at(scheme, contraction, None).or_else(|error| {
-            if !is_lost(&error) {
-                return Err(error);
-            }
-            let error = match error {
-                FibreError::Undulates { .. } => error,
-                _ => self.within_limit(error, contraction, approach)?,
-            };
-            self.walked(scheme, contraction, false).ok_or(error)
-        })
-    }
-
-    /// Explains an error beyond the limit, where a long braid or a soft one would bulge in more than one
-    /// place and no equilibrium was found. The result names the limit; other errors stay the same. This takes
-    /// a search for the limit.
-    #[must_use]
-    pub fn explained(&self, error: FibreError, contraction: f64, approach: Approach) -> FibreError {
-        if !is_lost(&error) || matches!(error, FibreError::Undulates { .. }) {
-            return error;
-        }
-        self.within_limit(error, contraction, approach).unwrap_or_else(|explained| explained)
-    }
-
-    /// The same error where there may be an equilibrium: before the limit, or where no limit was found. If fibres
-    /// are soft, no limit means no equilibrium.
-    ///
-    /// # Errors
-    /// What is told instead of it: that the contraction is beyond the limit, or that the fibres are too soft.
-    fn within_limit(
-        &self,
-        error: FibreError,
-        contraction: f64,
-        approach: Approach,
-    ) -> Result<FibreError, FibreError> {
-        match self.range_end(approach) {
-            Ok(end) if contraction > end.contraction() => Err(end.beyond(contraction)),
-            Err(_) if matches!(error, FibreError::TooSoft { .. }) => Err(error),
-            _ => Ok(error),
-        }
-    }
-
-    /// The equilibrium at a contraction, step by step from where one is found, or from a path.
-    pub(crate) fn walked(&self, scheme: Scheme, contraction: f64, must_pull: bool) -> Option<Found> {
-        if let Some(found) =
-            self.drawn_to(scheme, contraction).filter(|found| self.pulls(&found.response) || !must_pull)
-        {
-            return Some(found);
-        }
-        let start = self.contraction_start().min(contraction);
-        let mut seen = Seen::NOTHING;
-        let way = [start, FAR];
-        let walked = self.root(scheme, way, &mut seen, |found| contraction - found.response.contraction);
-        // Where a direct way is lost, halvings between equilibria on both sides may get there.
-        let walked = walked.or_else(|_| {
-            let side = |found: &Found| if found.response.contraction < contraction { 1.0 } else { -1.0 };
-            let beside = self.root(scheme, way, &mut seen, side)?;
-            self.at(scheme, contraction, beside.unknowns())
-        });
-        let walked = walked.ok().filter(|found| self.pulls(&found.response) || !must_pull);
-        walked.or_else(|| self.on_a_path(scheme, Goal::Contraction(contraction), must_pull, &seen))
     }
 
     /// The contraction at which the force vanishes.
@@ -251,8 +180,11 @@ impl Problem {
         let scheme = self.scheme(approach)?;
         let outcome = self.outcome_of_many(scheme, contraction, &net, None, EXACT).or_else(|error| {
             // A cold start doesn't lead everywhere that a walk does.
-            let from =
-                if is_lost(&error) { self.followed(scheme, contraction, approach)?.unknowns() } else { None };
+            let from = if is_lost(&error) {
+                self.followed(scheme, contraction, approach, None)?.unknowns()
+            } else {
+                None
+            };
             match from {
                 Some(_) => self.outcome_of_many(scheme, contraction, &net, from, EXACT),
                 None => Err(error),
@@ -380,7 +312,7 @@ impl Problem {
         contraction: f64,
         from: Option<Unknowns>,
     ) -> Result<Found, FibreError> {
-        self.at_with(scheme, contraction, (from, USUAL))
+        self.at_with(scheme, contraction, (from.map(Solution::Shooting), USUAL))
     }
 
     /// The same with a prescribed end of the search.
@@ -388,7 +320,7 @@ impl Problem {
         &self,
         scheme: Scheme,
         contraction: f64,
-        from: (Option<Unknowns>, Ending),
+        from: (Option<Solution>, Ending),
     ) -> Result<Found, FibreError> {
         if self.is_scale_free() {
             let outcome = self.outcome(scheme, contraction, &self.net.lift::<2>(), from)?;
@@ -440,19 +372,6 @@ impl Problem {
             convergence: outcome.convergence,
         };
         Found { response, solution: outcome.solution }
-    }
-}
-
-/// The softness from which on a braid that isn't found at once isn't walked to: random ones whose gas acts at the fibres
-/// pull up to 0.47.
-const SOFTEST: f64 = 0.5;
-
-/// Whether a search ended without an equilibrium, where another way may lead to one.
-fn is_lost(error: &FibreError) -> bool {
-    match error {
-        FibreError::NotConverged { .. } | FibreError::Undulates { .. } => true,
-        FibreError::TooSoft { group, limit } => *limit <= BURSTING && *group < SOFTEST,
-        _ => false,
     }
 }
 

@@ -16,10 +16,10 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use crate::design::{Coordinate, Layout};
-use crate::family::{Family, Member};
+use crate::family::Family;
 use crate::family_error::FamilyError;
+use crate::member::{Asked, Member};
 use crate::plan::Plan;
-use crate::points::finite;
 
 /// Points of a part of a chunk. The number is large enough that a muscle shared by two parts costs little. It
 /// is small enough that a chunk of muscles that need an integration has parts for every thread.
@@ -57,8 +57,8 @@ pub struct Computer<'a> {
     family: Family,
 }
 
-/// The muscle of the last point. Neighbouring points share it.
-struct Last {
+/// A muscle with the end of its range if points depend on it. Neighbouring points share it.
+struct Placed {
     number: u64,
     member: Result<(Member, Option<RangeEnd>), String>,
 }
@@ -75,7 +75,7 @@ impl<'a> Computer<'a> {
     /// Computes the points of a range of numbers.
     #[must_use]
     pub fn chunk(&self, points: Range<u64>) -> Chunk {
-        let count = usize::try_from(points.end - points.start).unwrap_or(0);
+        let count = usize::try_from(points.end.saturating_sub(points.start)).unwrap_or(0);
         let (axes, outputs) = (self.plan.axes.len(), self.plan.outputs.len());
         let mut chunk = Chunk {
             first: points.start,
@@ -83,46 +83,67 @@ impl<'a> Computer<'a> {
             outputs: vec![Vec::with_capacity(count); outputs],
             infeasible: Vec::new(),
         };
-        let mut place = vec![Coordinate::Value(0.0); axes];
-        let (mut point, mut values) = (vec![0.0; axes], vec![0.0; outputs]);
-        let mut last: Option<Last> = None;
-        for (row, number) in points.enumerate() {
+        let mut start = points.start;
+        while start < points.end {
+            let end = points.end.min(start.saturating_add(PART));
+            self.part(start..end, &mut chunk);
+            start = end;
+        }
+        chunk
+    }
+
+    /// Adds the points of a part.
+    fn part(&self, points: Range<u64>, chunk: &mut Chunk) {
+        let first = chunk.rows();
+        let mut place = vec![Coordinate::Value(0.0); self.plan.axes.len()];
+        let mut point = vec![0.0; self.plan.axes.len()];
+        // Each muscle once, and the row, muscle and contraction of each point that has one.
+        let mut members: Vec<Placed> = Vec::new();
+        let mut placed = Vec::new();
+        for (row, number) in (first..).zip(points) {
             self.layout.place(number, &mut place);
-            let follows = place.iter().any(|at| matches!(at, Coordinate::OfLimit { .. }));
-            let member = self.layout.member(number);
             // The contraction depends on the limit, but the muscle doesn't depend on the contraction. Without
             // a limit the axis stays at its lower end.
             for (x, at) in point.iter_mut().zip(&place) {
                 *x = if let Coordinate::OfLimit { from, .. } = at { *from } else { at.value(1.0) };
             }
-            let now = match last.take() {
-                Some(same) if same.number == member => same,
-                _ => Last { number: member, member: self.member(&point, follows) },
-            };
-            let found = now.member.as_ref().map_err(Clone::clone).and_then(|(member, end)| {
+            let member = self.layout.member(number);
+            if members.last().is_none_or(|last| last.number != member) {
+                let follows = place.iter().any(|at| matches!(at, Coordinate::OfLimit { .. }));
+                members.push(Placed { number: member, member: self.member(&point, follows) });
+            }
+            let last = members.len() - 1;
+            let contraction = members[last].member.as_ref().map_err(Clone::clone).and_then(|(_, end)| {
                 let limit = end.map(RangeEnd::contraction);
                 begins_below(&place, limit)?;
                 for (x, at) in point.iter_mut().zip(&place) {
                     *x = at.value(limit.unwrap_or(1.0));
                 }
-                let contraction = self.family.contraction(&point);
-                member
-                    .pulling(contraction, *end, &self.plan.outputs, &mut values)
-                    .map_err(|error| error.to_string())?;
-                finite(&values, &self.plan.outputs)
+                Ok(self.family.contraction(&point))
             });
-            last = Some(now);
             for (column, x) in chunk.axes.iter_mut().zip(&point) {
                 column.push(*x);
             }
-            for (column, value) in chunk.outputs.iter_mut().zip(&values) {
-                column.push(*value);
-            }
-            if let Err(reason) = found {
-                chunk.infeasible.push((row, reason));
+            match contraction {
+                Ok(contraction) => placed.push((row, last, contraction)),
+                Err(reason) => chunk.infeasible.push((row, reason)),
             }
         }
-        chunk
+        let rows = chunk.rows();
+        chunk.outputs.iter_mut().for_each(|column| column.resize(rows, 0.0));
+        let asked = placed.iter().filter_map(|(_, member, contraction)| {
+            let (member, end) = members[*member].member.as_ref().ok()?;
+            Some(Asked { member, contraction: *contraction, end: *end })
+        });
+        Member::pulling_each(&asked.collect::<Vec<_>>(), &self.plan.outputs, |i, found| match found {
+            Ok(values) => {
+                for (column, value) in chunk.outputs.iter_mut().zip(values) {
+                    column[placed[i].0] = *value;
+                }
+            }
+            Err(error) => chunk.infeasible.push((placed[i].0, error.to_string())),
+        });
+        chunk.infeasible.sort_by_key(|(row, _)| *row);
     }
 
     /// Computes a chunk in parts that other threads may take over. Outputs at points without equilibrium are

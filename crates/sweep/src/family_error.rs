@@ -22,6 +22,14 @@ pub enum FamilyError {
     /// An effect that the muscle file states in a wrong way.
     #[error(transparent)]
     File(#[from] FileError),
+    /// An output that is no number.
+    #[error("`{output}` is {value}")]
+    NotFinite {
+        /// Its name.
+        output: String,
+        /// What it is instead.
+        value: f64,
+    },
     /// An axis or an output that the muscle doesn't have: what is wrong, and what to do instead.
     #[error("{0}")]
     Input(String),
@@ -35,6 +43,7 @@ impl FamilyError {
             Self::Equilibrium(error) => error.fault(),
             Self::MuscleWithEffects(error) => error.fault(),
             Self::Model(error) => error.fault(),
+            Self::NotFinite { .. } => Fault::NoSolution,
             _ => Fault::Input,
         }
     }

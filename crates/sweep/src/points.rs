@@ -5,8 +5,9 @@ use bulge_muscles::Fault;
 use rayon::prelude::*;
 use std::ops::Range;
 
-use crate::family::{Family, Member};
+use crate::family::Family;
 use crate::family_error::FamilyError;
+use crate::member::{Asked, Member};
 use crate::output::Output;
 
 /// Points of one task. It is long enough (half a millisecond of the closed form) to hide the cost of a task,
@@ -54,8 +55,8 @@ pub struct Points {
 }
 
 impl Points {
-    fn new(outputs: usize, count: usize) -> Self {
-        Self { outputs: vec![Vec::with_capacity(count); outputs], infeasible: 0, reasons: Vec::new() }
+    fn new(outputs: usize) -> Self {
+        Self { outputs: vec![Vec::new(); outputs], infeasible: 0, reasons: Vec::new() }
     }
 }
 
@@ -87,7 +88,8 @@ pub fn evaluate(
             block
         })
         .collect();
-    let mut all = Points::new(outputs.len(), count);
+    let mut all = Points::new(outputs.len());
+    all.outputs.iter_mut().for_each(|column| column.reserve_exact(count));
     for block in blocks {
         for (column, part) in all.outputs.iter_mut().zip(block.outputs) {
             column.extend(part);
@@ -105,50 +107,47 @@ fn block(
     outputs: &[Output],
     most: usize,
 ) -> Points {
-    let mut points = Points::new(outputs.len(), rows.len());
-    let mut values = vec![0.0; outputs.len()];
+    let mut points = Points::new(outputs.len());
+    points.outputs.iter_mut().for_each(|column| column.resize(rows.len(), f64::NAN));
     let (mut point, mut before) = (vec![0.0; axes.len()], vec![f64::NAN; axes.len()]);
-    let mut member: Option<Result<Member, FamilyError>> = None;
-    for row in rows {
+    // Each muscle once, and the muscle and contraction of each row.
+    let mut members: Vec<Result<Member, FamilyError>> = Vec::new();
+    let mut placed = Vec::with_capacity(rows.len());
+    for row in rows.clone() {
         for (x, axis) in point.iter_mut().zip(axes) {
             *x = axis.at(row);
         }
-        let now = match member.take() {
-            Some(same) if family.is_same_member(&point, &before) => same,
-            _ => family.member(&point),
-        };
+        if members.is_empty() || !family.is_same_member(&point, &before) {
+            members.push(family.member(&point));
+        }
         before.copy_from_slice(&point);
-        let is_told = points.reasons.len() < most;
-        let says =
-            |error: &FamilyError| (error.fault(), if is_told { error.to_string() } else { String::new() });
-        let found = match &now {
-            Ok(member) => member
-                .pulling(family.contraction(&point), None, outputs, &mut values)
-                .map_err(|error| says(&error))
-                .and_then(|()| finite(&values, outputs).map_err(|says| (Fault::NoSolution, says))),
-            Err(error) => Err(says(error)),
-        };
-        if let Err((fault, says)) = found {
-            values.fill(f64::NAN);
-            points.infeasible += 1;
-            if is_told {
-                points.reasons.push(Reason { row, fault, says });
+        placed.push((members.len() - 1, family.contraction(&point)));
+    }
+    let (mut asked, mut asked_rows) = (Vec::with_capacity(placed.len()), Vec::with_capacity(placed.len()));
+    for (place, (member, contraction)) in placed.iter().enumerate() {
+        if let Ok(member) = &members[*member] {
+            asked.push(Asked { member, contraction: *contraction, end: None });
+            asked_rows.push(place);
+        }
+    }
+    let mut failed: Vec<Option<FamilyError>> = Vec::new();
+    failed.resize_with(rows.len(), || None);
+    Member::pulling_each(&asked, outputs, |i, found| match found {
+        Ok(values) => {
+            for (column, value) in points.outputs.iter_mut().zip(values) {
+                column[asked_rows[i]] = *value;
             }
         }
-        for (column, value) in points.outputs.iter_mut().zip(&values) {
-            column.push(*value);
+        Err(error) => failed[asked_rows[i]] = Some(error),
+    });
+    for ((row, (member, _)), failed) in rows.zip(&placed).zip(&failed) {
+        let Some(error) = members[*member].as_ref().err().or(failed.as_ref()) else { continue };
+        points.infeasible += 1;
+        if points.reasons.len() < most {
+            points.reasons.push(Reason { row, fault: error.fault(), says: error.to_string() });
         }
-        member = Some(now);
     }
     points
-}
-
-/// Refuses outputs that are not finite.
-pub(crate) fn finite(values: &[f64], outputs: &[Output]) -> Result<(), String> {
-    match values.iter().zip(outputs).find(|(value, _)| !value.is_finite()) {
-        Some((value, output)) => Err(format!("`{}` is {value}", output.name())),
-        None => Ok(()),
-    }
 }
 
 #[cfg(test)]
