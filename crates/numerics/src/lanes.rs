@@ -168,3 +168,57 @@ impl Lanes for f64x4 {
         Self::atan(self)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::elliptic::incomplete;
+
+    /// Every operation gives the bits of the standard library's, or is within what it states.
+    #[test]
+    fn four_are_each_as_it_is_alone() {
+        for x in [1e-9, 3e-3, 0.65, 0.67, 1.0, 2.4, 2.5, 7.0, 1e4, 1e9] {
+            let four = f64x4::each(|lane| x * (1.0 + lane as f64));
+            for lane in 0..4 {
+                let y = x * (1.0 + lane as f64);
+                assert_eq!(four.lane(lane), y);
+                for (many, one, exact, within) in [
+                    (four.sqrt(), Lanes::sqrt(y), y.sqrt(), 0.0),
+                    (Lanes::atan(four), Lanes::atan(y), y.atan(), 3e-16),
+                    (Lanes::cbrt(four), Lanes::cbrt(y), f64::cbrt(y), 1e-15),
+                    (Lanes::abs(-four), Lanes::abs(-y), y, 0.0),
+                    (four.larger(f64x4::from(2.0)), y.larger(2.0), y.max(2.0), 0.0),
+                    (four.smaller(f64x4::from(2.0)), y.smaller(2.0), y.min(2.0), 0.0),
+                    (four.grown(f64x4::from(0.1)), y.grown(0.1), y * 0.1_f64.exp(), 1e-4),
+                ] {
+                    assert_eq!(many.lane(lane).to_bits(), one.to_bits(), "{y}");
+                    assert!((one / exact - 1.0).abs() <= within, "{y}: {one} for {exact}");
+                }
+            }
+        }
+    }
+
+    /// The size of a step in logarithms is right to its third power.
+    #[test]
+    fn steps_grow_to_third_order() {
+        let error = |s: f64| (1.0_f64.grown(s) / s.exp() - 1.0) / s.powi(3);
+        assert!((error(0.01) - 1.0 / 12.0).abs() < 1e-3, "{}", error(0.01));
+        assert!(1.0_f64.grown(-1.9) > 0.0);
+    }
+
+    /// Arguments that take 0 to 14 duplications, and one that has no value, stand side by side.
+    #[test]
+    fn integrals_in_company() {
+        let t = [1e-3, 1.0, 1e8, 2.0];
+        let m = [0.3, 0.5, 0.1, 3.0];
+        let pair = incomplete(f64x4::from(t), f64x4::from(m));
+        for lane in 0..4 {
+            let alone = incomplete(t[lane], m[lane]);
+            assert_eq!(
+                [pair.f.lane(lane), pair.d.lane(lane)].map(f64::to_bits),
+                [alone.f, alone.d].map(f64::to_bits)
+            );
+        }
+        assert!(pair.f.lane(3).is_nan());
+    }
+}
