@@ -102,6 +102,9 @@ pub(crate) fn of(
     Interval { ends: ends.map(back), method: "covariance", is_everything: is_everything(ends) }
 }
 
+/// Part of the rise of the sum of squares that moves an end by a two-thousandth of its distance.
+const READ: f64 = 1e-3;
+
 /// The ends of the profile; none if the minimisations over the other parameters fail.
 fn profiled(
     problem: &FitProblem<'_>,
@@ -112,8 +115,9 @@ fn profiled(
 ) -> Option<[f64; 2]> {
     let rise = scale.quantile * scale.quantile * scale.variance;
     // Nobody reads the ends more accurately than to a thousandth of a standard deviation.
-    let options =
-        Options { tolerance: 1e-4, check_curvature: false, max_evaluations: 60, ..Options::default() };
+    let enough = READ * rise;
+    let tolerance = (enough / minimum.cost).sqrt().clamp(1e-4, 1e-2);
+    let options = Options { tolerance, check_curvature: false, max_evaluations: 60, least_decrease: enough };
     let found = profile(problem, minimum, bounds, &options, place, rise).ok()?;
     let end = |end| match end {
         ProfileEnd::Crossed(value)

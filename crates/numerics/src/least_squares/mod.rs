@@ -13,6 +13,7 @@ mod options;
 mod profile;
 mod residuals;
 mod search;
+mod second;
 mod singular;
 mod starts;
 mod step;

@@ -19,7 +19,7 @@ const HALVINGS: usize = 20;
 /// minimum.
 const SLACK: f64 = 1e-6;
 /// Relative length of the last Newton step towards an end; the end itself is far more accurate.
-const ROOT: f64 = 1e-8;
+const ROOT: f64 = 1e-4;
 
 /// One end of a profile interval.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -8,6 +8,7 @@ use super::curvature::{self, Probe};
 use super::linear::{Linear, decrease, linearise, values};
 use super::minimum::{End, Minimum, RANK_TOLERANCE, Reason, gradient_cosine, held_at};
 use super::residuals::{Bounds, Residuals, Side};
+use super::second::Second;
 use super::step::{Step, StepBox, damped, of_length};
 use super::triangle::Triangle;
 use super::{LeastSquaresError, Options};
@@ -124,6 +125,7 @@ pub(super) struct Search<'a, P> {
     pub(super) scale: Vec<f64>,
     pub(super) radius: f64,
     pub(super) damping: f64,
+    second: Second,
     iterations: usize,
     pub(super) evaluations: usize,
     pub(super) linearisations: usize,
@@ -165,7 +167,7 @@ impl<'a, P: Residuals> Search<'a, P> {
         residuals: Vec<f64>,
         linear: Linear,
     ) -> Self {
-        let scale = linear.norms.clone();
+        let (scale, second) = (linear.norms.clone(), Second::none(linear.norms.len()));
         let size = norm(&product(&scale, &theta));
         // At the origin, the residuals are the only measure of a step.
         let radius = if size > 0.0 { size } else { linear.cost.sqrt() };
@@ -179,6 +181,7 @@ impl<'a, P: Residuals> Search<'a, P> {
             scale,
             radius,
             damping: 0.0,
+            second,
             iterations: 0,
             evaluations: 0,
             linearisations: 1,
@@ -234,8 +237,12 @@ impl<'a, P: Residuals> Search<'a, P> {
             if let Some(reason) = self.stationary(&newton) {
                 return reason;
             }
+            let (before, gradient) = (self.theta.clone(), self.linear.gradient());
             match self.advance(&newton) {
-                Progress::Moved => self.iterations += 1,
+                Progress::Moved => {
+                    self.iterations += 1;
+                    self.second.learn(&gradient, &self.linear, &difference(&self.theta, &before));
+                }
                 Progress::Budget => return Reason::Budget,
                 Progress::Stuck | Progress::Kink
                     if newton.predicted <= self.rounding().max(self.options.least_decrease)
@@ -315,16 +322,29 @@ impl<'a, P: Residuals> Search<'a, P> {
 
     /// The trial within the trust region.
     fn trial(&mut self, newton: &Step, newton_length: f64) -> Trial {
+        let limits = self.limits(&self.scale, &self.theta);
+        if let Some((a, b)) = self.second.triangle(&self.linear, &self.scale) {
+            let step = damped(&a, &b, LEAST_DAMPING, &limits);
+            let full = norm(&step.z) <= self.radius;
+            let step = if full { step } else { self.of_radius(&a, &b, &limits) };
+            let theta = self.point(&self.theta, &step, &self.scale);
+            return Trial { theta, length: norm(&step.z), predicted: step.predicted, full };
+        }
         if newton_length <= self.radius {
             let theta = self.point(&self.theta, newton, &self.linear.norms);
             return Trial { theta, length: newton_length, predicted: newton.predicted, full: true };
         }
         let (a, b) = self.scaled_by(&self.scale, &self.linear.q);
-        let limits = self.limits(&self.scale, &self.theta);
-        let (step, damping) = of_length(&a, &b, self.radius, self.damping, &limits);
-        self.damping = damping;
+        let step = self.of_radius(&a, &b, &limits);
         let theta = self.point(&self.theta, &step, &self.scale);
         Trial { theta, length: norm(&step.z), predicted: step.predicted, full: false }
+    }
+
+    /// The step as long as the radius; keeps its damping.
+    fn of_radius(&mut self, a: &Triangle, b: &[f64], limits: &StepBox) -> Step {
+        let (step, damping) = of_length(a, b, self.radius, self.damping, limits);
+        self.damping = damping;
+        step
     }
 
     /// One iteration: shorter and shorter trials until one is accepted.
@@ -352,6 +372,7 @@ impl<'a, P: Residuals> Search<'a, P> {
             };
             let actual = decrease(&self.residuals, &point.residuals);
             let ratio = actual / trial.predicted;
+            self.second.judge(&self.linear, &difference(&trial.theta, &self.theta), actual);
             if ratio >= ENOUGH {
                 let slope = self.slope(&trial.theta);
                 if self.stay(point) {
@@ -452,6 +473,11 @@ impl<'a, P: Residuals> Search<'a, P> {
         (self.theta, self.residuals, self.linear, self.scale) = before;
         false
     }
+}
+
+/// Elementwise differences.
+fn difference(a: &[f64], b: &[f64]) -> Vec<f64> {
+    a.iter().zip(b).map(|(a, b)| a - b).collect()
 }
 
 /// Elementwise products.

@@ -54,7 +54,7 @@ const PROBLEMS: [Problem; 8] = [
                 x[0] - 29.0 + ((y + 1.0) * y - 14.0) * y
             }
         },
-        work: [14, 40, 25],
+        work: [10, 31, 18],
     },
     Problem {
         number: 4,
@@ -67,7 +67,7 @@ const PROBLEMS: [Problem; 8] = [
             1 => x[1] - 2e-6,
             _ => x[0] * x[1] - 2.0,
         },
-        work: [21, 21, 24],
+        work: [22, 22, 25],
     },
     Problem {
         number: 5,
@@ -79,7 +79,7 @@ const PROBLEMS: [Problem; 8] = [
             let power = (0..i).fold(x[1], |power, _| power * x[1]);
             -(x[0] * (-power + 1.0)) + BEALE[i]
         },
-        work: [8, 9, 12],
+        work: [9, 10, 13],
     },
     Problem {
         number: 8,
@@ -121,7 +121,7 @@ const PROBLEMS: [Problem; 8] = [
             4 => (x[1] + x[3] - 2.0) * 10.0_f64.sqrt(),
             _ => (x[1] - x[3]) * 0.1_f64.sqrt(),
         },
-        work: [59, 67, 70],
+        work: [57, 64, 68],
     },
     Problem {
         number: 15,
@@ -133,7 +133,7 @@ const PROBLEMS: [Problem; 8] = [
             let [y, u] = ENZYME[i];
             -(x[0] * (x[1] * u + u * u) / (x[2] * u + x[3] + u * u)) + y
         },
-        work: [43, 44, 49],
+        work: [15, 17, 22],
     },
     // Watson, with six parameters.
     Problem {
@@ -157,7 +157,7 @@ const PROBLEMS: [Problem; 8] = [
             }
             slope - sum * sum - 1.0
         },
-        work: [13, 13, 20],
+        work: [8, 8, 15],
     },
 ];
 

@@ -1,6 +1,7 @@
 //! Problems with known solutions, for the tests of searches and profiles.
 
 mod classical;
+mod large_residuals;
 mod profiles;
 mod searches;
 
