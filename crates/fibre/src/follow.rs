@@ -24,18 +24,13 @@ impl Problem {
     #[must_use]
     pub fn follow_each(asked: &[(&Self, f64)], approach: Approach) -> Vec<Result<Response, FibreError>> {
         let schemes: Vec<_> = asked.iter().map(|(problem, _)| problem.scheme(approach)).collect();
-        let numbers = asked.iter().zip(&schemes).map(|((problem, contraction), scheme)| {
+        let with_scheme = asked.iter().zip(&schemes).map(|((problem, contraction), scheme)| {
             scheme.as_ref().ok().and_then(|scheme| problem.asks_closed_form(*scheme, *contraction))
         });
-        let numbers: Vec<_> = numbers.collect();
-        let mut solved =
-            closed_form::solve_many(&numbers.iter().flatten().copied().collect::<Vec<_>>()).into_iter();
-        let each =
-            asked.iter().zip(schemes).zip(numbers).map(|(((problem, contraction), scheme), numbers)| {
-                // One that was not solved explains itself on its own.
-                let solved = numbers.and_then(|_| solved.next()?.ok()).map(Solution::ClosedForm);
-                problem.followed(scheme?, *contraction, approach, solved).map(|found| found.response)
-            });
+        let solved = solved_together(with_scheme);
+        let each = asked.iter().zip(schemes).zip(solved).map(|(((problem, contraction), scheme), solved)| {
+            problem.followed(scheme?, *contraction, approach, solved).map(|found| found.response)
+        });
         each.collect()
     }
 
@@ -107,6 +102,15 @@ impl Problem {
         let walked = walked.ok().filter(|found| self.pulls(&found.response) || !must_pull);
         walked.or_else(|| self.on_a_path(scheme, Goal::Contraction(contraction), must_pull, &seen))
     }
+}
+
+/// Closed forms for what [`Problem::asks_closed_form`] tells of many questions. `None` where there is nothing to ask, and where none
+/// was found: such a question explains itself on its own.
+pub(crate) fn solved_together(asked: impl Iterator<Item = Option<[f64; 3]>>) -> Vec<Option<Solution>> {
+    let asked: Vec<_> = asked.collect();
+    let mut found = closed_form::solve_many(&asked.iter().flatten().copied().collect::<Vec<_>>()).into_iter();
+    let one = |asked: Option<[f64; 3]>| asked.and_then(|_| found.next()?.ok()).map(Solution::ClosedForm);
+    asked.into_iter().map(one).collect()
 }
 
 /// The softness from which on a braid that isn't found at once isn't walked to: random ones whose gas acts at the fibres

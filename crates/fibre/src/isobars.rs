@@ -5,10 +5,12 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::FibreError;
-use crate::outcome::{Approach, Scheme, has_length};
+use crate::follow::solved_together;
+use crate::outcome::{Approach, Scheme, Solution, has_length};
 use crate::parts::Parts;
 use crate::problem::Problem;
 use crate::shape::Response;
+use crate::shooting::USUAL;
 use crate::solve::{ADIABATIC, Found, RangeEnd, closed_stiffness};
 use crate::unknowns::Unknowns;
 
@@ -71,14 +73,16 @@ impl Problem {
         let scheme = self.scheme(approach)?;
         let solve = |chunk: &[f64]| {
             let mut last = [None, None];
-            let solved = chunk.iter().map(|&contraction| {
+            let closed = solved_together(chunk.iter().map(|at| self.asks_closed_form(scheme, *at)));
+            let solved = chunk.iter().zip(closed).map(|(&contraction, closed)| {
                 if let Some(end) = end.filter(|end| contraction > end.contraction()) {
                     return (contraction, Err(end.beyond(contraction)));
                 }
                 if let Some(limit) = longest.filter(|longest| contraction <= *longest) {
                     return (contraction, Err(FibreError::TooLong { contraction, limit }));
                 }
-                let found = self.at(scheme, contraction, extrapolate(last, contraction));
+                let from = closed.or_else(|| extrapolate(last, contraction).map(Solution::Shooting));
+                let found = self.at_with(scheme, contraction, (from, USUAL));
                 if let Ok(found) = &found {
                     last = [last[1], found.unknowns().map(|unknowns| (contraction, unknowns))];
                 }

@@ -64,15 +64,34 @@ fn blocks<K: PartialEq + std::hash::Hash + Eq + Copy>(
     least_others: f64,
     key: impl Fn(usize) -> K,
 ) -> Vec<(usize, usize)> {
-    let mut first: HashMap<[K; BLOCK], usize> = HashMap::with_capacity(rows);
+    // Readings by number. A block with one that is never read again repeats nothing.
+    let mut numbers: HashMap<K, usize> = HashMap::with_capacity(rows);
+    let mut times: Vec<usize> = Vec::with_capacity(rows);
+    let numbered: Vec<usize> = (0..rows)
+        .map(|row| {
+            let number = *numbers.entry(key(row)).or_insert(times.len());
+            match times.get_mut(number) {
+                Some(times) => *times += 1,
+                None => times.push(1),
+            }
+            number
+        })
+        .collect();
+    let mut first: HashMap<&[usize], usize> = HashMap::new();
     let mut found: BTreeMap<usize, Vec<(usize, usize)>> = BTreeMap::new();
-    for row in 0..(rows + 1).saturating_sub(BLOCK) {
-        let block: [K; BLOCK] = std::array::from_fn(|k| key(row + k));
-        // Few levels repeat by chance, and what stands still repeats itself.
-        if block.iter().collect::<HashSet<_>>().len() < DIFFERENT {
+    let mut repeated = 0;
+    for (last, number) in numbered.iter().enumerate() {
+        repeated = if times[*number] > 1 { repeated + 1 } else { 0 };
+        if repeated < BLOCK {
             continue;
         }
-        match first.get(&block) {
+        let row = last + 1 - BLOCK;
+        let block = &numbered[row..=last];
+        // Few levels repeat by chance, and what stands still repeats itself.
+        if (0..BLOCK).filter(|i| !block[..*i].contains(&block[*i])).count() < DIFFERENT {
+            continue;
+        }
+        match first.get(block) {
             Some(earlier) if earlier + BLOCK <= row => {
                 found.entry(row - earlier).or_default().push((*earlier, row));
             }
