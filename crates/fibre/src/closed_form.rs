@@ -247,7 +247,7 @@ pub fn solve(contraction: f64, slenderness: f64, kappa: f64) -> Result<ClosedFor
     answer
 }
 
-/// Solves the closed form for many triples (contraction, slenderness, kappa), four at a time. The answers are those of
+/// Solves the closed form for many triples (contraction, slenderness > 0, kappa >= 0), four at a time. The answers are those of
 /// [`solve`] to the last bit, whatever stands beside a triple.
 #[must_use]
 pub fn solve_many(asked: &[[f64; 3]]) -> Vec<Result<ClosedForm, FibreError>> {
@@ -331,7 +331,8 @@ fn search<L: Lanes>(start: [L; 2], of: [L; 3], last_step: f64, first: f64) -> Se
         let step = times(inverse, equations.residual);
         let gap_step = if stretched { step[1] * -2.0 * (gap - contraction) / gap } else { step[1] };
         let size = step[0].abs().larger(gap_step.abs()).larger(step[1].abs());
-        let is_found = size.is_below(L::from(last_step));
+        // The larger of two may hide a first one that isn't a number.
+        let is_found = size.is_below(L::from(last_step)) & step[0].abs().is_below(L::from(f64::INFINITY));
         let longest = if iteration == 1 { first } else { f64::MAX };
         // What isn't a number is lost.
         let goes_on = !is_found & size.is_below(L::from(longest));

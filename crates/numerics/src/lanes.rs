@@ -7,7 +7,8 @@ use wide::f64x4;
 /// One number (`f64`), or four ([`f64x4`]) on which a processor works at once.
 ///
 /// A formula that is written once against this trait gives the same bits for a number on its own and in any company: all
-/// operations are those of IEEE 754 or are computed by the same polynomials, and none is fused.
+/// operations are those of IEEE 754 or are computed by the same polynomials. Where a program is compiled for fused
+/// multiplication and addition, roots and inverse tangents use it, in the last digits.
 pub trait Lanes:
     Copy
     + Debug

@@ -74,12 +74,14 @@ fn natural_strain<L: Lanes>(slenderness: L, kappa: L) -> L {
 /// stretched length gives the strain.
 #[inline]
 pub(super) fn contracted_start<L: Lanes>([contraction, slenderness, kappa]: [L; 3]) -> [L; 2] {
+    let is_elastic = L::from(0.0).is_below(kappa);
+    // Of inextensible fibres any contraction has a shape; of elastic ones the strain is more than a tiny contraction.
+    let least = L::select(is_elastic, L::from(1e-12), L::from(1e-250));
     let inner = |strain: L| {
         let stretch = strain + 1.0;
         let inner = (contraction + strain) / stretch;
-        [inner.larger(L::from(1e-12)).smaller(L::from(MOST_CONTRACTION)), slenderness * stretch]
+        [inner.larger(least).smaller(L::from(MOST_CONTRACTION)), slenderness * stretch]
     };
-    let is_elastic = L::from(0.0).is_below(kappa);
     if L::all(!is_elastic) {
         let [contraction, slenderness] = inner(kappa);
         return inextensible_start(contraction, slenderness);

@@ -4,13 +4,11 @@ use bulge_effects::Effect;
 use bulge_measurements::Data;
 use bulge_model::Model;
 use bulge_muscles::Muscle;
-use bulge_muscles::units::significant;
 use rayon::prelude::*;
 use std::sync::Arc;
 
 use crate::comparison::analysis::{Analysis, Climbed, First};
 use crate::comparison::compare::{compare_after, compare_with_rows};
-use crate::comparison::document::Rung;
 use crate::comparison::options::Options;
 use crate::comparison::requirements::{DIAGNOSED, check_memory};
 use crate::comparison::rows::lines;
@@ -43,10 +41,6 @@ const MOST_LEFT_OUT: usize = 8;
 
 /// Most times that an accepted effect is replaced by a better one or removed.
 const MOST_CHANGES: usize = 3;
-
-/// Part of the error that effects leave which lower nothing, where slow noise prevails. Five of five such names that
-/// a stranger's tests with shifted sweeps and wandering zeros brought were wrong.
-const LOWERS: f64 = 0.995;
 
 /// Options of a diagnosis, besides muscle and data.
 #[derive(Debug, Clone)]
@@ -337,11 +331,7 @@ fn concluded(
         compare_after(first, analysis, &effects, found.last().confirmed.numbers())
     };
     progress.at(0.85, "the ladder");
-    let mut answer = compared(&found)?;
-    found.event = found.event.take().or_else(|| lowers_nothing(&found, &answer.0.ladder));
-    if answer.0.ladder.len() > 1 + found.known && found.event.is_some() {
-        answer = compared(&found)?;
-    }
+    let answer = compared(&found)?;
     progress.at(0.92, "what form errors allow");
     let above_n = answer.0.ladder.last().map_or(f64::INFINITY, |rung| rung.rmse_n);
     let groups = &averaged_data.averaged.groups;
@@ -361,26 +351,6 @@ fn changed_after_the_first_sweep(found: &Findings<'_>, analysis: &Analysis<'_>) 
             "without its first sweep (line {}) nothing is missing, and that one is shifted as a whole: the load cell was zeroed after it, or the muscle changed \
              (run-in, creep, warming up). Measure its set point once more at the end",
             left.lines
-        )
-    })
-}
-
-/// What is said if slow noise prevails, and the named effects lower no error: offsets of whole sweeps are then
-/// taken for the trace of an effect.
-fn lowers_nothing(found: &Findings<'_>, ladder: &[Rung]) -> Option<String> {
-    let (before, after) = (ladder.get(found.known)?.rmse_n, ladder.last()?.rmse_n);
-    let (verdict, _, names) = found.verdict();
-    let [slow, white] = [found.slow_n(), found.context.law.white_n];
-    (verdict == Verdict::Missing && slow > white && after > LOWERS * before).then(|| {
-        format!(
-            "what would fit best, {}, hardly lowers the error ({} N before, {} N with it): readings that lie near each other share a noise of {} N beside the {} N of a single one \
-             (whole sweeps that are shifted, a zero that wanders), and that looks like an effect somewhere. Look at the zero of the load cell between sweeps, and \
-             measure each set point twice, in another order",
-            names.join(" and "),
-            significant(before, 4),
-            significant(after, 4),
-            significant(slow, 2),
-            significant(white, 2)
         )
     })
 }

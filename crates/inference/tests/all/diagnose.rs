@@ -200,8 +200,7 @@ fn a_zero_that_wanders_is_no_physics() {
         columns.force_n.iter_mut().zip(drift).for_each(|(force, drift)| *force += drift);
         let found = diagnose(&Data::from_columns(columns).unwrap(), &muscle, &diagnosing(&[])).unwrap();
         assert_eq!((found.verdict, names(&found)), (Verdict::CannotTell, vec![]), "{seed}: {}", found.says);
-        let says = ["hardly lowers the error", "a zero of the force that changed"];
-        assert!(says.iter().any(|says| found.says.contains(says)), "{seed}: {}", found.says);
+        assert!(found.says.contains("a zero of the force that changed"), "{seed}: {}", found.says);
     }
 }
 

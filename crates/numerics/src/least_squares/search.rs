@@ -137,8 +137,10 @@ pub(super) struct Trial {
     /// Length of the step in the scale of the trust region.
     pub(super) length: f64,
     pub(super) predicted: f64,
-    /// Whether it is the linearised minimum.
+    /// Whether it is the minimum of the model that it comes from.
     pub(super) full: bool,
+    /// Whether that model has second derivatives of the residuals.
+    by_second: bool,
 }
 
 /// A point at which the residuals are known.
@@ -328,16 +330,17 @@ impl<'a, P: Residuals> Search<'a, P> {
             let full = norm(&step.z) <= self.radius;
             let step = if full { step } else { self.of_radius(&a, &b, &limits) };
             let theta = self.point(&self.theta, &step, &self.scale);
-            return Trial { theta, length: norm(&step.z), predicted: step.predicted, full };
+            return Trial { theta, length: norm(&step.z), predicted: step.predicted, full, by_second: true };
         }
         if newton_length <= self.radius {
             let theta = self.point(&self.theta, newton, &self.linear.norms);
-            return Trial { theta, length: newton_length, predicted: newton.predicted, full: true };
+            let predicted = newton.predicted;
+            return Trial { theta, length: newton_length, predicted, full: true, by_second: false };
         }
         let (a, b) = self.scaled_by(&self.scale, &self.linear.q);
         let step = self.of_radius(&a, &b, &limits);
         let theta = self.point(&self.theta, &step, &self.scale);
-        Trial { theta, length: norm(&step.z), predicted: step.predicted, full: false }
+        Trial { theta, length: norm(&step.z), predicted: step.predicted, full: false, by_second: false }
     }
 
     /// The step as long as the radius; keeps its damping.
@@ -360,6 +363,10 @@ impl<'a, P: Residuals> Search<'a, P> {
             }
             let trial = self.trial(newton, newton_length);
             if trial.theta == self.theta {
+                if trial.by_second {
+                    self.second.forget();
+                    continue;
+                }
                 return Progress::Stuck;
             }
             // If the model can't be evaluated there, a shorter step may still succeed.
@@ -380,6 +387,11 @@ impl<'a, P: Residuals> Search<'a, P> {
                     return Progress::Moved;
                 }
                 self.radius = 0.25 * trial.length;
+                continue;
+            }
+            // Second derivatives that led astray say nothing about the step without them.
+            if trial.by_second {
+                self.second.forget();
                 continue;
             }
             let residuals = point.residuals.clone();
@@ -414,7 +426,10 @@ impl<'a, P: Residuals> Search<'a, P> {
             let part = slope / (2.0 * (slope + actual));
             let part = if part.is_finite() { part.clamp(0.1, 0.5) } else { 0.5 };
             self.radius = part * length;
-        } else if full || ratio >= 0.75 {
+        } else if full {
+            // A short step to a minimum says nothing against a longer one.
+            self.radius = self.radius.max(2.0 * length);
+        } else if ratio >= 0.75 {
             self.radius = 2.0 * length;
         }
     }

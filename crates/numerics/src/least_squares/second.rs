@@ -29,6 +29,11 @@ impl Second {
         Self { n, s: vec![0.0; n * n], is_better: false }
     }
 
+    /// Starts anew.
+    pub(super) fn forget(&mut self) {
+        *self = Self::none(self.n);
+    }
+
     fn times(&self, p: &[f64]) -> Vec<f64> {
         self.s.chunks_exact(self.n.max(1)).map(|row| dot(row, p)).collect()
     }
@@ -52,14 +57,19 @@ impl Second {
         if !(along > 0.0 && of_seen.is_finite()) {
             return;
         }
-        let keep = if of_known == 0.0 { 0.0 } else { (of_seen / of_known).abs().min(1.0) };
+        let keep = (of_seen / of_known).abs();
+        // Not a number where both are 0.
+        let keep = if keep.is_nan() { 1.0 } else { keep.min(1.0) };
         let rest: Vec<f64> = seen.iter().zip(&known).map(|(seen, known)| seen - keep * known).collect();
-        let twice = dot(p, &rest) / (along * along);
+        let twice = dot(p, &rest) / along / along;
         for i in 0..self.n {
             for j in 0..self.n {
                 let s = &mut self.s[i * self.n + j];
-                *s = keep * *s + (rest[i] * y[j] + y[i] * rest[j]) / along - twice * y[i] * y[j];
+                *s = keep * *s + (rest[i] * (y[j] / along) + (y[i] / along) * rest[j]) - twice * y[i] * y[j];
             }
+        }
+        if self.s.iter().any(|s| !s.is_finite()) {
+            self.forget();
         }
     }
 

@@ -54,7 +54,7 @@ const PROBLEMS: [Problem; 8] = [
                 x[0] - 29.0 + ((y + 1.0) * y - 14.0) * y
             }
         },
-        work: [10, 31, 18],
+        work: [7, 12, 13],
     },
     Problem {
         number: 4,
@@ -121,7 +121,7 @@ const PROBLEMS: [Problem; 8] = [
             4 => (x[1] + x[3] - 2.0) * 10.0_f64.sqrt(),
             _ => (x[1] - x[3]) * 0.1_f64.sqrt(),
         },
-        work: [57, 64, 68],
+        work: [41, 56, 54],
     },
     Problem {
         number: 15,
@@ -133,7 +133,7 @@ const PROBLEMS: [Problem; 8] = [
             let [y, u] = ENZYME[i];
             -(x[0] * (x[1] * u + u * u) / (x[2] * u + x[3] + u * u)) + y
         },
-        work: [15, 17, 22],
+        work: [23, 28, 30],
     },
     // Watson, with six parameters.
     Problem {

@@ -17,3 +17,30 @@ fn brown_and_dennis() {
     assert_close(&found.theta, &[-11.594_439_9, 13.203_630_0, -0.403_439_49, 0.236_778_77], 1e-6);
     assert!(found.iterations <= 30, "{} iterations", found.iterations);
 }
+
+const MEYER: [f64; 16] = [
+    34_780.0, 28_610.0, 23_650.0, 19_630.0, 16_370.0, 13_720.0, 11_540.0, 9744.0, 8261.0, 7030.0, 6005.0,
+    5147.0, 4427.0, 3820.0, 3307.0, 2872.0,
+];
+
+/// Problem 10, of Meyer: numbers of very different size, and second derivatives that lead astray far from the minimum. The trust
+/// region must outlive them.
+#[test]
+fn second_derivatives_that_lead_astray_are_dropped() {
+    let problem = model(16, 3, |p, i| {
+        let t = 50.0 + 5.0 * i as f64 + p[2];
+        let e = (p[1] / t).exp();
+        let by_quotient = p[0] * e;
+        Some((by_quotient - MEYER[i], vec![e, by_quotient / t, -by_quotient * p[1] / (t * t)]))
+    });
+    for start in [[0.02, 4000.0, 250.0], [0.02, 17_200.0, 244.0], [-0.16, 17_200.0, 244.0]] {
+        let found = free(&problem, &start);
+        assert!(found.certificate.converged, "{start:?}: {:?}", found.certificate);
+        assert!((found.cost - 87.945_855_170_9).abs() < 1e-6, "{start:?}: {}", found.cost);
+        assert!(
+            found.evaluations + found.linearisations < 420,
+            "{}",
+            found.evaluations + found.linearisations
+        );
+    }
+}
