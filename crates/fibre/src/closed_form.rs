@@ -238,7 +238,7 @@ fn times<L: Lanes>([[a, b], [c, d]]: [[L; 2]; 2], [x, y]: [L; 2]) -> [L; 2] {
 pub fn solve(contraction: f64, slenderness: f64, kappa: f64) -> Result<ClosedForm, FibreError> {
     let mut answer = Err(FibreError::NotConverged { contraction, residual: f64::INFINITY, iterations: 0 });
     for start in starts(contraction, slenderness, kappa).into_iter().flatten() {
-        answer = search(start.into(), [contraction, slenderness, kappa], LAST_STEP, f64::INFINITY).found(0);
+        answer = search(start, [contraction, slenderness, kappa], LAST_STEP, f64::INFINITY).found(0);
         // A strain above 1 belongs to the other root, a muscle that has ballooned.
         if answer.as_ref().is_ok_and(|found| found.strain < 1.0) {
             break;
@@ -296,8 +296,7 @@ impl<L: Lanes> Searched<L> {
     fn found(&self, lane: usize) -> Result<ClosedForm, FibreError> {
         let [contraction, residual, iterations] =
             [self.of[0], self.residual, self.iterations].map(|of| of.lane(lane));
-        // At most `MAX_ITERATIONS`.
-        let iterations = iterations as u32;
+        let iterations = (1..MAX_ITERATIONS).find(|n| f64::from(*n) >= iterations).unwrap_or(MAX_ITERATIONS);
         if L::is_set(self.is_found, lane) {
             Ok(self.outputs.lane(lane, iterations))
         } else {

@@ -355,10 +355,6 @@ impl Lattice {
                 nodes.is_some_and(|nodes| nodes.iter().all(|solved| *solved))
             })
         };
-        // Most rows lie well inside.
-        if is_solved(&around) {
-            return Some(around);
-        }
         let pressures = if self.scale_free { &INWARDS[..1] } else { &INWARDS };
         pressures
             .iter()

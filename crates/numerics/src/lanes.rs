@@ -182,7 +182,7 @@ mod tests {
             let four = f64x4::each(|lane| x * (1.0 + lane as f64));
             for lane in 0..4 {
                 let y = x * (1.0 + lane as f64);
-                assert_eq!(four.lane(lane), y);
+                assert_eq!(four.lane(lane).to_bits(), y.to_bits());
                 for (many, one, exact, within) in [
                     (four.sqrt(), Lanes::sqrt(y), y.sqrt(), 0.0),
                     (Lanes::atan(four), Lanes::atan(y), y.atan(), 3e-16),

@@ -29,6 +29,12 @@ pub fn add(sum: &mut [f64], factor: f64, vector: &[f64]) {
     }
 }
 
+/// `a - b`.
+#[must_use]
+pub fn difference(a: &[f64], b: &[f64]) -> Vec<f64> {
+    a.iter().zip(b).map(|(a, b)| a - b).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

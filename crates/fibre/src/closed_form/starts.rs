@@ -22,6 +22,7 @@ const MOST_CONTRACTION: f64 = 0.6;
 
 /// tan(phi_R)/t0: the coefficient of v^j u^i is in row j at place i. Largest error 1.7e-6.
 #[rustfmt::skip]
+#[expect(clippy::unreadable_literal, reason = "as reference/starts.py writes them")]
 const TANGENT: [&[f64]; 8] = [
     &[1.0000016975, -0.0000325969, 0.0006027538, -0.0053426745, 0.0229080878, -0.0431254448, 0.0442186127, -0.0192961382],
     &[-0.0880741663, 0.0053364085, -0.0784342255, 0.1036647623, -0.1959692333, 0.1606677720, -0.0634308029],
@@ -34,6 +35,7 @@ const TANGENT: [&[f64]; 8] = [
 ];
 /// F/atan(t0), likewise. Largest error 8.7e-7.
 #[rustfmt::skip]
+#[expect(clippy::unreadable_literal, reason = "as reference/starts.py writes them")]
 const LENGTH: [&[f64]; 8] = [
     &[0.9999991635, 0.0000050769, -0.0001802316, 0.0009674876, -0.0021437731, 0.0098293779, -0.0162194753, 0.0077415393],
     &[0.0377097908, -0.0014463644, 0.1045313558, -0.0236288488, 0.0326814553, -0.0376499545, 0.0128044240],

@@ -12,7 +12,7 @@ use super::second::Second;
 use super::step::{Step, StepBox, damped, of_length};
 use super::triangle::Triangle;
 use super::{LeastSquaresError, Options};
-use crate::vector::norm;
+use crate::vector::{difference, norm};
 
 /// A step is accepted if it achieves this fraction of the predicted decrease (Moré's value).
 const ENOUGH: f64 = 1e-4;
@@ -488,11 +488,6 @@ impl<'a, P: Residuals> Search<'a, P> {
         (self.theta, self.residuals, self.linear, self.scale) = before;
         false
     }
-}
-
-/// Elementwise differences.
-fn difference(a: &[f64], b: &[f64]) -> Vec<f64> {
-    a.iter().zip(b).map(|(a, b)| a - b).collect()
 }
 
 /// Elementwise products.
