@@ -83,3 +83,22 @@ fn elastic_fibres_take_few_evaluations() {
     }
     assert!(most <= 8, "{most}");
 }
+
+/// Where numbers underflow there is an error, and no answer that isn't a number.
+#[test]
+fn tiny_contractions_have_a_shape_or_an_error() {
+    for exponent in (1..308).step_by(3) {
+        let contraction = 10.0_f64.powi(-exponent);
+        match solve(contraction, 20.0, 0.0) {
+            // F_t ~ 1/sqrt(eps): a shallow arc has t^4 = 3/2 eps L^2 and f = pi/(2 t^2).
+            Ok(found) if exponent > 12 => {
+                let shallow = std::f64::consts::FRAC_PI_2 / (1.5 * contraction * 400.0).sqrt();
+                assert!((found.force.value / shallow - 1.0).abs() < 1e-5, "1e-{exponent}: {found:?}");
+                // Below, dF/dm loses its digits, and Newton's method its speed.
+                assert!(found.evaluations <= 2 || exponent > 24, "1e-{exponent}: {}", found.evaluations);
+            }
+            Ok(found) => assert!(found.force.value.is_finite(), "{found:?}"),
+            Err(_) => assert!(exponent > 240, "1e-{exponent}"),
+        }
+    }
+}

@@ -371,6 +371,10 @@ impl<'a, P: Residuals> Search<'a, P> {
             }
             // If the model can't be evaluated there, a shorter step may still succeed.
             let Some(point) = self.at(trial.theta.clone()) else {
+                if trial.by_second {
+                    self.second.forget();
+                    continue;
+                }
                 if trial.predicted < self.options.least_decrease {
                     return Progress::Kink;
                 }
