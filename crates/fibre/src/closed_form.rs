@@ -154,10 +154,11 @@ impl ClosedForm {
 struct Integrals<L> {
     f: L,
     d: L,
-    /// sin, cos of phi_R and their product over Delta = sqrt(1 - m sin^2 phi), which has its inverse too.
+    /// Squares of sin and cos of phi_R, and their product.
     s2: L,
     c2: L,
     sc: L,
+    /// Delta = sqrt(1 - m sin^2 phi), and its inverse.
     delta: L,
     per_delta: L,
     /// dF/dm = (F - D - s c/Delta)/(2 (1 - m)).
