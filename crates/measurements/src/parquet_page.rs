@@ -39,6 +39,7 @@ impl CheckedPages {
         match page {
             Page::DictionaryPage { buf, num_values, .. } => {
                 self.has_dictionary = true;
+                self.checked_numbers(buf, *num_values)?;
                 self.checked_texts(buf, *num_values)
             }
             Page::DataPage { buf, num_values, encoding, def_level_encoding, .. } => {
@@ -88,6 +89,19 @@ impl CheckedPages {
             // Rarely written and not checked: delta-encoded byte arrays and similar encodings.
             other => Err(ParquetError::General(format!("the encoding {other} is not read"))),
         }
+    }
+
+    /// Whether there are `count` numbers. The decoder makes room for as many as a dictionary states.
+    fn checked_numbers(&self, bytes: &[u8], count: u32) -> Result<()> {
+        let width = match self.column.physical_type() {
+            Type::INT32 | Type::FLOAT => 4,
+            Type::INT64 | Type::DOUBLE => 8,
+            _ => return Ok(()),
+        };
+        if bytes.len() / width < count as usize {
+            return damaged("a dictionary is cut off");
+        }
+        Ok(())
     }
 
     /// Whether `count` texts follow each other, each after its length in four bytes.
