@@ -180,6 +180,53 @@ impl PageReader for CheckedPages {
 mod tests {
     use super::*;
 
+    /// One page.
+    struct One(Option<Page>);
+
+    impl Iterator for One {
+        type Item = Result<Page>;
+
+        fn next(&mut self) -> Option<Self::Item> {
+            self.0.take().map(Ok)
+        }
+    }
+
+    impl PageReader for One {
+        fn get_next_page(&mut self) -> Result<Option<Page>> {
+            Ok(self.0.take())
+        }
+
+        fn peek_next_page(&mut self) -> Result<Option<PageMetadata>> {
+            Ok(None)
+        }
+
+        fn skip_next_page(&mut self) -> Result<()> {
+            Ok(())
+        }
+    }
+
+    /// The decoder would make room for a billion numbers.
+    #[test]
+    fn a_dictionary_has_the_numbers_that_it_states() {
+        for (physical, width) in [(Type::DOUBLE, 8), (Type::INT64, 8), (Type::FLOAT, 4), (Type::INT32, 4)] {
+            for (count, is_there) in [(6, true), (7, false), (1_000_000_000, false)] {
+                let column =
+                    parquet::schema::types::Type::primitive_type_builder("x", physical).build().unwrap();
+                let path = parquet::schema::types::ColumnPath::from("x");
+                let column = parquet::schema::types::ColumnDescriptor::new(column.into(), 0, 0, path);
+                let buf = vec![0; 6 * width].into();
+                let page = Page::DictionaryPage {
+                    buf,
+                    num_values: count,
+                    encoding: Encoding::PLAIN,
+                    is_sorted: false,
+                };
+                let mut pages = CheckedPages::new(Box::new(One(Some(page))), column.into());
+                assert_eq!(pages.get_next_page().is_ok(), is_there, "{count} of {physical}");
+            }
+        }
+    }
+
     #[test]
     fn lengths_of_runs_end() {
         // 300 times the number 5, then 16 numbers in two groups, of three bits each.
