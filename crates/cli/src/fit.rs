@@ -13,6 +13,7 @@ use std::path::{Path, PathBuf};
 use crate::arguments::{self, Json, pretty};
 use crate::compare::parameters;
 use crate::data::{DataArguments, told};
+use crate::diagnose::paragraph::paragraph;
 use crate::failure::Failure;
 use crate::files::{self, Named};
 use crate::restricted::{LossArgument, RestrictedArguments};
@@ -95,8 +96,10 @@ impl FitCommand {
         let mut text = format!("{} fitted to {}\n\n", muscle.name(), learnt.fitting.data.files.join(", "));
         text.push_str(&told(data.reading()));
         text.push_str(&lines(&learnt));
-        for (name, why) in &learnt.extension.left_out {
-            let _ = writeln!(text, "  {name} is not in the file: {why}");
+        for of_a_kind in learnt.extension.left_out.chunk_by(|one, other| one.1 == other.1) {
+            let names: Vec<&str> = of_a_kind.iter().map(|(name, _)| name.as_str()).collect();
+            let what = format!("not in the file, because {}: {}", of_a_kind[0].1, names.join(", "));
+            paragraph(&mut text, "  ", &what);
         }
         text.push_str(&as_written(&data, &learnt, &options));
         text.push_str(&drawn.map_or_else(String::new, |(_, says)| says));

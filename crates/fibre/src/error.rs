@@ -132,7 +132,7 @@ pub enum FibreError {
     },
     /// The fibres are so soft that the muscle balloons: no equilibrium with a fibre strain below 1 was found.
     #[error(
-        "no equilibrium found: the fibres are too soft and the muscle balloons (p sin(2 pi/n) l0^2/(4 EA) of straight fibres, 2 pi p r0^2/(n EA sin^2(alpha0)) of a braid, is {group:.3}; from {limit} on there may be none); raise fibre.stiffness or lower the pressure"
+        "no equilibrium found: the fibres are too soft and the muscle balloons (p sin(2 pi/n) l0^2/(4 EA) of straight fibres, 2 pi p r0^2/(n EA sin^2(alpha0)) of a braid, is {group:.3}; slender muscles balloon from {limit} on, others may before); raise fibre.stiffness or lower the pressure"
     )]
     TooSoft {
         /// The elastic group of one fibre times the squared slenderness.

@@ -102,7 +102,7 @@ pub enum UnitError {
         wanted: &'static Wanted,
     },
     /// A symbol that is no unit.
-    #[error("`{text}` has the unknown unit `{unit}`: {}{}", question(*suggestion), wanted.cure())]
+    #[error("`{text}` has the unknown unit `{unit}`: {}", cure(*suggestion, wanted))]
     UnknownUnit {
         /// What was written.
         text: String,
@@ -241,6 +241,11 @@ fn with_article(noun: &str) -> String {
     format!("{article} {noun}")
 }
 
-fn question(suggestion: Option<&str>) -> String {
-    suggestion.map_or_else(String::new, |symbol| format!("did you mean `{symbol}`? Otherwise "))
+fn cure(suggestion: Option<&str>, wanted: &Wanted) -> String {
+    match suggestion {
+        // The list of all units there are would hide it.
+        Some(symbol) if wanted.is_any() => format!("did you mean `{symbol}`?"),
+        Some(symbol) => format!("did you mean `{symbol}`? Otherwise {}", wanted.cure()),
+        None => wanted.cure(),
+    }
 }

@@ -435,7 +435,7 @@ mod tests {
         place(&unknown, "  nearest: bladder-elasticity (it lowers the error and leaves the structure)");
         place(&unknown, "it has a structure beyond chance");
         let cannot_tell = lines(&diagnosed::cannot_tell(comparison.clone()));
-        place(&cannot_tell, "  cannot tell: these data are too few or too noisy for a verdict");
+        place(&cannot_tell, "  cannot tell: these data allow no verdict");
         for lines in [&adequate, &unknown, &cannot_tell] {
             let claims = |part: &str| lines.iter().any(|line| line.contains(part));
             assert!(

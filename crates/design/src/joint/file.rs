@@ -257,7 +257,7 @@ fn range<Q: Quantity>(settings: &Settings<'_>, key: &'static str) -> Result<[f64
     if low < high {
         return Ok([low, high]);
     }
-    let what = format!("a range must rise: this one goes from {low} to {high} in SI");
+    let what = format!("a range must rise, and `{text}` doesn't");
     Err(settings.unreadable(key, value, what))
 }
 

@@ -216,6 +216,8 @@ pub struct Missing {
     pub detectability: f64,
     /// Log evidence over the model without it, natural logarithm.
     pub log_evidence: f64,
+    /// Whether larger errors of the other effects' formulas would explain as much.
+    pub may_be_form_error: bool,
     /// Rivals, with their distance.
     pub rivals: Vec<RivalResult>,
 }
@@ -228,11 +230,11 @@ impl Missing {
         self.level.says(&self.effect, self.mechanism.name(), &self.class)
     }
 
-    /// Whether even its mechanism is uncertain, or the evidence over a model without it is small. Beside
-    /// other effects it is then not claimed.
+    /// Whether even its mechanism is uncertain, or the evidence over a model without it is small, or larger errors
+    /// of other formulas would explain as much. Beside other effects it is then not claimed.
     #[must_use]
     pub fn is_doubtful(&self) -> bool {
-        self.confidence_mechanism < RULE.decides || self.log_evidence < RULE.seen
+        self.confidence_mechanism < RULE.decides || self.log_evidence < RULE.seen || self.may_be_form_error
     }
 }
 

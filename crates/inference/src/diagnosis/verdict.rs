@@ -8,7 +8,7 @@ use crate::comparison::document::{Bin, Comparison};
 use crate::comparison::rows::full_scale;
 use crate::diagnosis::bending::may_bend;
 use crate::diagnosis::claim::Levels;
-use crate::diagnosis::classes::Class;
+use crate::diagnosis::classes::{Class, is_superfluous};
 use crate::diagnosis::confidence::Confidence;
 use crate::diagnosis::decision_rule::RULE;
 use crate::diagnosis::document::Verdict;
@@ -296,6 +296,8 @@ impl Findings<'_> {
         let but = self.unsmooth().map_or_else(String::new, |left| format!(", but for {left}"));
         let and = if doubtful.is_empty() {
             String::new()
+        } else if doubtful.iter().all(|name| self.may_be_form_error(name)) {
+            format!(", and an error of its formula or something else, nearest {}", self.labels(&doubtful))
         } else {
             format!(", and something that these data don't tell, nearest {}", self.labels(&doubtful))
         };
@@ -306,11 +308,18 @@ impl Findings<'_> {
 
     /// The verdict if none of the effects that explain the data deserves a claim.
     fn nameless(&self, doubtful: &[String]) -> Said {
-        let says = format!(
-            "something may be missing, and these data don't say what: the likeliest is {}, and such names are wrong more often than right; measure more rows, or more of \
-             what moves",
-            self.labels(doubtful)
-        );
+        let likeliest = self.labels(doubtful);
+        let says = if self.all_may_be_form_error() {
+            format!(
+                "something is missing, or the formulas of the effects that the model has are less exact than usual (the likeliest: {likeliest}), and such an error would \
+                 explain as much"
+            )
+        } else {
+            format!(
+                "something may be missing, and these data don't say what: the likeliest is {likeliest}, and such names are wrong more often than right; measure more rows, or \
+                 more of what moves"
+            )
+        };
         Said::nothing(Verdict::CannotTell, says)
     }
 
@@ -320,12 +329,24 @@ impl Findings<'_> {
         found.map_or(1.0, |(class, sure)| Levels::of(class, sure, self.classes.len()).mechanism)
     }
 
+    /// Whether larger errors of the other formulas would explain as much as a named effect.
+    fn may_be_form_error(&self, name: &str) -> bool {
+        self.class(name).is_some_and(|(class, _)| class.may_be_form_error())
+    }
+
+    /// Whether larger errors of the base's own formulas would explain as much as all effects that were found.
+    fn all_may_be_form_error(&self) -> bool {
+        let beside_loose = self.context.beside_loose(self.last(), &self.search.stages[0]);
+        beside_loose.is_some_and(is_superfluous)
+    }
+
     fn class(&self, name: &str) -> Option<&(Class, Confidence)> {
         self.classes.iter().find(|(class, _)| class.effect.card().name == name)
     }
 
     /// Separates claims from doubtful names: further effects with little evidence over a model without them,
-    /// or with a mechanism that is more likely wrong than right. The effect with the largest evidence and the
+    /// or which larger errors of the other formulas would replace, or with a mechanism that is more likely wrong
+    /// than right. The effect with the largest evidence and the
     /// surest one needn't be more likely right than wrong, but no name is claimed that is wrong in most cases, or
     /// that is likelier nothing and within the noise.
     fn apart(&self, names: Vec<String>) -> (Vec<String>, Vec<String>) {
@@ -333,16 +354,18 @@ impl Findings<'_> {
             |name: &String| self.class(name).map_or(f64::INFINITY, |(class, _)| class.log_evidence);
         let most = names.iter().map(evidence).fold(f64::NEG_INFINITY, f64::max);
         let surest = names.iter().map(|name| self.mechanism(name)).fold(0.0, f64::max);
-        let is_seen = |name: &String| evidence(name) >= RULE.seen.min(most);
+        let is_seen = |name: &String| evidence(name) >= RULE.seen.min(most) && !self.may_be_form_error(name);
         let is_decided = |name: &String| self.mechanism(name) >= RULE.decides.min(surest);
         let is_there = |name: &String| {
             let is_seen = |class: &Class| class.log_evidence >= 0.0 || class.detectability >= RULE.separation;
             self.class(name).is_none_or(|(class, _)| is_seen(class))
         };
-        let is_named = |name: &String| self.mechanism(name) >= RULE.nameless && is_there(name);
-        names
-            .into_iter()
-            .partition(|name| is_named(name) && (evidence(name) >= most || is_seen(name) && is_decided(name)))
+        let all_may_be_form_error = self.all_may_be_form_error();
+        let is_named =
+            |name: &String| self.mechanism(name) >= RULE.nameless && is_there(name) && !all_may_be_form_error;
+        let is_claimed =
+            |name: &String| is_named(name) && (evidence(name) >= most || is_seen(name) && is_decided(name));
+        names.iter().cloned().partition(is_claimed)
     }
 
     /// Whether the formulas of the effects explain nearly everything as they are, so that the rest is their

@@ -282,6 +282,7 @@ impl Findings<'_> {
             plausible: self.plausible(class.effect.card().name),
             detectability: class.detectability,
             log_evidence: class.log_evidence,
+            may_be_form_error: class.may_be_form_error(),
             rivals,
         }
     }

@@ -627,6 +627,42 @@ fn a_bent_effect_has_two_rungs_and_the_second_is_what_its_form_leaves() {
     assert!(exact.ladder.iter().all(|step| !step.bent));
 }
 
+/// A pleated muscle with data sheets, and loops at four pressures with noise of 3 N: a force `more` of the contraction is
+/// added to the equilibrium.
+fn pleated_with(more: impl Fn(f64) -> f64) -> (Muscle, Data) {
+    let file = "name = \"x\"\nkind = \"pleated\"\nlength = \"110 mm +- 0.2 mm\"\nradius = \"16 mm +- 0.05 mm\"\nfibres = 40\n\
+                [fibre]\nstiffness = \"12 kN\"\n[instruments]\n\
+                force = { noise = \"3 N\", zero = \"1 N\", gain = \"0.1 %\" }\n\
+                pressure = { noise = \"200 Pa\", zero = \"100 Pa\", gain = \"0.1 %\" }\n\
+                length = { noise = \"0.05 mm\", zero = \"0.05 mm\", gain = \"0.05 %\" }\n";
+    let muscle = from_toml(file, "x.toml").unwrap();
+    let block = Block {
+        path: Path::Sine,
+        rows: 60,
+        ..Block::loops(vec![0.5e5, 1e5, 1.5e5, 2e5], [0.03, 0.34], 30.0)
+    };
+    let (model, theta) = truth(&muscle, &[]);
+    let found = simulate(&model, &theta, &noisy(block, 3.0), 5).unwrap();
+    let force = found.data.force().iter().zip(found.exact.moments());
+    let force = force.map(|(force, moment)| force + more(moment.contraction)).collect();
+    let columns = Columns { force_n: force, ..found.data.columns().as_ref().clone() };
+    (muscle, Data::from_columns(columns).unwrap())
+}
+
+#[test]
+fn a_spring_that_softens_more_than_its_formula_may_brings_no_second_name() {
+    // The formula of `membrane-axial` is a line.
+    let (muscle, data) = pleated_with(|e: f64| -120.0 * (1.0 - (-e / 0.09).exp()));
+    let found = diagnose(&data, &muscle, &diagnosing(&[])).unwrap();
+    assert_eq!(names(&found), ["membrane-axial"], "{}", found.says);
+    let nearest: Vec<_> = found.nearest.iter().map(|one| (&*one.effect, one.may_be_form_error)).collect();
+    assert_eq!(nearest, [("pressure-droop", true)]);
+    // Nor once it is accepted.
+    let further = diagnose(&data, &muscle, &diagnosing(&["membrane-axial"])).unwrap();
+    assert_eq!(names(&further), [""; 0], "{}", further.says);
+    assert!(further.says.contains("(the likeliest: pressure-droop"), "{}", further.says);
+}
+
 #[test]
 fn an_effect_is_claimed_beside_what_nothing_explains_if_its_formula_explains_nearly_all() {
     // A spring, and a wave along the contraction that no effect has.

@@ -19,7 +19,7 @@ const CANNOT_TELL: &str = "these data can't tell: ";
 /// Wording of verdicts for which the diagnosis has no sentence of its own.
 const ADEQUATE: &str = "the model explains these data within noise and tolerance";
 const UNKNOWN: &str = "these data hold a structure that no effect of the catalogue explains";
-const TOO_FEW: &str = "these data are too few or too noisy for a verdict";
+const NO_VERDICT: &str = "these data allow no verdict";
 const ASKED: &str = "these readings are asked about before anything is looked for in them";
 const EVENT: &str = "something happened during the test, and no effect is named across it";
 
@@ -67,7 +67,9 @@ fn verdict(diagnosis: &Diagnosis) -> Vec<String> {
         Verdict::Missing => {
             let mut lines: Vec<String> = diagnosis.missing.iter().map(claim).collect();
             lines.extend(diagnosis.nearest.iter().map(|missing| {
-                let why = if missing.is_doubtful() {
+                let why = if missing.may_be_form_error {
+                    "a larger error of the formula that is named would explain as much"
+                } else if missing.is_doubtful() {
                     "something is there, and these data don't tell what"
                 } else if missing.plausible {
                     "not needed: what is left without it is within the tolerance"
@@ -101,7 +103,7 @@ fn verdict(diagnosis: &Diagnosis) -> Vec<String> {
             let why = match &diagnosis.remaining.event {
                 Some(_) => EVENT,
                 None if is_asked => ASKED,
-                None => TOO_FEW,
+                None => NO_VERDICT,
             };
             ("cannot tell", why, nearest("a ranking, not a claim"))
         }

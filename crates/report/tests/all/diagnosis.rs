@@ -138,7 +138,7 @@ fn verdicts_stand_in_the_first_lines() {
                 "nearest: bladder-elasticity (it lowers the error and leaves the structure)",
             ],
         ),
-        (cannot_tell(comparison()), &["cannot tell: these data are too few or too noisy for a verdict"]),
+        (cannot_tell(comparison()), &["cannot tell: these data allow no verdict"]),
         (asked, &["cannot tell: these readings are asked about before anything is looked for in them"]),
         (knocked, &["cannot tell: something happened during the test, and no effect is named across it"]),
     ] {
@@ -177,6 +177,10 @@ fn a_claim_goes_as_far_as_the_data_decide() {
     (doubtful.confidence_mechanism, doubtful.plausible) = (0.2, true);
     diagnosis.nearest = vec![doubtful];
     let says = "nearest: coulomb-friction (something is there, and these data don't tell what)";
+    assert_eq!(headlines(&diagnosis)[1], says);
+    diagnosis.nearest[0].may_be_form_error = true;
+    let says =
+        "nearest: coulomb-friction (a larger error of the formula that is named would explain as much)";
     assert_eq!(headlines(&diagnosis)[1], says);
 }
 

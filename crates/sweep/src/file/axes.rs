@@ -184,10 +184,8 @@ fn between(
             "`limit` is the contraction at which the force vanishes: it ends no other axis".to_owned(),
         ));
     }
-    if let Some(to) = to.filter(|to| from >= *to || !(to - from).is_finite()) {
-        return Err(refused(format!(
-            "a range must rise, and have a finite length: this one goes from {from} to {to}"
-        )));
+    if to.is_some_and(|to| from >= to || !(to - from).is_finite()) {
+        return Err(refused(format!("a range must rise and have a finite length, and `{text}` doesn't")));
     }
     // Even with both ends > 0 their ratio may overflow.
     if spacing == Spacing::Log && !(from > 0.0 && to.is_none_or(|to| (to / from).is_finite())) {

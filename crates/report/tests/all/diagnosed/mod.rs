@@ -143,6 +143,7 @@ fn bladder() -> Missing {
         plausible: true,
         detectability: 9.3,
         log_evidence: 40.0,
+        may_be_form_error: false,
         // Not sorted.
         rivals: vec![rival("hoop-elasticity", 25.0, 7.5), rival("wall-thickness", 0.8, 1.2)],
     }
@@ -184,6 +185,7 @@ fn friction() -> Missing {
         plausible: false,
         detectability: 40.0,
         log_evidence: 800.0,
+        may_be_form_error: false,
         rivals: vec![rival("force-lag", 300.0, 32.0)],
     }
 }
