@@ -96,10 +96,13 @@ impl FitCommand {
         let mut text = format!("{} fitted to {}\n\n", muscle.name(), learnt.fitting.data.files.join(", "));
         text.push_str(&told(data.reading()));
         text.push_str(&lines(&learnt));
-        for of_a_kind in learnt.extension.left_out.chunk_by(|one, other| one.1 == other.1) {
-            let names: Vec<&str> = of_a_kind.iter().map(|(name, _)| name.as_str()).collect();
-            let what = format!("not in the file, because {}: {}", of_a_kind[0].1, names.join(", "));
-            paragraph(&mut text, "  ", &what);
+        let mut reasons: Vec<&str> = learnt.extension.left_out.iter().map(|(_, why)| *why).collect();
+        reasons.sort_unstable();
+        reasons.dedup();
+        for why in reasons {
+            let left_out = learnt.extension.left_out.iter().filter(|(_, other)| *other == why);
+            let names: Vec<&str> = left_out.map(|(name, _)| name.as_str()).collect();
+            paragraph(&mut text, "  ", &format!("not in the file: {} ({why})", names.join(", ")));
         }
         text.push_str(&as_written(&data, &learnt, &options));
         text.push_str(&drawn.map_or_else(String::new, |(_, says)| says));

@@ -103,7 +103,7 @@ mod tests {
         let class = Class {
             effect: Arc::clone(catalogue.find("coulomb-friction").unwrap()),
             log_evidence: 20.0,
-            beside_loose: None,
+            may_be_form_error: false,
             detectability: 6.0,
             scatter: 1.0,
             is_further: false,

@@ -47,9 +47,8 @@ pub(crate) struct Class {
     pub(crate) effect: Arc<dyn Effect>,
     /// Log evidence relative to the model without it.
     pub(crate) log_evidence: f64,
-    /// The same where the formulas of all effects may be as wrong as they are drawn, if those of the other effects
-    /// may be wrong at all.
-    pub(crate) beside_loose: Option<f64>,
+    /// Whether larger errors of the other effects' formulas would explain as much.
+    pub(crate) may_be_form_error: bool,
     /// Its length in sigmas beside the other effects.
     pub(crate) detectability: f64,
     /// Variance of the whole model's misfit relative to chance.
@@ -59,17 +58,7 @@ pub(crate) struct Class {
     pub(crate) rivals: Vec<Rival>,
 }
 
-/// Whether effects with this log evidence beside loose formulas may be errors of those.
-pub(crate) fn is_superfluous(beside_loose: f64) -> bool {
-    beside_loose < RULE.decided
-}
-
 impl Class {
-    /// Whether larger errors of the other effects' formulas would explain as much.
-    pub(crate) fn may_be_form_error(&self) -> bool {
-        self.beside_loose.is_some_and(is_superfluous)
-    }
-
     /// Keeps the fits of all rivals beside the other effects of a stage.
     pub(crate) fn remember(&self, context: &Context<'_>, stage: &Stage) {
         let Some(fits) = context.fits else { return };
@@ -92,7 +81,7 @@ impl Class {
         Self {
             effect,
             log_evidence: 0.5 * gain,
-            beside_loose: None,
+            may_be_form_error: false,
             detectability: gain.sqrt(),
             scatter,
             is_further,
@@ -189,28 +178,32 @@ impl Context<'_> {
         let seen = without.linear.space.coordinates(&self.white(&signal, without.linear.priors));
         let detectability = norm(&seen) / scatter.sqrt();
         let is_further = stage.added.len() > 1;
-        let beside_loose = self.beside_loose(stage, without);
-        let class = Class { effect, log_evidence, beside_loose, detectability, scatter, is_further, rivals };
+        let may_be_form_error = self.may_be_form_error(stage, without);
+        let class =
+            Class { effect, log_evidence, may_be_form_error, detectability, scatter, is_further, rivals };
         Some((class, made))
     }
 
-    /// Log evidence for the effects that a model has more than another one, including their log priors, where the
-    /// formulas of all effects may be as wrong as they are drawn. None if the other model has no formula that may be
-    /// wrong.
-    pub(crate) fn beside_loose(&self, stage: &Stage, without: &Stage) -> Option<f64> {
-        let value = |model: &Confirmed| {
+    /// Whether larger errors of the formulas of a model would explain as much as the effects that another one has
+    /// beside them: where all formulas may be as wrong as they are drawn, these effects lose evidence, and are not
+    /// worth their prior cost any more.
+    pub(crate) fn may_be_form_error(&self, stage: &Stage, without: &Stage) -> bool {
+        if !may_bend(&without.confirmed.prepared) {
+            return false;
+        }
+        let loose = |model: &Confirmed| {
             let loose = Context { to_draw: true, kin: Some(&model.form.kin), ..*self };
             let form = loose.form_error(&model.prepared, &model.theta).ok()?;
             Some(model.log_evidence - model.form.log_evidence + form.log_evidence)
         };
-        if !may_bend(&without.confirmed.prepared) {
-            return None;
-        }
         let known = names(without.added.iter());
         let more = stage.added.iter().filter(|effect| !known.iter().any(|name| name == effect.card().name));
         let places = more.filter_map(|effect| without.linear.place(effect.card().name));
         let log_priors: f64 = places.map(|place| effect_log_prior(&without.linear, place)).sum();
-        Some(value(&stage.confirmed)? - value(&without.confirmed)? + log_priors)
+        let usual = stage.confirmed.log_evidence - without.confirmed.log_evidence + log_priors;
+        let left = loose(&stage.confirmed).zip(loose(&without.confirmed));
+        left.map(|(with, without)| with - without + log_priors)
+            .is_some_and(|left| left <= RULE.worth[1] && usual - left > RULE.rival)
     }
 
     /// The stage without an effect that isn't worth its prior cost any more beside later ones (backward

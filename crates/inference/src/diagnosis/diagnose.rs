@@ -320,6 +320,10 @@ fn concluded(
         known: options.base.effects.len(),
         tolerance_n: options.tolerance_n,
         next,
+        all_may_be_form_error: match &search.stages[..] {
+            [base, .., last] => context.may_be_form_error(last, base),
+            _ => false,
+        },
         event: None,
     };
     found.event = anew

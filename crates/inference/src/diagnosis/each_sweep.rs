@@ -64,17 +64,19 @@ pub(crate) fn each_sweep(
     let (record, base) = (found.context.record, found.search.stages.first()?);
     let sweeps = record.sweeps().iter().filter(|sweep| sweep.len() >= ROWS).cloned().collect();
     let named = Named::of(found, sweeps).filter(|_| !found.claims().is_empty())?;
-    let mut tried = named.others(found, linear)?;
+    // The formulas of the base may be as wrong as those of what was named.
+    let (linear, bending) = with_numbers(linear, base.linear.bent.clone(), 1.0, named.sd)?;
+    let mut tried = named.others(found, &linear)?;
     tried.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
     let best = tried.first()?;
     let all = vec![true; record.len()];
-    let beside = named.with(linear, best)?;
+    let beside = named.with(&linear, best)?;
     let left = beside.left(&all)?;
     let rmse = (dot(&left, &left) / left.len() as f64).sqrt();
     let is_noise = rmse < NOISE * found.context.row_n.hypot(found.context.law.correlated_n);
     let share = beside.share(&minus(&found.last().linear.force, &base.linear.force), &all)?;
     let is_seen = share.expected > DENIED && share.shown >= SHOWN;
-    if is_seen || !is_noise || best.evidence - named.evidence < -CHOSEN {
+    if is_seen || !is_noise || best.evidence - bending - named.evidence < -CHOSEN {
         return None;
     }
     let alike = tried.iter().filter(|other| best.evidence - other.evidence < ALIKE).take(MOST);
@@ -102,22 +104,26 @@ impl Named {
     fn of(found: &Findings<'_>, sweeps: Vec<Range<usize>>) -> Option<Self> {
         let record = found.context.record;
         let last = &found.last().confirmed;
-        let linear = Linearised::of(&last.prepared, &last.theta, record).ok()?;
+        let exact = Linearised::of(&last.prepared, &last.theta, record).ok()?;
         let sd = |linear: &Linearised| Some(variance(&linear.left(&vec![true; record.len()])?).sqrt());
+        // Its formulas may be a little wrong.
+        let bent = &found.last().linear.bent;
+        let linear = exact.with(bent.clone(), Some([0.0, 1.0]));
         let without = sd(&linear)?;
         let stated = last.prepared.model.muscle().instruments().force.map(|force| force.zero());
         let usual = stated.filter(|zero| *zero > 0.0).unwrap_or(found.context.law.offset_n);
         let named = Self { sweeps, usual: usual.max(LEAST * without), sd: without, evidence: 0.0 };
         let sd = sd(&named.with_zeros(&linear)?.0)?;
         let named = Self { sd, ..named };
+        let (linear, bending) = with_numbers(&exact, bent.clone(), 1.0, sd)?;
         let (linear, charge) = named.with_zeros(&linear)?;
-        let evidence = evidence(&linear, charge, sd)?;
+        let evidence = evidence(&linear, charge + bending, sd)?;
         (named.sweeps.len() >= FEWEST).then_some(Self { evidence, ..named })
     }
 
     fn with_zeros(&self, linear: &Linearised) -> Option<(Linearised, f64)> {
         let ones = vec![1.0; linear.rows()];
-        with_each(linear, &self.sweeps, &ones, self.usual, self.sd)
+        with_numbers(linear, columns(&self.sweeps, &ones), self.usual, self.sd)
     }
 
     /// Each wrong reading beside the base, with a number in each sweep; and once, from a sweep on, which is chosen.
@@ -132,7 +138,7 @@ impl Named {
         for (wrong, slope, width) in wrong(found, self.usual)? {
             let is_zero = wrong == Wrong::Zero(Channel::Force);
             let (beside, usually) = if is_zero { (base, 0.0) } else { (&with_zeros, usually) };
-            let (linear, charge) = with_each(beside, &self.sweeps, &slope, width, sd)?;
+            let (linear, charge) = with_numbers(beside, columns(&self.sweeps, &slope), width, sd)?;
             let numbers = linear.numbers(sd)?.split_off(beside.len());
             let numbers = self.sweeps.iter().cloned().zip(numbers).collect();
             let own = evidence(&linear, usually + charge, sd)? - chosen;
@@ -174,16 +180,13 @@ fn evidence(linear: &Linearised, charge: f64, sd: f64) -> Option<f64> {
     Some(-linear.cost(sd)? / (sd * sd) - charge)
 }
 
-/// A model with one more number in each sweep, with a prior of a width around 0; and what they cost of twice the log
-/// evidence.
-fn with_each(
+/// A model with further numbers, each with a prior of a width around 0; and what they cost of twice the log evidence.
+fn with_numbers(
     linear: &Linearised,
-    sweeps: &[Range<usize>],
-    slope: &[f64],
+    columns: Vec<Vec<f64>>,
     width: f64,
     sd: f64,
 ) -> Option<(Linearised, f64)> {
-    let columns = columns(sweeps, slope);
     let charge = linear.one_more(&columns, width, sd)?.iter().map(|one| one.charge).sum();
     Some((linear.with(columns, Some([0.0, width])), charge))
 }

@@ -191,7 +191,8 @@ impl Columns {
                     for level in levels_of(&bending.effect).filter(|level| chosen > 0.0 && *level > chosen) {
                         let before = std::mem::replace(&mut sds[effect][kind], level);
                         match self.evidence(&sds).filter(|found| found.0 > likeliest - AS_LIKELY) {
-                            Some(found) => best = found,
+                            // The evidence stays that of the likeliest.
+                            Some((_, fall, parts)) => best = (likeliest, fall, parts),
                             None => sds[effect][kind] = before,
                         }
                     }

@@ -8,13 +8,13 @@ use crate::comparison::document::{Bin, Comparison};
 use crate::comparison::rows::full_scale;
 use crate::diagnosis::bending::may_bend;
 use crate::diagnosis::claim::Levels;
-use crate::diagnosis::classes::{Class, is_superfluous};
+use crate::diagnosis::classes::Class;
 use crate::diagnosis::confidence::Confidence;
 use crate::diagnosis::decision_rule::RULE;
 use crate::diagnosis::document::Verdict;
 use crate::diagnosis::jump::Jump;
 use crate::diagnosis::misfit::misfit;
-use crate::diagnosis::search::MOST_EFFECTS;
+use crate::diagnosis::search::{MOST_EFFECTS, names};
 use crate::diagnosis::stage::{Stage, Unsmooth};
 use crate::diagnosis::write::Findings;
 use crate::noise::law::NoiseSource;
@@ -108,7 +108,11 @@ impl Findings<'_> {
 
     /// The systematic misfit of the last model with its interval.
     fn size(&self) -> String {
-        let (misfit_n, interval) = misfit(&self.last().linear, self.context.seed);
+        self.size_of(self.last())
+    }
+
+    fn size_of(&self, stage: &Stage) -> String {
+        let (misfit_n, interval) = misfit(&stage.linear, self.context.seed);
         if interval[0] <= 0.0 {
             return format!("at most {} N", significant(interval[1], 2));
         }
@@ -164,7 +168,7 @@ impl Findings<'_> {
         }
         let bent = self.is_bent();
         if last.adequate && !bent && self.search.something_else.is_none() {
-            return self.explained_by(all);
+            return self.explained_by(&all);
         }
         let most =
             last.excess() < RULE.left * self.search.stages[0].excess() || last.something_else() < RULE.weak;
@@ -189,16 +193,24 @@ impl Findings<'_> {
             // If something remains, effects with impossible parameters stand in for something else and are
             // not claimed.
             let claimed = if last.adequate { sound.into_iter().chain(odd).collect() } else { sound };
-            let (claimed, doubtful) = self.apart(claimed);
+            let (claimed, doubtful) = self.apart(&claimed);
             if claimed.is_empty() {
                 return self.nameless(&doubtful);
             }
             let says = format!(
-                "missing: {}; {beside} most of the misfit, and {size} of structure remain {further}",
-                self.labels(&claimed)
+                "missing: {}{}; {beside} most of the misfit, and {size} of structure remain {further}",
+                self.labels(&claimed),
+                self.and(&doubtful)
             );
             return Said { verdict: Verdict::Missing, says, claimed };
         }
+        self.unexplained(bent)
+    }
+
+    /// The verdict if no effect explains the data, or too much of what explains them is left to form errors.
+    fn unexplained(&self, bent: bool) -> Said {
+        let last = self.last();
+        let size = self.size();
         let structure = if let Some(left) = self.unsmooth() {
             format!("{left} that")
         } else if misfit(&last.linear, self.context.seed).1[1] <= 0.0 {
@@ -211,6 +223,14 @@ impl Findings<'_> {
         } else {
             "no effect of the catalogue explains"
         };
+        if last.adequate && bent && last.adequacy.unsmooth.is_none() {
+            // Nothing is left but what the formulas would have to be wrong by.
+            let (size, with) = (self.size_of(&self.search.stages[0]), self.labels(&names(last.added.iter())));
+            let says = format!(
+                "these data hold a structure of {size} that {explains} by its formula: with {with} too much is left to errors of the formulas"
+            );
+            return Said::nothing(Verdict::Unknown, says);
+        }
         let says = format!("these data hold {structure} {explains}");
         Said::nothing(Verdict::Unknown, says)
     }
@@ -286,21 +306,27 @@ impl Findings<'_> {
         self.context.law.correlated_n.hypot(self.context.law.offset_n)
     }
 
+    /// What is said of effects beside those that are claimed.
+    fn and(&self, doubtful: &[String]) -> String {
+        let labels = self.labels(doubtful);
+        if doubtful.is_empty() {
+            String::new()
+        } else if doubtful.iter().all(|name| self.may_be_form_error(name)) {
+            format!(", and larger errors of formulas than usual, or {labels}")
+        } else {
+            format!(", and something that these data don't tell, nearest {labels}")
+        }
+    }
+
     /// The verdict if these effects explain the data.
-    fn explained_by(&self, all: Vec<String>) -> Said {
+    fn explained_by(&self, all: &[String]) -> Said {
         let (claimed, doubtful) = self.apart(all);
         if claimed.is_empty() {
             return self.nameless(&doubtful);
         }
         let with = if claimed.len() + doubtful.len() == 1 { "it" } else { "them" };
         let but = self.unsmooth().map_or_else(String::new, |left| format!(", but for {left}"));
-        let and = if doubtful.is_empty() {
-            String::new()
-        } else if doubtful.iter().all(|name| self.may_be_form_error(name)) {
-            format!(", and an error of its formula or something else, nearest {}", self.labels(&doubtful))
-        } else {
-            format!(", and something that these data don't tell, nearest {}", self.labels(&doubtful))
-        };
+        let and = self.and(&doubtful);
         let says =
             format!("missing: {}{and}; with {with} the model explains the data{but}", self.labels(&claimed));
         Said { verdict: Verdict::Missing, says, claimed }
@@ -309,10 +335,10 @@ impl Findings<'_> {
     /// The verdict if none of the effects that explain the data deserves a claim.
     fn nameless(&self, doubtful: &[String]) -> Said {
         let likeliest = self.labels(doubtful);
-        let says = if self.all_may_be_form_error() {
+        let says = if self.all_may_be_form_error {
             format!(
-                "something is missing, or the formulas of the effects that the model has are less exact than usual (the likeliest: {likeliest}), and such an error would \
-                 explain as much"
+                "something is missing, most likely {likeliest}, or the formulas of the effects that the model has are less exact than usual: larger errors of them \
+                 would explain as much. Measure more of what moves, or what those effects do on their own"
             )
         } else {
             format!(
@@ -331,13 +357,7 @@ impl Findings<'_> {
 
     /// Whether larger errors of the other formulas would explain as much as a named effect.
     fn may_be_form_error(&self, name: &str) -> bool {
-        self.class(name).is_some_and(|(class, _)| class.may_be_form_error())
-    }
-
-    /// Whether larger errors of the base's own formulas would explain as much as all effects that were found.
-    fn all_may_be_form_error(&self) -> bool {
-        let beside_loose = self.context.beside_loose(self.last(), &self.search.stages[0]);
-        beside_loose.is_some_and(is_superfluous)
+        self.class(name).is_some_and(|(class, _)| class.may_be_form_error)
     }
 
     fn class(&self, name: &str) -> Option<&(Class, Confidence)> {
@@ -349,7 +369,7 @@ impl Findings<'_> {
     /// than right. The effect with the largest evidence and the
     /// surest one needn't be more likely right than wrong, but no name is claimed that is wrong in most cases, or
     /// that is likelier nothing and within the noise.
-    fn apart(&self, names: Vec<String>) -> (Vec<String>, Vec<String>) {
+    fn apart(&self, names: &[String]) -> (Vec<String>, Vec<String>) {
         let evidence =
             |name: &String| self.class(name).map_or(f64::INFINITY, |(class, _)| class.log_evidence);
         let most = names.iter().map(evidence).fold(f64::NEG_INFINITY, f64::max);
@@ -360,11 +380,14 @@ impl Findings<'_> {
             let is_seen = |class: &Class| class.log_evidence >= 0.0 || class.detectability >= RULE.separation;
             self.class(name).is_none_or(|(class, _)| is_seen(class))
         };
-        let all_may_be_form_error = self.all_may_be_form_error();
-        let is_named =
-            |name: &String| self.mechanism(name) >= RULE.nameless && is_there(name) && !all_may_be_form_error;
+        let is_named = |name: &String| {
+            self.mechanism(name) >= RULE.nameless && is_there(name) && !self.all_may_be_form_error
+        };
+        // Of effects that may all be errors of the others' formulas, the likeliest is named.
+        let all_may_be = names.iter().all(|name| self.may_be_form_error(name));
+        let is_most = |name: &String| evidence(name) >= most && (all_may_be || !self.may_be_form_error(name));
         let is_claimed =
-            |name: &String| is_named(name) && (evidence(name) >= most || is_seen(name) && is_decided(name));
+            |name: &String| is_named(name) && (is_most(name) || is_seen(name) && is_decided(name));
         names.iter().cloned().partition(is_claimed)
     }
 

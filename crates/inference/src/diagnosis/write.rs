@@ -53,6 +53,8 @@ pub(crate) struct Findings<'a> {
     /// RMS misfit that doesn't matter \[N\].
     pub(crate) tolerance_n: Option<f64>,
     pub(crate) next: Option<NextExperiment>,
+    /// Whether larger errors of the base's own formulas would explain as much as all effects that were found.
+    pub(crate) all_may_be_form_error: bool,
     /// What is said of an event that no effect may be named across.
     pub(crate) event: Option<String>,
 }
@@ -282,7 +284,7 @@ impl Findings<'_> {
             plausible: self.plausible(class.effect.card().name),
             detectability: class.detectability,
             log_evidence: class.log_evidence,
-            may_be_form_error: class.may_be_form_error(),
+            may_be_form_error: class.may_be_form_error,
             rivals,
         }
     }

@@ -68,7 +68,7 @@ fn verdict(diagnosis: &Diagnosis) -> Vec<String> {
             let mut lines: Vec<String> = diagnosis.missing.iter().map(claim).collect();
             lines.extend(diagnosis.nearest.iter().map(|missing| {
                 let why = if missing.may_be_form_error {
-                    "a larger error of the formula that is named would explain as much"
+                    "larger errors of the other formulas would explain as much"
                 } else if missing.is_doubtful() {
                     "something is there, and these data don't tell what"
                 } else if missing.plausible {
@@ -97,7 +97,14 @@ fn verdict(diagnosis: &Diagnosis) -> Vec<String> {
             return lines;
         }
         Verdict::Adequate => ("adequate", ADEQUATE, nearest("not needed")),
-        Verdict::Unknown => ("unknown", UNKNOWN, nearest("it lowers the error and leaves the structure")),
+        Verdict::Unknown => {
+            let why = if diagnosis.remaining.structured {
+                "it lowers the error and leaves the structure"
+            } else {
+                "too much is left to errors of the formulas"
+            };
+            ("unknown", UNKNOWN, nearest(why))
+        }
         Verdict::CannotTell => {
             let is_asked = diagnosis.data.findings.iter().any(|finding| finding.decided);
             let why = match &diagnosis.remaining.event {

@@ -104,8 +104,10 @@ pub fn remains_says(diagnosis: &Diagnosis) -> String {
         .unwrap_or_else(|| [remaining.misfit_n, ends[0], ends[1]].map(three));
     let low_n = ends[0];
     let structure = match remaining.structured {
+        _ if diagnosis.verdict == Verdict::CannotTell && low_n > 0.0 => "what it comes from cannot be told",
         _ if diagnosis.verdict == Verdict::CannotTell => "whether it has a structure cannot be told",
-        true => "it has a structure beyond chance",
+        true if remaining.misfit_n > 0.0 => "it has a structure beyond chance",
+        true => "a structure beyond chance whose size these data don't tell",
         // The interval excludes zero, but the misfit is within the tolerance, or a rare chance.
         false if diagnosis.verdict == Verdict::Adequate && low_n > 0.0 => "no structure that counts",
         false => "no structure beyond chance",

@@ -179,8 +179,7 @@ fn a_claim_goes_as_far_as_the_data_decide() {
     let says = "nearest: coulomb-friction (something is there, and these data don't tell what)";
     assert_eq!(headlines(&diagnosis)[1], says);
     diagnosis.nearest[0].may_be_form_error = true;
-    let says =
-        "nearest: coulomb-friction (a larger error of the formula that is named would explain as much)";
+    let says = "nearest: coulomb-friction (larger errors of the other formulas would explain as much)";
     assert_eq!(headlines(&diagnosis)[1], says);
 }
 

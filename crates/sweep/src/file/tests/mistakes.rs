@@ -89,7 +89,7 @@ fn mistakes_in_axes() {
         (line("list =", "range = \"1..2 bar\"\nlist ="), ["s.toml:7:8", "has both", "delete one"]),
         (line("1 %..20 %", "1 %"), ["s.toml:3:9", "no range", "range = \"1 %..20 %\""]),
         (line("\"1 %..20 %\"", "20"), ["s.toml:3:9", "a range in quotes", "range = \"2..100\""]),
-        (line("1 %..20 %", "20 %..1 %"), ["s.toml:3:9", "must rise", "from 0.2 to 0.01"]),
+        (line("1 %..20 %", "20 %..1 %"), ["s.toml:3:9", "must rise", "`20 %..1 %` doesn't"]),
         (line("1 %..20 %", "1 %..1 %"), ["s.toml:3:9", "must rise", "range = \"1 %..20 %\""]),
         (
             line("1 %..20 %", "1 %..100 %"),
