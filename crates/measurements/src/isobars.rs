@@ -70,7 +70,7 @@ pub(crate) fn find(readings: Readings<'_>, rows: &Range<usize>) -> Vec<Isobar> {
     let band = (BAND * largest).max(spread * noise(pressure));
     let judge = Judge {
         readings,
-        way: range(&readings.motion[rows.clone()]),
+        way: travel(&readings.motion[rows.clone()]),
         force_noise: spread * noise(&readings.force[rows.clone()]),
         motion_noise: spread * noise(&readings.motion[rows.clone()]),
         pressure_noise: (0.5 * spread * noise(pressure)).max(SETTLED_TO * largest),
@@ -174,6 +174,13 @@ fn range(values: &[f64]) -> f64 {
     high - low
 }
 
+/// The range of a motion. One reading among others, such as one of the wrong sign, doesn't count.
+fn travel(motion: &[f64]) -> f64 {
+    let middle = |three: &[f64]| three[0].min(three[1]).max(three[0].max(three[1]).min(three[2]));
+    let of_three: Vec<f64> = motion.windows(3).map(middle).collect();
+    range(if of_three.is_empty() { motion } else { &of_three })
+}
+
 /// Distinguishes a driven muscle from one that follows its pressure.
 struct Judge<'a> {
     readings: Readings<'a>,
@@ -187,7 +194,7 @@ struct Judge<'a> {
 impl Judge<'_> {
     fn is_driven(&self, rows: &Range<usize>) -> bool {
         let force = &self.readings.force[rows.clone()];
-        let way = range(&self.readings.motion[rows.clone()]);
+        let way = travel(&self.readings.motion[rows.clone()]);
         let (low, high) = bounds(force);
         let largest = high.abs().max(low.abs());
         way > (TRAVEL * self.way).max(self.motion_noise)

@@ -200,7 +200,7 @@ impl Findings<'_> {
             let says = format!(
                 "missing: {}{}; {beside} most of the misfit, and {size} of structure remain {further}",
                 self.labels(&claimed),
-                self.and(&doubtful)
+                self.beside(&doubtful)
             );
             return Said { verdict: Verdict::Missing, says, claimed };
         }
@@ -307,7 +307,7 @@ impl Findings<'_> {
     }
 
     /// What is said of effects beside those that are claimed.
-    fn and(&self, doubtful: &[String]) -> String {
+    fn beside(&self, doubtful: &[String]) -> String {
         let labels = self.labels(doubtful);
         if doubtful.is_empty() {
             String::new()
@@ -326,7 +326,7 @@ impl Findings<'_> {
         }
         let with = if claimed.len() + doubtful.len() == 1 { "it" } else { "them" };
         let but = self.unsmooth().map_or_else(String::new, |left| format!(", but for {left}"));
-        let and = self.and(&doubtful);
+        let and = self.beside(&doubtful);
         let says =
             format!("missing: {}{and}; with {with} the model explains the data{but}", self.labels(&claimed));
         Said { verdict: Verdict::Missing, says, claimed }
@@ -366,9 +366,8 @@ impl Findings<'_> {
 
     /// Separates claims from doubtful names: further effects with little evidence over a model without them,
     /// or which larger errors of the other formulas would replace, or with a mechanism that is more likely wrong
-    /// than right. The effect with the largest evidence and the
-    /// surest one needn't be more likely right than wrong, but no name is claimed that is wrong in most cases, or
-    /// that is likelier nothing and within the noise.
+    /// than right. The effect with the largest evidence and the surest one needn't be more likely right than
+    /// wrong, but no name is claimed that is wrong in most cases, or that is likelier nothing and within the noise.
     fn apart(&self, names: &[String]) -> (Vec<String>, Vec<String>) {
         let evidence =
             |name: &String| self.class(name).map_or(f64::INFINITY, |(class, _)| class.log_evidence);

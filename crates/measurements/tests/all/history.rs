@@ -260,6 +260,12 @@ fn sweeps_are_found_where_an_isobar_ends() {
     let data = recorded(600, 0.01, &|row| with_force(state(row)));
     assert_eq!(ranges(&data), [0..200, 200..400, 400..600]);
     assert_eq!(kinds(&data), [SweepKind::Shortening; 3]);
+    // Also if one reading has the wrong sign, wherever it stands.
+    for wrong in [0, 90, 599] {
+        let signed = |row: usize| with_force((state(row).0, if row == wrong { 1.9 } else { state(row).1 }));
+        let found = ranges(&recorded(600, 0.01, &signed));
+        assert_eq!(found, [0..200, 200..400, 400..600], "{wrong}");
+    }
     // Also if the muscle starts short, and the length jumps in the direction of the pressure.
     let long = |row: usize| with_force((state(row).0, 0.2 - state(row).1));
     assert_eq!(kinds(&recorded(600, 0.01, &long)), [SweepKind::Lengthening; 3]);
