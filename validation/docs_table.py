@@ -46,11 +46,11 @@ DIAGNOSIS = (
     ("outside the catalogue: not noticed", "outside the catalogue: not noticed", ""),
     ("held-out error over the noise, right class", "held-out error / noise, after the right class", "<= 1.1"),
     ("95 % intervals that hold the true number", "intervals that hold the true parameter", "95 %"),
-    ("first name right where its confidence is 0 to 0.5", "right when the confidence is 0 to 0.5", ""),
+    ("first name of the hidden family where its confidence is 0 to 0.5", "right when the confidence is 0 to 0.5", ""),
     ("0.5 to 0.7", "right when the confidence is 0.5 to 0.7", ""),
     ("0.7 to 0.9", "right when the confidence is 0.7 to 0.9", ""),
     ("0.9 and more", "right when the confidence is 0.9 to 0.97", ""),
-    ("confidence less rate of right first names", "calibration: mean distance of confidence and rate", "<= 0.05"),
+    ("confidence less rate of such first names", "calibration: mean distance of confidence and rate", "<= 0.05"),
 )
 """What the page says, what score.py calls it, and the target."""
 FRONT = (

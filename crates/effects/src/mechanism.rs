@@ -100,12 +100,12 @@ impl Mechanism {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Form {
-    /// Geometry or arithmetic such as a zero, a gain or a radius: only the parameters can be wrong.
+    /// Geometry or arithmetic such as a radius or a dead weight: only the parameters can be wrong.
     Exact,
     /// A first term whose next terms are small, such as a nearly steady drift.
     Near,
-    /// One of several constitutive laws, for friction, rubber or relaxation. Real materials follow none of
-    /// them exactly.
+    /// One of several constitutive laws, for friction, rubber or relaxation, which real materials follow only
+    /// roughly; or the gain of a sensor, which changes over its range.
     Loose,
 }
 

@@ -97,6 +97,10 @@ class Answer:
         right = {name for entry in self.hidden for name in entry["acceptable"]}
         return bool(self.claims) and self.names[0] in right
 
+    def first_is_hidden(self):
+        """Whether the first name is of the family of a hidden effect; one that is only identical with it on these data doesn't count."""
+        return bool(self.claims) and self.names[0] in {family(entry["effect"]) for entry in self.hidden}
+
     def found(self, entry):
         """Whether a hidden effect, or one identical with it, is in a reported class."""
         return any(one & set(entry["acceptable"]) for one in self.classes())

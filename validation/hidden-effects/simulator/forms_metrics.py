@@ -52,6 +52,10 @@ class Answer:
         """Whether a claim names a hidden effect, or one that is identical with it on these data, at a level."""
         return any(matches(claim, entry, level) for entry in self.known)
 
+    def names_hidden(self, claim, level):
+        """Whether a claim names a hidden effect itself at a level."""
+        return any(matches(claim, {**entry, "acceptable": []}, level) for entry in self.known)
+
     def all_right(self, level="family"):
         """Whether there is one claim for each hidden effect, and nothing else."""
         known, claims = self.known, self.claims
@@ -230,8 +234,9 @@ def _parts(everything):
 
 
 def _calibration(everything, level):
-    """Share of right claims against the confidence stated with them."""
-    pairs = [(c, a.right(claim, level)) for a in everything for claim in a.claims if (c := confidence(claim, level)) is not None]
+    """Share of claims that name what was hidden against the confidence stated with them, which counts another family or mechanism as wrong even if it is
+    identical on these data."""
+    pairs = [(c, a.names_hidden(claim, level)) for a in everything for claim in a.claims if (c := confidence(claim, level)) is not None]
     rows, gap = calibrated(pairs, f"{level} right when its confidence")
     if pairs:
         overall = abs(np.mean([c for c, _ in pairs]) - np.mean([right for _, right in pairs]))

@@ -149,8 +149,9 @@ def _intervals(one):
 
 
 def _calibration(answered):
-    """Share of right first names against the confidence stated with them."""
-    pairs = [(item[0]["confidence"], a.first_is_right()) for a in answered if (item := a.claims) and item[0].get("confidence") is not None]
+    """Share of first names of the hidden family against the confidence stated with them, which counts an effect of another family as wrong even if it is
+    identical on these data."""
+    pairs = [(item[0]["confidence"], a.first_is_hidden()) for a in answered if (item := a.claims) and item[0].get("confidence") is not None]
     rows, gap = calibrated(pairs, "right when the confidence")
     return [*rows, {"measure": "calibration: mean distance of confidence and rate", "value": gap, "n": len(pairs)}] if pairs else []
 

@@ -15,7 +15,7 @@ impl Effect for ForceGain {
             name: "force-gain",
             family: "force-gain",
             mechanism: Mechanism::ForceChain,
-            form: Form::Exact,
+            form: Form::Loose,
             title: "Gain of the load cell",
             about: "The load cell or its amplifier reads a fixed part too much or too little.",
             equation: "reading = F (1 + g)",

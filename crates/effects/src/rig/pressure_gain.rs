@@ -15,7 +15,7 @@ impl Effect for PressureGain {
             name: "pressure-gain",
             family: "pressure-gain",
             mechanism: Mechanism::PressureChain,
-            form: Form::Exact,
+            form: Form::Loose,
             title: "Gain of the pressure sensor",
             about: "The pressure sensor reads a fixed part too much or too little.",
             equation: "reading = p (1 + g)",

@@ -16,7 +16,7 @@ impl Effect for PressureOffset {
             name: "pressure-offset",
             family: "pressure-offset",
             mechanism: Mechanism::PressureChain,
-            form: Form::Exact,
+            form: Form::Loose,
             title: "Zero of the pressure sensor",
             about: "The pressure sensor reads something when it is vented: its zero has drifted, or an absolute sensor was corrected by \
                     another day's air pressure. The force is off by the same amount at every pressure.",

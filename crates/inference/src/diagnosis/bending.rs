@@ -9,10 +9,11 @@
 //! at turns:         3 s exp(-way/l),  way since the last reversal, to the next, since the beginning of a sweep;  3 s exp(-|rate|/(q fastest))
 //! of kin:           |s| u,  u of length 1: other forms of the effect, what isn't in proportion to its sizes, other members of its family
 //! ```
-//! No real effect obeys a formula exactly: rubber has two constants, and friction rounds off at a turn. The
-//! misfit that a formula leaves must not be taken for another effect.
+//! No real effect obeys a formula exactly: rubber has two constants, friction rounds off at a turn, and the
+//! gain of a sensor changes over its range. The misfit that a formula leaves must not be taken for another
+//! effect. The error of a sensor is bent along its reading alone.
 
-use bulge_effects::{Card, Catalogue, Effect, Form, Mechanism, Moment, Needs, ParameterCard, Stage};
+use bulge_effects::{Card, Catalogue, Effect, Form, Group, Mechanism, Moment, Needs, ParameterCard, Stage};
 use bulge_model::{ModelError, Wanted};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -133,6 +134,12 @@ fn drive(card: &Card<'_>) -> Option<fn(&Moment, f64) -> f64> {
     }
 }
 
+/// Whether an effect is an error of a sensor, which depends on nothing but its reading.
+fn is_of_sensor(card: &Card<'_>) -> bool {
+    let is_chain = matches!(card.mechanism, Mechanism::ForceChain | Mechanism::PressureChain);
+    is_chain && card.group == Group::Rig && card.needs == Needs::Nothing
+}
+
 fn driven_weight(degree: usize) -> f64 {
     (-0.5 * (degree as f64 - 1.0)).exp()
 }
@@ -161,7 +168,9 @@ impl Bent<'_> {
             return None;
         }
         let mut columns: Vec<(Kind, Vec<f64>)> = Vec::new();
-        columns.extend(self.along_state(&change).into_iter().map(|column| (Kind::State, column)));
+        if !is_of_sensor(&self.effect.card()) {
+            columns.extend(self.along_state(&change).into_iter().map(|column| (Kind::State, column)));
+        }
         columns.extend(self.along_drive(&change).into_iter().map(|column| (Kind::Drive, column)));
         columns.extend(self.at_another_zero(&change, off.as_deref()).map(|column| (Kind::Drive, column)));
         columns.extend(self.at_turns(&change).into_iter().map(|column| (Kind::Turn, column)));
@@ -371,6 +380,17 @@ impl Bent<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::collections::BTreeSet;
+
+    #[test]
+    fn errors_of_sensors_depend_on_their_readings_alone() {
+        let catalogue = Catalogue::builtin();
+        let of_sensors = catalogue.iter().filter(|effect| is_of_sensor(&effect.card()));
+        let bent = of_sensors.filter(|effect| effect.card().form != Form::Exact);
+        let names: Vec<String> = bent.map(|effect| effect.card().name.to_owned()).collect();
+        let expected = ["force-gain", "force-nonlinearity", "line-drop", "pressure-gain", "pressure-offset"];
+        assert_eq!(BTreeSet::from_iter(names), BTreeSet::from(expected.map(str::to_owned)));
+    }
 
     #[test]
     fn each_effect_is_driven_by_its_own_variable() {

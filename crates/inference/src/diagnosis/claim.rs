@@ -16,14 +16,18 @@ use crate::vector::rms;
 /// Probability that a claim is right on three levels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Levels {
+    /// For the mechanism or an effect that these data can't tell from the named one. It decides what is named;
+    /// the others are what is stated.
+    pub(crate) alike: f64,
     pub(crate) mechanism: f64,
     pub(crate) family: f64,
     pub(crate) form: f64,
 }
 
 impl Levels {
-    /// Confidence of one of `named` effects. It is the weight of its related effects, and of those
-    /// indistinguishable on these data, among all rivals, and at most the simulated confidence.
+    /// Confidence of one of `named` effects. It is the weight of its related effects among all rivals, and at
+    /// most the simulated confidence. A rival of another mechanism counts against it even if the data can't tell
+    /// the two apart.
     pub(crate) fn of(class: &Class, simulated: &Confidence, named: usize) -> Self {
         let own = class.effect.card();
         let weights = |counts: &dyn Fn(&Rival) -> bool| -> f64 {
@@ -34,15 +38,18 @@ impl Levels {
         let sure = (1.0 - RULE.incomplete)
             * RULE.further.powi(i32::try_from(named).unwrap_or(i32::MAX).saturating_sub(1));
         let part = |counts: &dyn Fn(&Rival) -> bool| sure * (1.0 + weights(counts)) / all;
-        let is_same = |rival: &Rival| rival.separation < RULE.same;
-        let mechanism = part(&|rival| is_same(rival) || is_same_mechanism(&rival.effect, &class.effect));
-        let family = part(&|rival| is_same(rival) || rival.effect.card().family == own.family);
+        let is_of_mechanism = |rival: &Rival| is_same_mechanism(&rival.effect, &class.effect);
+        let alike = part(&|rival| rival.separation < RULE.same || is_of_mechanism(rival));
+        let mechanism = part(&is_of_mechanism);
+        let family = part(&|rival| rival.effect.card().family == own.family);
         let family = family.min(simulated.named);
         // If no truth that the linearised model leaves possible is of the class, the fit lies far outside of it.
-        let mechanism = if simulated.class > 0.0 { mechanism } else { 0.0 };
+        let [alike, mechanism] =
+            [alike, mechanism].map(|part| if simulated.class > 0.0 { part } else { 0.0 });
         // A user's formula without a mechanism represents itself, so a statement about it holds for its form,
         // family and mechanism alike.
-        Self { mechanism: mechanism.max(family), family, form: part(&|_| false).min(family) }
+        let form = part(&|_| false).min(family);
+        Self { alike: alike.max(family), mechanism: mechanism.max(family), family, form }
     }
 
     /// The most specific level at which the claim is more likely right than wrong.
@@ -120,10 +127,11 @@ mod tests {
         let [family, kin, same, other] = [0.5_f64, 1.0, 1.5, 2.0].map(|behind| (-behind).exp());
         let all = 1.0 + family + kin + same + other;
         let found = Levels::of(&class, &simulated(1.0), 1);
-        let expected = [1.0 + family + kin + same, 1.0 + family + same, 1.0].map(|part| 0.9 * part / all);
+        let expected = [1.0 + family + kin, 1.0 + family, 1.0].map(|part| 0.9 * part / all);
         for (found, expected) in [found.mechanism, found.family, found.form].into_iter().zip(expected) {
             assert!((found - expected).abs() < 1e-12, "{found} {expected}");
         }
+        assert!((found.alike - 0.9 * (1.0 + family + kin + same) / all).abs() < 1e-12);
         // At most the simulated confidence, and a tenth less for each further name.
         assert!((Levels::of(&class, &simulated(0.4), 1).family - 0.4).abs() < 1e-12);
         assert!((Levels::of(&class, &simulated(1.0), 3).mechanism / found.mechanism - 0.81).abs() < 1e-12);
@@ -136,7 +144,7 @@ mod tests {
 
     #[test]
     fn the_deepest_level_that_is_likelier_right_than_wrong_is_stated() {
-        let level = |mechanism, family, form| Levels { mechanism, family, form }.decided();
+        let level = |mechanism, family, form| Levels { alike: 1.0, mechanism, family, form }.decided();
         assert_eq!(level(0.9, 0.8, 0.6), Level::Form);
         assert_eq!(level(0.9, 0.8, 0.4), Level::Family);
         assert_eq!(level(0.9, 0.4, 0.4), Level::Mechanism);

@@ -31,7 +31,8 @@ const MOST: usize = 8;
 #[derive(Debug, Clone)]
 pub(crate) struct Rival {
     pub(crate) effect: Arc<dyn Effect>,
-    /// Log evidence relative to the model without either.
+    /// Log evidence relative to the model without either, less [`RULE`]`.by_bending` of what its form errors gain
+    /// more than those of the named effect.
     pub(crate) log_evidence: f64,
     /// Sigmas between the two effects, with the rival at its best size.
     pub(crate) separation: f64,
@@ -88,6 +89,15 @@ impl Class {
             rivals: Vec::new(),
         }
     }
+}
+
+/// The log evidence of a rival of an effect of `stage`, by its fit. Of two that explain as much, the one with the
+/// more accurate formula is preferred, as in the search.
+fn evidence_of_rival(tried: &Tried, stage: &Stage, without: &Stage, scatter: f64) -> f64 {
+    let Some(fit) = &tried.confirmed else { return tried.log_evidence };
+    let gain = without.confirmed.bent_cost() - fit.bent_cost();
+    let more_bent = fit.form.log_evidence - stage.confirmed.form.log_evidence;
+    tempered(tried.log_evidence, gain, scatter) - RULE.by_bending * more_bent.max(0.0)
 }
 
 impl Context<'_> {
@@ -164,15 +174,11 @@ impl Context<'_> {
                     self.beside(&without.linear, &signal, &both).separation(&without.linear, place)
                         / scatter.sqrt()
                 };
-                Self::rival(
-                    without,
-                    place,
-                    tempered(linear, gain_of, scatter),
-                    separation,
-                    tried,
-                    (log_evidence, scatter),
-                    margin,
-                )
+                let evidence = tried.as_ref().map_or_else(
+                    || tempered(linear, gain_of, scatter),
+                    |tried| evidence_of_rival(tried, stage, without, scatter),
+                );
+                Self::rival(without, place, evidence, separation, tried, log_evidence, margin)
             })
             .collect();
         let seen = without.linear.space.coordinates(&self.white(&signal, without.linear.priors));
@@ -271,17 +277,12 @@ impl Context<'_> {
     fn rival(
         without: &Stage,
         place: usize,
-        linear: f64,
+        log_evidence: f64,
         separation: f64,
         tried: Option<Tried>,
-        (named, scatter): (f64, f64),
+        named: f64,
         margin: f64,
     ) -> Rival {
-        let log_evidence = tried.as_ref().map_or(linear, |tried| {
-            let gain =
-                tried.confirmed.as_ref().map_or(0.0, |c| without.confirmed.bent_cost() - c.bent_cost());
-            tempered(tried.log_evidence, gain, scatter)
-        });
         // A rival that is indistinguishable on these data stays, however implausible its parameters are:
         // priors may be wrong.
         let undecided = log_evidence > named - margin

@@ -35,8 +35,7 @@ const ENOUGH: usize = 20;
 /// How often a claim is right.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Confidence {
-    /// Fraction of the simulated claims of this kind in which the named effect is the right one (or differs
-    /// from it by less than one sigma).
+    /// Fraction of the simulated claims of this kind in which the right effect is of the named family.
     pub named: f64,
     /// Fraction in which the right effect is in the class.
     pub class: f64,
@@ -116,15 +115,14 @@ pub(crate) fn confidence(
         // Hardly any simulation repeats the claim, so use the weights of the evidence instead.
         let of = |counts: &dyn Fn(&Rival) -> bool| {
             let is_one = |effect: usize| {
-                let name = linear.sensitivities.effects[effect].effect.card().name;
-                let rival = class.rivals.iter().find(|rival| rival.effect.card().name == name);
-                effect == named
-                    || rival.is_some_and(|rival| rival.effect.card().family == family || counts(rival))
+                let card = linear.sensitivities.effects[effect].effect.card();
+                let rival = class.rivals.iter().find(|rival| rival.effect.card().name == card.name);
+                card.family == family || rival.is_some_and(counts)
             };
             let right = truths.iter().filter(|t| t.effect.is_some_and(is_one));
             (1.0 - RULE.incomplete) * right.map(|t| t.weight).sum::<f64>()
         };
-        let (named, class) = (of(&|rival| rival.separation < RULE.same), of(&|rival| rival.in_class));
+        let (named, class) = (of(&|_| false), of(&|rival| rival.in_class));
         return Confidence { named, class, interval: [0.0, 1.0], claims };
     }
     let part = |count: usize| (1.0 - RULE.incomplete) * count as f64 / claims as f64;
@@ -270,22 +268,22 @@ impl Claim {
         separation(&self.signal, linear.candidates.iter().filter(|c| c.effect == effect))
     }
 
-    /// Whether the named effect is the truth, or indistinguishable from it on these data.
+    /// Whether the truth is of the named family.
     fn is_same(&self, linear: &LinearisedModel, truth: &Truth<'_>) -> bool {
-        let family = |effect: usize| linear.sensitivities.effects[effect].effect.card().family.to_owned();
-        truth.effect.is_some_and(|effect| {
-            family(effect) == family(self.named) || self.separation(linear, effect) < RULE.same
-        })
+        let family = |effect: usize| linear.sensitivities.effects[effect].effect.card().family;
+        truth.effect.is_some_and(|effect| family(effect) == family(self.named))
     }
 
     /// Whether the truth is in the class.
     fn holds(&self, linear: &LinearisedModel, truth: &Truth<'_>) -> bool {
         self.is_same(linear, truth)
             || truth.effect.is_some_and(|effect| {
-                self.evidence[effect] > self.worth
-                    && (self.evidence[effect] > self.evidence[self.named] - RULE.rival
-                        || self.evidence[effect] > self.evidence[self.named] - RULE.decided
-                            && self.separation(linear, effect) < RULE.separation)
+                let separation = self.separation(linear, effect);
+                separation < RULE.same
+                    || self.evidence[effect] > self.worth
+                        && (self.evidence[effect] > self.evidence[self.named] - RULE.rival
+                            || self.evidence[effect] > self.evidence[self.named] - RULE.decided
+                                && separation < RULE.separation)
             })
     }
 }

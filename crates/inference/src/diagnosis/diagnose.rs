@@ -327,7 +327,7 @@ fn concluded(
         event: None,
     };
     found.event = anew
-        .and_then(|anew| event(&found, &analysis.data, &averaged_data.averaged.groups, anew))
+        .and_then(|anew| event(&found, analysis, &averaged_data.averaged.groups, anew))
         .or_else(|| changed_after_the_first_sweep(&found, analysis));
     let compared = |found: &Findings<'_>| {
         let effects: Vec<Arc<dyn Effect>> =

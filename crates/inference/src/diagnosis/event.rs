@@ -13,6 +13,7 @@
 use bulge_measurements::{Data, Disturbance};
 use bulge_muscles::shown::shortened;
 
+use crate::comparison::analysis::Analysis;
 use crate::comparison::rows::lines;
 use crate::diagnosis::document::{Diagnosis, Verdict};
 use crate::diagnosis::each_sweep::each_sweep;
@@ -46,17 +47,19 @@ pub(crate) struct Anew<'a> {
 /// What is said of an event across which no effect may be named, if there is one.
 pub(crate) fn event(
     found: &Findings<'_>,
-    data: &Data,
+    analysis: &Analysis<'_>,
     groups: &[Vec<usize>],
     anew: Anew<'_>,
 ) -> Option<String> {
+    let data: &Data = &analysis.data;
     if !found.verdict().0.shows_effects() {
-        return None;
+        // Of several effects none may be named, and a late column explain all the same.
+        return (!found.last().added.is_empty()).then(|| late(found, analysis, anew)).flatten();
     }
     let among_the_rows = || {
         let base = &found.search.stages.first()?.confirmed;
         let linear = Linearised::of(&base.prepared, &base.theta, found.context.record).ok()?;
-        late(found, &linear, data, groups, anew)
+        late(found, analysis, anew)
             .or_else(|| odd(found, &linear, data, groups, anew))
             .or_else(|| each_sweep(found, &linear, data, groups))
     };
@@ -92,16 +95,10 @@ fn disturbed(found: &Findings<'_>, data: &Data) -> Option<String> {
 }
 
 /// A column that is late, without which nothing is missing.
-fn late(
-    found: &Findings<'_>,
-    linear: &Linearised,
-    data: &Data,
-    groups: &[Vec<usize>],
-    anew: Anew<'_>,
-) -> Option<String> {
-    let alike = Late::of(found, linear, data, groups);
+fn late(found: &Findings<'_>, analysis: &Analysis<'_>, anew: Anew<'_>) -> Option<String> {
+    let alike = Late::of(found, analysis);
     let is_all = (anew.moved)(*alike.first()?).is_some_and(|found| found.verdict == Verdict::Adequate);
-    is_all.then(|| Late::asks(&alike, data))
+    is_all.then(|| Late::asks(&alike, &analysis.data))
 }
 
 /// Two specimens with each other's numbers, of which nothing is missing; or nothing is known to be, and they explain

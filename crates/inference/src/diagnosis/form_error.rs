@@ -468,7 +468,8 @@ mod tests {
         assert!(found.log_evidence.abs() < 1e-12 && found.fall.abs() < 1e-12 && directions.is_empty());
         let mut misfit = noise;
         add(&mut misfit, 0.3, &loose.columns[0].1);
-        let exact = Bending { effect: Arc::clone(Catalogue::builtin().find("force-gain").unwrap()), ..loose };
+        let exact =
+            Bending { effect: Arc::clone(Catalogue::builtin().find("length-zero-error").unwrap()), ..loose };
         let (found, directions) = FormError::of(&[exact], &space, &misfit, &same, false);
         assert!(found.log_evidence.abs() < 1e-12 && directions.is_empty());
     }

@@ -2,10 +2,13 @@
 //! readings of different times, and lags and friction explain a part of what follows from it.
 
 use bulge_measurements::{Channel, Data, Sweep};
-use bulge_model::{Wanted, Warm};
+use bulge_model::{Record, Wanted, Warm};
 use bulge_muscles::units::significant;
 use std::ops::Range;
 
+use crate::comparison::analysis::Analysis;
+use crate::diagnosis::averaged::Averaged;
+use crate::diagnosis::confirm::Confirmed;
 use crate::diagnosis::trimmed::{Linearised, chosen};
 use crate::diagnosis::write::Findings;
 use crate::median::median;
@@ -13,6 +16,8 @@ use crate::vector::{count, minus};
 
 /// Rows by which a column is tried to be late or early; between two of them the error has no other minimum.
 const TRIED: [isize; 12] = [1, 2, 3, 4, 6, 8, 11, 15, 20, 26, 33, 40];
+/// Most rows of a test in which a late column is looked for: each of some fifty trials computes the force of all.
+const MOST_ROWS: usize = 30_000;
 /// Fewest rows that are left, as a fraction of all.
 const LEFT: f64 = 0.6;
 /// RMS error with the column moved over that as read,
@@ -33,24 +38,18 @@ impl Late {
     /// The columns that leave the base the least error if one of them is moved, if that is much less than as read,
     /// and less than the last model leaves. At constant pressure, a late force is as good as an early motion; late
     /// columns come first.
-    pub(crate) fn of(
-        found: &Findings<'_>,
-        linear: &Linearised,
-        data: &Data,
-        groups: &[Vec<usize>],
-    ) -> Vec<Self> {
-        let Some(base) = found.search.stages.first() else { return Vec::new() };
-        if !data.is_path() || groups.iter().any(|group| group.len() != 1) {
+    pub(crate) fn of(found: &Findings<'_>, analysis: &Analysis<'_>) -> Vec<Self> {
+        if !analysis.data.is_path() || analysis.rows().count() > MOST_ROWS {
             return Vec::new();
         }
-        let trial = Trial { found, linear, next: &Next::of(found, groups) };
-        let left = |force: &[f64], kept: &[bool]| trial.left(found.context.record.force(), force, kept);
+        let Some(trial) = Trial::of(found, analysis) else { return Vec::new() };
+        let left = |force: &[f64], kept: &[bool]| trial.left(trial.record.force(), force, kept);
         let best = Channel::ALL.into_iter().filter_map(|channel| trial.best(channel));
         let mut tried: Vec<(Self, f64)> = best
             .filter_map(|late| {
                 let (moved, kept) = trial.moved(late)?;
-                let part = moved / left(&base.linear.force, &kept);
-                let is_better = moved < BETTER * BETTER * left(&found.last().linear.force, &kept);
+                let part = moved / left(&trial.forces[0], &kept);
+                let is_better = moved < BETTER * BETTER * left(&trial.forces[1], &kept);
                 (part < FALLS * FALLS && is_better).then_some((late, part))
             })
             .collect();
@@ -90,39 +89,45 @@ impl Late {
     }
 }
 
-/// The row that follows each mean after some rows, if it is one of the same sweep.
-struct Next {
-    /// Row of the file of each mean, and the end of its sweep.
+/// The rows that count, one by one, and the base, with columns that are moved.
+struct Trial<'a> {
+    record: Record,
+    /// Row of the file of each, and the end of its sweep.
     rows: Vec<(usize, Range<usize>)>,
+    base: &'a Confirmed,
+    linear: Linearised,
+    /// Forces of the base and of the last model \[N\].
+    forces: [Vec<f64>; 2],
 }
 
-impl Next {
-    fn of(found: &Findings<'_>, groups: &[Vec<usize>]) -> Self {
-        let sweeps = found.context.record.sweeps();
-        let rows = groups.iter().enumerate().map(|(place, group)| {
-            let own = sweeps.iter().find(|sweep| sweep.contains(&place));
-            (group.first().copied().unwrap_or(0), own.cloned().unwrap_or(place..place + 1))
+impl<'a> Trial<'a> {
+    /// None if there is no model of these rows.
+    fn of(found: &'a Findings<'_>, analysis: &Analysis<'_>) -> Option<Self> {
+        let single = Averaged::of(&analysis.record, &analysis.used.mask, &analysis.levels, usize::MAX)?;
+        let record = single.record;
+        let rows = single.groups.iter().enumerate().map(|(place, group)| {
+            let own = record.sweeps().iter().find(|sweep| sweep.contains(&place));
+            (group[0], own.cloned().unwrap_or(place..place + 1))
         });
-        Self { rows: rows.collect() }
+        let rows = rows.collect();
+        let base = &found.search.stages.first()?.confirmed;
+        let linear = Linearised::of(&base.prepared, &base.theta, &record).ok()?;
+        let force = |model: &Confirmed| {
+            let found = model.prepared.model.evaluate(&record, &model.theta, &Wanted::default());
+            Some(found.ok()?.force)
+        };
+        let forces = [force(base)?, force(&found.last().confirmed)?];
+        Some(Self { record, rows, base, linear, forces })
     }
 
-    /// The mean `by` rows after another.
+    /// The row that is `by` rows after another one of the same sweep.
     fn after(&self, place: usize, by: isize) -> Option<usize> {
         let other = place.checked_add_signed(by)?;
         let ((row, sweep), (other_row, _)) = (self.rows.get(place)?, self.rows.get(other)?);
         // Rows that don't count may lie between them.
         (sweep.contains(&other) && row.checked_add_signed(by)? == *other_row).then_some(other)
     }
-}
 
-/// The base, with columns that are moved.
-struct Trial<'a> {
-    found: &'a Findings<'a>,
-    linear: &'a Linearised,
-    next: &'a Next,
-}
-
-impl Trial<'_> {
     /// The rows by which a column leaves the least error, by descent from the best of those that are tried.
     fn best(&self, channel: Channel) -> Option<Late> {
         let error = |rows: isize| {
@@ -143,20 +148,19 @@ impl Trial<'_> {
     /// The sum of squared errors of the base with a column moved, and the rows that have one; none if they are
     /// few.
     fn moved(&self, late: Late) -> Option<(f64, Vec<bool>)> {
-        let (record, base) = (self.found.context.record, self.found.search.stages.first()?);
         let kept: Vec<bool> =
-            (0..record.len()).map(|place| self.next.after(place, late.rows).is_some()).collect();
+            (0..self.record.len()).map(|place| self.after(place, late.rows).is_some()).collect();
         if (count(&kept) as f64) < LEFT * kept.len() as f64 {
             return None;
         }
         let [pressure, contraction, read] =
             Channel::ALL.map(|channel| self.at(channel, if channel == late.channel { late.rows } else { 0 }));
         let force = if late.channel == Channel::Force {
-            base.linear.force.clone()
+            self.forces[0].clone()
         } else {
-            let (record, at) = (record.clone().at(&pressure, &contraction), &base.confirmed);
-            let model = &at.prepared.model;
-            let partly = model.evaluate_partly(&record, &at.theta, &Wanted::default(), &Warm::of_rows(&kept));
+            let record = self.record.clone().at(&pressure, &contraction);
+            let (model, theta) = (&self.base.prepared.model, &self.base.theta);
+            let partly = model.evaluate_partly(&record, theta, &Wanted::default(), &Warm::of_rows(&kept));
             partly.ok()?.prediction.force
         };
         Some((self.left(&read, &force, &kept), kept))
@@ -164,13 +168,13 @@ impl Trial<'_> {
 
     /// A column moved by some rows; where there is none its own value stays.
     fn at(&self, channel: Channel, by: isize) -> Vec<f64> {
-        let record = self.found.context.record;
+        let record = &self.record;
         let value = |place: usize| match channel {
             Channel::Pressure => record.moments()[place].pressure,
             Channel::Motion => record.moments()[place].contraction,
             Channel::Force => record.force()[place],
         };
-        (0..record.len()).map(|place| value(self.next.after(place, by).unwrap_or(place))).collect()
+        (0..record.len()).map(|place| value(self.after(place, by).unwrap_or(place))).collect()
     }
 
     /// Sum of squares of what a force leaves of the readings in the rows that are kept, once the numbers of the base

@@ -349,10 +349,10 @@ impl Findings<'_> {
         Said::nothing(Verdict::CannotTell, says)
     }
 
-    /// Confidence in the mechanism of a named effect.
-    fn mechanism(&self, name: &str) -> f64 {
+    /// Confidence in the mechanism of a named effect, or in an effect that these data can't tell from it.
+    fn alike(&self, name: &str) -> f64 {
         let found = self.class(name);
-        found.map_or(1.0, |(class, sure)| Levels::of(class, sure, self.classes.len()).mechanism)
+        found.map_or(1.0, |(class, sure)| Levels::of(class, sure, self.classes.len()).alike)
     }
 
     /// Whether larger errors of the other formulas would explain as much as a named effect.
@@ -372,15 +372,15 @@ impl Findings<'_> {
         let evidence =
             |name: &String| self.class(name).map_or(f64::INFINITY, |(class, _)| class.log_evidence);
         let most = names.iter().map(evidence).fold(f64::NEG_INFINITY, f64::max);
-        let surest = names.iter().map(|name| self.mechanism(name)).fold(0.0, f64::max);
+        let surest = names.iter().map(|name| self.alike(name)).fold(0.0, f64::max);
         let is_seen = |name: &String| evidence(name) >= RULE.seen.min(most) && !self.may_be_form_error(name);
-        let is_decided = |name: &String| self.mechanism(name) >= RULE.decides.min(surest);
+        let is_decided = |name: &String| self.alike(name) >= RULE.decides.min(surest);
         let is_there = |name: &String| {
             let is_seen = |class: &Class| class.log_evidence >= 0.0 || class.detectability >= RULE.separation;
             self.class(name).is_none_or(|(class, _)| is_seen(class))
         };
         let is_named = |name: &String| {
-            self.mechanism(name) >= RULE.nameless && is_there(name) && !self.all_may_be_form_error
+            self.alike(name) >= RULE.nameless && is_there(name) && !self.all_may_be_form_error
         };
         // Of effects that may all be errors of the others' formulas, the likeliest is named.
         let all_may_be = names.iter().all(|name| self.may_be_form_error(name));

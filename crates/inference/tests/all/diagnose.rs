@@ -11,7 +11,7 @@ use bulge_inference::{
 };
 use bulge_measurements::{Channel, Columns, Data, ReadOptions, Trace};
 use bulge_model::{Model, Record, Wanted};
-use bulge_muscles::{Muscle, Quantity, from_toml};
+use bulge_muscles::{Instruments, Muscle, Quantity, from_toml};
 use bulge_numerics::Random;
 use rayon::prelude::*;
 use std::fmt::Write;
@@ -298,6 +298,16 @@ fn a_column_that_comes_late_is_no_lag_and_a_lag_is_no_late_column() {
     assert_eq!((found.verdict, names(&found)), (Verdict::Missing, vec!["force-lag"]), "{}", found.says);
 }
 
+#[test]
+fn a_column_that_comes_late_is_seen_among_more_rows_than_models_are_tried_on() {
+    let short = protocol(2.0, 0.0);
+    let blocks = short.blocks.iter().map(|block| Block { rows: 200, ..block.clone() }).collect();
+    let data = measured(&[], &Protocol { blocks, ..short }, 7);
+    let late = diagnosed(&data.clone().moved(Channel::Force, -12));
+    assert_eq!((late.verdict, names(&late)), (Verdict::CannotTell, vec![]), "{}", late.says);
+    assert!(data.len() > 1500 && late.says.contains("the force 12 rows (2.4 s) earlier"), "{}", late.says);
+}
+
 /// Fillings and ventings at four held lengths, with noise of 2 N and pauses between them.
 fn fillings() -> Data {
     let states = [0.02, 0.07, 0.12, 0.17].into_iter().zip(0..).flat_map(|(held, sweep)| {
@@ -528,7 +538,7 @@ fn a_zero_that_is_another_in_each_sweep_is_no_effect() {
     assert!(
         found
             .says
-            .contains("a zero of the force that changed (line 904-1204: 9.7 N more than before or after)"),
+            .contains("a zero of the force that changed (line 904-1204: 9.6 N more than before or after)"),
         "{}",
         found.says
     );
@@ -672,6 +682,21 @@ fn a_spring_that_softens_more_than_its_formula_may_brings_no_second_name() {
     let further = diagnose(&data, &muscle, &diagnosing(&["membrane-axial"])).unwrap();
     assert_eq!(names(&further), [""; 0], "{}", further.says);
     assert!(further.says.contains("most likely pressure-droop"), "{}", further.says);
+}
+
+#[test]
+fn a_load_cell_whose_gain_changes_over_its_range_is_neither_softening_nor_two_other_effects() {
+    // 2 % too much, of which three tenths come and go over the range.
+    let (muscle, data) = pleated_with(&[], |_| 0.0);
+    let muscle = muscle.with_instruments(Instruments::default());
+    let most = data.force().iter().copied().fold(0.0, f64::max);
+    let read = |force: &f64| force * (1.0 + 0.02 * (1.0 - 0.3 * (2.0 * force / most - 1.0)));
+    let force_n = data.force().iter().map(read).collect();
+    let columns = Columns { force_n, ..data.columns().as_ref().clone() };
+    let found = diagnose(&Data::from_columns(columns).unwrap(), &muscle, &diagnosing(&[])).unwrap();
+    assert_eq!(names(&found), ["force-gain"], "{}", found.says);
+    let bent = found.missing[0].form_error.as_ref().unwrap();
+    assert!((0.05..0.3).contains(&bent.share), "{bent:?}");
 }
 
 #[test]
