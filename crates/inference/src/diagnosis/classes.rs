@@ -92,7 +92,8 @@ impl Class {
 }
 
 /// The log evidence of a rival of an effect of `stage`, by its fit. Of two that explain as much, the one with the
-/// more accurate formula is preferred, as in the search.
+/// more accurate formula is preferred: a rival that is bent more loses as much as in the ranking of the search. (One
+/// that is bent less gains nothing: it would replace what the published loops of a fluidic muscle hold.)
 fn evidence_of_rival(tried: &Tried, stage: &Stage, without: &Stage, scatter: f64) -> f64 {
     let Some(fit) = &tried.confirmed else { return tried.log_evidence };
     let gain = without.confirmed.bent_cost() - fit.bent_cost();

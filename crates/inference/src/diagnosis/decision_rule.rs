@@ -61,7 +61,8 @@ pub(crate) struct DecisionRule {
     /// shared by many rows, newtons may have little weight (forms suite).
     pub(crate) most_bent_newtons: f64,
     /// Fraction of the evidence of form errors that doesn't count when hypotheses are ranked: of two that
-    /// explain as much, the one with the more accurate formula is preferred (forms suite).
+    /// explain as much, the one with the more accurate formula is preferred (forms suite). Of rivals, those that are
+    /// bent more than the named effect lose as much.
     pub(crate) by_bending: f64,
     /// Fraction of the log evidence that the formulas must gain as they are. With less, the claim rests on
     /// form errors and is withdrawn (right names were above 0.82 in the pilot, wrong ones up to 0.62).
@@ -132,7 +133,7 @@ pub(crate) struct DecisionRule {
     /// 71: with plain evidence the confidence is then within 0.05 of the rate).
     pub(crate) further: f64,
     /// Confidence that a level of a claim must reach to be stated; a name that is more likely wrong than
-    /// right is reported as one of its class. A further effect whose mechanism doesn't reach it is not
+    /// right is reported as one of its class. A further effect whose mechanism, with what the data can't tell from it, doesn't reach it is not
     /// claimed: something is there, but the data don't say what (forms suite, seeds 61 and 67: of eleven such
     /// names two or three were right).
     pub(crate) decides: f64,

@@ -311,7 +311,7 @@ pub struct ParameterResult {
 pub struct RivalResult {
     /// Its name.
     pub effect: String,
-    /// Log evidence of the named effect over this one.
+    /// Log evidence of the named effect over this one, and what this one loses by being bent more.
     pub behind: f64,
     /// Sigmas between the two effects.
     pub separation: f64,

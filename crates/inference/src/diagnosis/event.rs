@@ -52,9 +52,13 @@ pub(crate) fn event(
     anew: Anew<'_>,
 ) -> Option<String> {
     let data: &Data = &analysis.data;
-    if !found.verdict().0.shows_effects() {
-        // Of several effects none may be named, and a late column explain all the same.
-        return (!found.last().added.is_empty()).then(|| late(found, analysis, anew)).flatten();
+    let verdict = found.verdict().0;
+    if verdict == Verdict::CannotTell && !found.last().added.is_empty() {
+        // Where what was found may not be named, a late column may explain it.
+        return late(found, analysis, anew);
+    }
+    if !verdict.shows_effects() {
+        return None;
     }
     let among_the_rows = || {
         let base = &found.search.stages.first()?.confirmed;

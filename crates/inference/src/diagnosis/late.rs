@@ -16,8 +16,10 @@ use crate::vector::{count, minus};
 
 /// Rows by which a column is tried to be late or early; between two of them the error has no other minimum.
 const TRIED: [isize; 12] = [1, 2, 3, 4, 6, 8, 11, 15, 20, 26, 33, 40];
-/// Most rows of a test in which a late column is looked for: each of some fifty trials computes the force of all.
+/// Most rows of a test in which a late column is looked for: each of some fifty trials moves all.
 const MOST_ROWS: usize = 30_000;
+/// Rows, at a regular stride, whose force each trial computes.
+const ENOUGH: usize = 2000;
 /// Fewest rows that are left, as a fraction of all.
 const LEFT: f64 = 0.6;
 /// RMS error with the column moved over that as read,
@@ -103,20 +105,30 @@ struct Trial<'a> {
 impl<'a> Trial<'a> {
     /// None if there is no model of these rows.
     fn of(found: &'a Findings<'_>, analysis: &Analysis<'_>) -> Option<Self> {
-        let single = Averaged::of(&analysis.record, &analysis.used.mask, &analysis.levels, usize::MAX)?;
-        let record = single.record;
+        let base = &found.search.stages.first()?.confirmed;
+        let mut used = analysis.used.mask.clone();
+        let mut force = |model: &Confirmed| {
+            let (model, theta) = (&model.prepared.model, &model.theta);
+            let partly =
+                model.evaluate_partly(&analysis.record, theta, &Wanted::default(), &Warm::of_rows(&used));
+            let force = partly.ok()?.prediction.force;
+            for (used, force) in used.iter_mut().zip(&force) {
+                *used &= force.is_finite();
+            }
+            Some(force)
+        };
+        let forces = [force(base)?, force(&found.last().confirmed)?];
+        let single = Averaged::of(&analysis.record, &used, &analysis.levels, usize::MAX)?;
+        let of_rows = forces.each_ref().map(|force| single.means(force));
+        let record =
+            single.record.clone().with_force(single.forces(&analysis.record, &forces[0], &of_rows[0]));
         let rows = single.groups.iter().enumerate().map(|(place, group)| {
             let own = record.sweeps().iter().find(|sweep| sweep.contains(&place));
             (group[0], own.cloned().unwrap_or(place..place + 1))
         });
         let rows = rows.collect();
-        let base = &found.search.stages.first()?.confirmed;
         let linear = Linearised::of(&base.prepared, &base.theta, &record).ok()?;
-        let force = |model: &Confirmed| {
-            let found = model.prepared.model.evaluate(&record, &model.theta, &Wanted::default());
-            Some(found.ok()?.force)
-        };
-        let forces = [force(base)?, force(&found.last().confirmed)?];
+        let forces = of_rows;
         Some(Self { record, rows, base, linear, forces })
     }
 
@@ -148,10 +160,14 @@ impl<'a> Trial<'a> {
     /// The sum of squared errors of the base with a column moved, and the rows that have one; none if they are
     /// few.
     fn moved(&self, late: Late) -> Option<(f64, Vec<bool>)> {
-        let kept: Vec<bool> =
+        let mut kept: Vec<bool> =
             (0..self.record.len()).map(|place| self.after(place, late.rows).is_some()).collect();
         if (count(&kept) as f64) < LEFT * kept.len() as f64 {
             return None;
+        }
+        let every = kept.len().div_ceil(ENOUGH);
+        for (place, kept) in kept.iter_mut().enumerate() {
+            *kept &= place % every == 0;
         }
         let [pressure, contraction, read] =
             Channel::ALL.map(|channel| self.at(channel, if channel == late.channel { late.rows } else { 0 }));
