@@ -105,8 +105,7 @@ pub enum Form {
     /// A first term whose next terms are small, such as a nearly steady drift.
     Near,
     /// One of several constitutive laws, for friction, rubber or relaxation, which real materials follow only
-    /// roughly; or a gain of force or pressure, which changes over the range of
-    /// its sensor.
+    /// roughly; or a gain of force or pressure, which changes over the range of its sensor.
     Loose,
 }
 
