@@ -323,6 +323,14 @@ mod tests {
         let border = 0.5 * PI / wave;
         assert!(!net(0.999 * border).undulates(contraction) && net(1.001 * border).undulates(contraction));
         assert!(!Net { depth: 0.0, ..net(10.0 * border) }.undulates(contraction));
+        // Rubber or cloth holds the wave otherwise.
+        let rich: Net<f64> = crate::net::tests::rich();
+        for held in [
+            Net { rubber: rich.rubber, ..net(1.001 * border) },
+            Net { cloth: rich.cloth, ..net(1.001 * border) },
+        ] {
+            assert!(!held.undulates(contraction));
+        }
     }
 
     /// A soft braid of 25 degrees, group 0.35.

@@ -198,18 +198,9 @@ impl<D: Real> Formulas<D> {
     #[inline]
     fn energies<const L: usize>(&self, sigma: [D; L], r: [D; L], per_cos: D) -> Option<[[D; L]; 6]> {
         let energy = self.energy.as_ref()?;
-        let mut outputs: [[D; L]; 6] = energy.run_at(|index| {
-            Some(match index {
-                0 => sigma.map(|sigma| sigma * per_cos),
-                1 => r,
-                2 => r.map(|r| r * self.radius),
-                3 => [self.radius; L],
-                4 => [self.pressure; L],
-                5 => [self.angle; L],
-                6 => [self.length; L],
-                _ => return None,
-            })
-        });
+        let inputs: [[D; INPUTS]; L] = std::array::from_fn(|i| self.inputs(sigma[i] * per_cos, r[i]));
+        let mut outputs: [[D; L]; 6] =
+            energy.run_at(|index| (index < INPUTS).then(|| inputs.map(|inputs| inputs[index])));
         // The slope of ln(x) is finite where x is negative and the energy has no value.
         for i in 0..L {
             if !outputs[0][i].value().is_finite() {
