@@ -580,10 +580,11 @@ fn spikes_pull_less_under_other_losses() {
     let numbers = stated.map(|(_, value)| [value]);
     let truth: Vec<(&str, &[f64])> =
         names.iter().copied().zip(numbers.iter().map(|value| &value[..])).collect();
+    let noise_n = 2.0;
     let (mut held, mut rounds) = ([0; 4], 0);
     let mut worst = [0.0_f64; 4];
     for seed in 1..=12 {
-        let clean = measured(&muscle, &truth, 1.0, seed);
+        let clean = measured(&muscle, &truth, noise_n, seed);
         let mut noise = Noise(1000 + seed);
         let contraction = clean.contraction(0.11);
         let mut csv = String::from("time [s],sweep,pressure [Pa],contraction [-],force [N]\n");
@@ -606,13 +607,16 @@ fn spikes_pull_less_under_other_losses() {
                 rounds += 1;
             }
             // Some spikes are set apart before the fit: by lines that stand alone.
-            assert_eq!(fit.downweighted > 0, loss != Loss::Squares, "{loss:?}: {}", fit.downweighted);
+            let is_robust = loss != Loss::Squares;
+            assert_eq!(fit.downweighted > 0, is_robust, "{loss:?}: {}", fit.downweighted);
+            assert!(!is_robust || (1.6..3.0).contains(&fit.sd_n), "{loss:?}: {} N", fit.sd_n);
         }
     }
     let each = f64::from(rounds / 4);
-    // The mean of the spikes is 3.6 N; a tenth of spikes on one side moves Huber's estimate by 0.2 sigma.
+    // The mean of the spikes is 3.6 N; a tenth of spikes on one side moves Huber's estimate by 0.2 sigma, and the median of
+    // |x| by a tenth.
     assert!(worst[0] > 2.5, "{worst:?}");
-    assert!(worst[1..].iter().all(|worst| *worst < 1.2), "{worst:?}");
+    assert!(worst[1..].iter().all(|worst| *worst < 1.5), "{worst:?}");
     assert!(f64::from(held[3]) > 0.8 * each, "{held:?} of {each}");
 }
 

@@ -171,6 +171,13 @@ fn a_number_that_is_held_amiss_is_named() {
     assert!(says.starts_with("what is held makes the error on unseen data larger (23."), "{says}");
     assert!(says.contains("`coulomb-friction force = 30 N (held)`") && !says.contains("follows"), "{says}");
     assert_eq!([warned(&at(7.0)), warned(&free)], [None, None]);
+    // The one that makes it so, not the one before.
+    let both = options(&["coulomb-friction", "force-offset"]);
+    let held = ["coulomb-friction.force=7 N", "force-offset.offset=20 N"];
+    let both = held.into_iter().fold(both, |options, held| options.hold(held, &muscle).unwrap());
+    let says = warned(&both).unwrap();
+    assert!(says.contains("`force-offset offset = 20 N (held)`; fitted"), "{says}");
+    assert!(!says.contains("coulomb-friction force"), "{says}");
 }
 
 /// Data that an effect needs but doesn't have are reported by the names of the columns.
