@@ -277,12 +277,17 @@ impl Data {
     #[must_use]
     pub fn contraction_as(&self, specimen: u32, row: usize, contraction: f64, l0: f64) -> f64 {
         let ratio = self.length_of(self.specimen_of(row), l0) / self.length_of(specimen, l0);
-        let is_displaced = || self.displaced_from_m.get(self.line(row).0).is_some_and(Option::is_some);
         match &self.columns.motion {
             Trace::Contraction(_) => contraction,
-            Trace::Length(_) if is_displaced() => contraction * ratio,
+            Trace::Length(_) if self.is_displaced(row) => contraction * ratio,
             Trace::Length(_) => 1.0 - (1.0 - contraction) * ratio,
         }
+    }
+
+    /// Whether the motion of a row was read as a displacement.
+    #[must_use]
+    pub fn is_displaced(&self, row: usize) -> bool {
+        self.displaced_from_m.get(self.line(row).0).is_some_and(Option::is_some)
     }
 
     /// Contraction per unit of shortening, for a specimen of a muscle of length `l0`.

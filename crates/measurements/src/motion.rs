@@ -118,11 +118,12 @@ struct Sign {
 
 /// The sign of c in force = a + b pressure + c displacement, since the force falls as a muscle shortens at
 /// constant pressure. Under a weight a muscle shortens as the pressure rises. A wild reading counts as the last but a tenth of
-/// its column; a load cell that reads most pulls as negative is turned over.
+/// its column; a load cell that reads most pulls as negative is turned over, and what then still pushes doesn't count: it was
+/// turned for a while.
 fn sign(slots: &[Slot], place: usize, is_good: &[bool]) -> Sign {
     let numbers = |field| place_of(slots, field).map_or(&[][..], |place| slots[place].numbers());
     let of = |values: &[f64]| clamped(rows(is_good).map(|row| values[row]).collect());
-    let [pressure, mut force, way] =
+    let [mut pressure, mut force, mut way] =
         [of(numbers(Field::Pressure)), of(numbers(Field::Force)), of(slots[place].numbers())];
     let large = PULLS * force.iter().fold(0.0_f64, |most, force| most.max(force.abs()));
     let pulls = force.iter().filter(|force| force.abs() > large);
@@ -130,6 +131,11 @@ fn sign(slots: &[Slot], place: usize, is_good: &[bool]) -> Sign {
         for force in &mut force {
             *force = -*force;
         }
+    }
+    let counts: Vec<bool> = force.iter().map(|force| *force > -large).collect();
+    for values in [&mut pressure, &mut force, &mut way] {
+        let mut counts = counts.iter();
+        values.retain(|_| counts.next().is_none_or(|counts| *counts));
     }
     let [p, f, d] = [&pressure, &force, &way].map(|values| {
         let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
@@ -218,6 +224,16 @@ mod tests {
             .map(|i| [2.5 + 1e-3 * f64::from(i * 7 % 5), f64::from(i % 8), 100.0 - 0.1 * f64::from(i % 8)])
             .collect();
         assert!(says(&hung).contains("the force falls"), "{}", says(&hung));
+        // A weight whose load cell is turned for a while, most of it where the muscle is long.
+        let turned = |i: i32| if (10..24).contains(&i) { -600.0 } else { 600.0 };
+        let hung: Vec<[f64; 3]> = (0..60_i32)
+            .map(|i| {
+                let bar = 2.0 + f64::from((i % 40 - 20).abs()) / 10.0;
+                [bar, 8.0 * (bar - 1.5), turned(i) + f64::from(i * 7 % 5)]
+            })
+            .collect();
+        assert!(says(&hung).starts_with("shortening"), "{}", says(&hung));
+        assert!(says(&hung).contains("at a held force"), "{}", says(&hung));
     }
 
     #[test]

@@ -103,7 +103,7 @@ impl<'a> Analysis<'a> {
         for effect in &options.effects {
             check_needs(effect, &record)?;
         }
-        if let Some((rows, why)) = of_no_muscle(muscle, &record, &used) {
+        if let Some((rows, why)) = of_no_muscle(&data, muscle, &record, &used) {
             used.leave_out(&data, rows, why);
         }
         check_size(&data, muscle, &record, &used.mask)?;

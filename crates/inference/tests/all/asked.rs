@@ -10,9 +10,10 @@ use bulge_inference::{
     Protocol, Stated, StatementError, Statements, compare, compare_with_rows, diagnose, drawn_forms,
     fit_effects, predict, simulate, simulate_with,
 };
-use bulge_measurements::{Columns, Data, Trace, to_csv};
-use bulge_muscles::{Fault, Muscle};
-use std::fmt::Debug;
+use bulge_measurements::{Columns, Data, ReadOptions, Trace, to_csv};
+use bulge_model::Model;
+use bulge_muscles::{Fault, Muscle, Quantity, preset};
+use std::fmt::{Debug, Write as _};
 use std::sync::{Arc, Mutex, atomic::AtomicUsize, atomic::Ordering};
 
 fn named(name: &str) -> Muscle {
@@ -331,6 +332,27 @@ fn a_few_impossible_lengths_are_set_apart() {
         said.rows == 1 && said.why.contains("no muscle of 250.0 mm has a contraction of -50.0 %"),
         "{said:?}"
     );
+}
+
+/// One of three held lengths whose displacement was written with the other sign, a third of the rows.
+#[test]
+fn displacements_of_the_other_sign_are_set_apart() {
+    let muscle = preset("ppam-2-r16").unwrap();
+    let model = Model::new(&muscle);
+    let mut csv = String::from("time [s],pressure [bar],displacement [mm],force [N],sweep\n");
+    for row in 0..90_u32 {
+        let (sweep, bar) = (row / 30, 1.0 + f64::from(row % 30) / 15.0);
+        let (part, sign) = [(0.08, 1.0), (0.15, -1.0), (0.22, 1.0)][sweep as usize];
+        let force = model.at_rest(&[], bar * 1e5, part).unwrap().force_n;
+        let displacement = sign * 1e3 * part * muscle.length().si();
+        let _ = writeln!(csv, "{row},{bar},{displacement},{force},{sweep}");
+    }
+    let read = ReadOptions { l0_m: Some(muscle.length().si()), ..ReadOptions::default() };
+    let csv = Data::from_bytes(csv.as_bytes(), "d.csv", &read).unwrap();
+    let found = compare(&csv, &muscle, &options(&[])).unwrap();
+    let why = "a contraction of -15.0 %; see whether the sign of the displacement was turned there";
+    let said = found.data.left_out.iter().find(|left| left.why.contains(why)).unwrap();
+    assert!(said.rows == 30 && found.ladder[0].rmse_n < 1e-6, "{said:?} {}", found.ladder[0].rmse_n);
 }
 
 #[test]
