@@ -339,20 +339,25 @@ fn a_few_impossible_lengths_are_set_apart() {
 fn displacements_of_the_other_sign_are_set_apart() {
     let muscle = preset("ppam-2-r16").unwrap();
     let model = Model::new(&muscle);
-    let mut csv = String::from("time [s],pressure [bar],displacement [mm],force [N],sweep\n");
-    for row in 0..90_u32 {
-        let (sweep, bar) = (row / 30, 1.0 + f64::from(row % 30) / 15.0);
-        let (part, sign) = [(0.08, 1.0), (0.15, -1.0), (0.22, 1.0)][sweep as usize];
-        let force = model.at_rest(&[], bar * 1e5, part).unwrap().force_n;
-        let displacement = sign * 1e3 * part * muscle.length().si();
-        let _ = writeln!(csv, "{row},{bar},{displacement},{force},{sweep}");
-    }
-    let read = ReadOptions { l0_m: Some(muscle.length().si()), ..ReadOptions::default() };
-    let csv = Data::from_bytes(csv.as_bytes(), "d.csv", &read).unwrap();
-    let found = compare(&csv, &muscle, &options(&[])).unwrap();
+    let csv = |turned: f64, zero: f64| {
+        let mut csv = String::from("time [s],pressure [bar],displacement [mm],force [N],sweep\n");
+        for row in 0..90_u32 {
+            let (sweep, bar) = (row / 30, 1.0 + f64::from(row % 30) / 15.0);
+            let (part, sign) = [(0.08, 1.0), (0.15, turned), (0.22, 1.0)][sweep as usize];
+            let force = model.at_rest(&[], bar * 1e5, part).unwrap().force_n;
+            let displacement = 1e3 * (sign * part - zero) * muscle.length().si();
+            let _ = writeln!(csv, "{row},{bar},{displacement},{force},{sweep}");
+        }
+        let read = ReadOptions { l0_m: Some(muscle.length().si()), ..ReadOptions::default() };
+        Data::from_bytes(csv.as_bytes(), "d.csv", &read).unwrap()
+    };
+    let found = compare(&csv(-1.0, 0.0), &muscle, &options(&[])).unwrap();
     let why = "a contraction of -15.0 %; see whether the sign of the displacement was turned there";
     let said = found.data.left_out.iter().find(|left| left.why.contains(why)).unwrap();
     assert!(said.rows == 30 && found.ladder[0].rmse_n < 1e-6, "{said:?} {}", found.ladder[0].rmse_n);
+    // A wrong zero puts one length of three beyond what the muscle has, and another beside it: no sign is turned.
+    let refused = compare(&csv(1.0, 0.19), &muscle, &options(&[])).unwrap_err().to_string();
+    assert!(refused.contains("the contraction at line 2-31 is -11.0 %"), "{refused}");
 }
 
 #[test]
