@@ -42,7 +42,7 @@ pub struct Data {
     columns: Arc<Columns>,
     files: Vec<SourceFile>,
     /// Unpressurised length \[m\] from which the displacements of each file count, if it has displacements.
-    displaced_from_m: Vec<Option<f64>>,
+    pub(crate) displaced_from_m: Vec<Option<f64>>,
     lines: Vec<u32>,
     specimens: Vec<String>,
     /// Unpressurised length of each specimen \[m\] if it differs from the muscle's; empty if none differs.
@@ -282,12 +282,6 @@ impl Data {
             Trace::Length(_) if self.is_displaced(row) => contraction * ratio,
             Trace::Length(_) => 1.0 - (1.0 - contraction) * ratio,
         }
-    }
-
-    /// Whether the motion of a row was read as a displacement.
-    #[must_use]
-    pub fn is_displaced(&self, row: usize) -> bool {
-        self.displaced_from_m.get(self.line(row).0).is_some_and(Option::is_some)
     }
 
     /// Contraction per unit of shortening, for a specimen of a muscle of length `l0`.

@@ -1,6 +1,7 @@
 //! Reduces the motion to one column: a displacement becomes a length, and of length and contraction the
 //! measured one is kept.
 
+use crate::data::Data;
 use crate::error::MeasurementError;
 use crate::heading::Field;
 use crate::reading::{ReadOptions, Reading};
@@ -18,6 +19,14 @@ const PULLS: f64 = 0.1;
 const GOES_WITH: f64 = 0.5;
 /// Largest difference between a contraction and the one that follows from the length.
 const SAME: f64 = 5e-3;
+
+impl Data {
+    /// Whether the motion of a row was read as a displacement.
+    #[must_use]
+    pub fn is_displaced(&self, row: usize) -> bool {
+        self.displaced_from_m.get(self.line(row).0).is_some_and(Option::is_some)
+    }
+}
 
 /// Leaves one motion among the columns; `is_good` marks the rows that count. Returns the length \[m\] from which
 /// displacements count, if there are any.
@@ -118,12 +127,12 @@ struct Sign {
 
 /// The sign of c in force = a + b pressure + c displacement, since the force falls as a muscle shortens at
 /// constant pressure. Under a weight a muscle shortens as the pressure rises. A wild reading counts as the last but a tenth of
-/// its column; a load cell that reads most pulls as negative is turned over, and what then still pushes doesn't count: it was
-/// turned for a while.
+/// its column; a load cell that reads most pulls as negative is turned over. Where what then still pulls is a weight, the cell was
+/// turned for a while; otherwise it may have been tared under a load, and all readings count.
 fn sign(slots: &[Slot], place: usize, is_good: &[bool]) -> Sign {
     let numbers = |field| place_of(slots, field).map_or(&[][..], |place| slots[place].numbers());
     let of = |values: &[f64]| clamped(rows(is_good).map(|row| values[row]).collect());
-    let [mut pressure, mut force, mut way] =
+    let [pressure, mut force, way] =
         [of(numbers(Field::Pressure)), of(numbers(Field::Force)), of(slots[place].numbers())];
     let large = PULLS * force.iter().fold(0.0_f64, |most, force| most.max(force.abs()));
     let pulls = force.iter().filter(|force| force.abs() > large);
@@ -132,20 +141,21 @@ fn sign(slots: &[Slot], place: usize, is_good: &[bool]) -> Sign {
             *force = -*force;
         }
     }
-    let counts: Vec<bool> = force.iter().map(|force| *force > -large).collect();
-    for values in [&mut pressure, &mut force, &mut way] {
-        let mut counts = counts.iter();
-        values.retain(|_| counts.next().is_none_or(|counts| *counts));
-    }
-    let [p, f, d] = [&pressure, &force, &way].map(|values| {
+    let centred = |values: &[f64], counts: &dyn Fn(usize) -> bool| -> Vec<f64> {
+        let values: Vec<f64> = (0..values.len()).filter(|row| counts(*row)).map(|row| values[row]).collect();
         let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
-        values.iter().map(|value| value - mean).collect::<Vec<f64>>()
-    });
+        values.iter().map(|value| value - mean).collect()
+    };
     let covariance = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let pulls = |row: usize| force[row] >= -large;
+    let [p, d] = [&pressure, &way].map(|values| centred(values, &pulls));
     let (pp, dd, pd) = (covariance(&p, &p), covariance(&d, &d), covariance(&p, &d));
-    if sweep::is_weight(force.iter().copied()) && pd.abs() > GOES_WITH * (pp * dd).sqrt() {
+    let pulling = force.iter().copied().filter(|force| *force >= -large);
+    if sweep::is_weight(pulling) && pd.abs() > GOES_WITH * (pp * dd).sqrt() {
         return Sign { shortens: pd > 0.0, why: "at a held force it goes with the pressure" };
     }
+    let [p, f, d] = [&pressure, &force, &way].map(|values| centred(values, &|_| true));
+    let (pp, dd, pd) = (covariance(&p, &p), covariance(&d, &d), covariance(&p, &d));
     let (pf, df) = (covariance(&p, &f), covariance(&d, &f));
     // c = (df pp - pf pd) / (pp dd - pd^2); at a single pressure pp and pd vanish.
     let slope = if pp > 0.0 && pp * dd > 1.0001 * pd * pd { df * pp - pf * pd } else { df };

@@ -54,7 +54,7 @@ pub(crate) fn of_no_muscle(
     let first = contraction(rows.first()?);
     let is_turned = |row: &usize| {
         let turned = -contraction(row);
-        data.is_displaced(*row) && turned >= 0.0 && possible.contains(&turned)
+        data.is_displaced(*row) && turned >= -ZERO && possible.contains(&turned)
     };
     let of_sweep = |sweep: &Sweep| sweep.rows.clone().filter(|row| used.mask[*row]).collect::<Vec<usize>>();
     let sweeps = data.sweeps().iter().map(of_sweep);
