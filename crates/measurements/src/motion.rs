@@ -244,6 +244,15 @@ mod tests {
             .collect();
         assert!(says(&hung).starts_with("shortening"), "{}", says(&hung));
         assert!(says(&hung).contains("at a held force"), "{}", says(&hung));
+        // A cell that was tared between two weights reads the lighter one as a push; the muscle is shorter under that.
+        let weights: Vec<[f64; 3]> = (0..40_i32)
+            .map(|i| {
+                let [p, d] = [f64::from(i * 7 % 5), f64::from(i * 3 % 8)].map(|noise| 1e-3 * noise);
+                let [way, force] = if i / 10 % 2 == 0 { [-11.0, 236.0] } else { [-42.0, -218.0] };
+                [3.8 + p, way + d, force]
+            })
+            .collect();
+        assert!(says(&weights).starts_with("lengthening"), "{}", says(&weights));
     }
 
     #[test]

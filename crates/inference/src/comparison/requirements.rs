@@ -20,8 +20,8 @@ const STRETCH: f64 = 0.1;
 
 /// Fraction of the rows that may have others: a lost comma, one file in another unit.
 const FEW: f64 = 0.25;
-/// The same of sweeps whose displacements have the other sign: a wrong length of the muscle makes none of them impossible,
-/// and with a wrong zero they pass through it.
+/// The same of sweeps whose displacements have the other sign. A wrong length of the muscle makes no lengthening impossible
+/// unless it is much too short, and with a wrong zero some sweep passes through it, or lies just beyond.
 const TURNED: f64 = 0.49;
 /// Lengthening of the other rows, at most: the zero of a displacement is off by less.
 const ZERO: f64 = 0.02;
