@@ -34,12 +34,24 @@ impl Solver {
         before: &Load,
         from: &State,
         load: &Load,
+        seen: impl FnMut(f64, &State),
+    ) -> Result<State, MembraneError> {
+        self.follow_on(before, (None, from), load, seen)
+    }
+
+    /// The same, continued from an older equilibrium, if there is one, whose load was as far from `before` on the other
+    /// side as `load` is.
+    pub(crate) fn follow_on(
+        &mut self,
+        before: &Load,
+        (older, from): (Option<&State>, &State),
+        load: &Load,
         mut seen: impl FnMut(f64, &State),
     ) -> Result<State, MembraneError> {
         let patience = self.tolerance.iterations;
         let budget = BUDGET.max(2 * patience);
         self.deadline = self.effort.factorisations + budget;
-        let found = match self.steps(before, from, load, &mut seen) {
+        let found = match self.steps(before, (older, from), load, &mut seen) {
             // A flat or slack mesh has no volume at first, so it is filled under pressure before the volume
             // is prescribed.
             Err(_) if matches!(load.inflation, Inflation::Volume(_)) && from.iterations == 0 => {
@@ -49,7 +61,7 @@ impl Solver {
                         inflation: Inflation::Volume(first.volume),
                         fittings: before.fittings.clone(),
                     };
-                    self.steps(&begun, &first, load, &mut seen)
+                    self.steps(&begun, (None, &first), load, &mut seen)
                 })
             }
             found => found,
@@ -70,13 +82,13 @@ impl Solver {
     fn steps(
         &mut self,
         before: &Load,
-        from: &State,
+        (older, from): (Option<&State>, &State),
         load: &Load,
         seen: &mut impl FnMut(f64, &State),
     ) -> Result<State, MembraneError> {
         let (mut done, mut step) = (0.0, 1.0_f64);
         let mut last = from.clone();
-        let mut older: Option<(f64, State)> = None;
+        let mut older = older.map(|state| (-1.0, state.clone()));
         let mut said = None;
         // The first state may be far from a mesh at rest, but states on a path are close to each other.
         let patience = self.tolerance.iterations;

@@ -65,7 +65,7 @@ impl Array {
         } else {
             format!(r#" NumberOfComponents="{}""#, self.components)
         };
-        let blocks: Vec<Vec<u8>> = bytes.chunks(BLOCK).map(compressed).collect();
+        let blocks: Vec<Vec<u8>> = bytes.par_chunks(BLOCK).map(compressed).collect();
         let numbers = [blocks.len(), BLOCK, bytes.len() % BLOCK];
         let sizes = blocks.iter().map(Vec::len);
         let header: Vec<u8> =

@@ -98,6 +98,8 @@ pub struct CaseRun<'a> {
     pub(super) case: &'a Case,
     solver: Solver,
     last: State,
+    /// The state before it in the same step.
+    older: Option<State>,
     /// Whether that is the mesh at rest, from which nothing is remembered.
     is_fresh: bool,
     /// Prescribed positions and forces.
@@ -127,6 +129,7 @@ impl Case {
             case: self,
             solver,
             last,
+            older: None,
             is_fresh: true,
             fittings: vec![0.0; fittings.len()],
             at: 0,
@@ -205,7 +208,7 @@ impl CaseRun<'_> {
                 seen(1.0, &state);
                 Ok(state)
             }
-            None => self.solver.follow(&from, &self.last, &to, |share, state| {
+            None => self.solver.follow_on(&from, (self.older.as_ref(), &self.last), &to, |share, state| {
                 on_the_way = Some(state.clone());
                 seen(share, state);
             }),
@@ -227,7 +230,9 @@ impl CaseRun<'_> {
         }
         let fields = self.solver.fields(&state);
         let row = self.row(row_step, &state, &fields);
-        self.last = state.clone();
+        let last = std::mem::replace(&mut self.last, state.clone());
+        // The loads of a step are equally far from each other. A mesh at rest is no equilibrium.
+        self.older = (self.made > 0 && last.iterations > 0).then_some(last);
         Ok((row, state, fields))
     }
 
