@@ -55,6 +55,21 @@ const TUBE: &str = "[mesher]\nkind = \"tube\"\nradius = \"10 mm\"\nlength = \"20
     [[material]]\nname = \"rubber\"\nlaw = \"gent\"\nlimit = 100\nthickness = \"1 mm\"\nshear = \"0.4 MPa\"\n\
     [[part]]\ngroup = \"wall\"\nkind = \"membrane\"\nmaterial = \"rubber\"\n";
 
+/// A state that starts on the line through the two before it takes three iterations, and is the one that a step of its
+/// own reaches in four.
+#[test]
+fn states_of_a_step_start_on_the_line_of_the_two_before() {
+    let alone: String = (1..=6).map(|i| format!("[[step]]\npressure = \"{} kPa\"\n", 4 * i)).collect();
+    let series = rows_of(&format!("{TUBE}[[step]]\npressure = \"24 kPa\"\nstates = 6\n")).unwrap();
+    let alone = rows_of(&format!("{TUBE}{alone}")).unwrap();
+    assert_eq!((series.len(), alone.len()), (6, 6));
+    for (own, other) in series.iter().zip(&alone) {
+        assert!((own.volume / other.volume - 1.0).abs() < 1e-12, "{} {}", own.volume, other.volume);
+    }
+    let taken = |rows: &[Row]| rows.iter().skip(2).map(|row| row.iterations).sum::<usize>();
+    assert!(taken(&series) <= 12 && taken(&alone) >= 16, "{} {}", taken(&series), taken(&alone));
+}
+
 /// Beyond its limit point a tube has two states under one pressure; a step stays on the one that it starts from.
 #[test]
 fn a_step_from_a_state_that_was_held_remembers_it() {
