@@ -39,6 +39,8 @@ pub struct Case {
     pub supports: Vec<(String, Support)>,
     /// Groups of supports whose plane of symmetry the cloth doesn't pass through.
     pub contacts: Vec<String>,
+    /// Groups whose sheets resist bending, with their bending stiffness D \[N m\].
+    pub bending: Vec<(String, f64)>,
     /// The end fittings with their names.
     pub fittings: Vec<(String, Fitting)>,
     /// The fittings between which a contraction is measured; `None` without fittings.

@@ -10,12 +10,14 @@ mod cable;
 mod contact;
 mod ring;
 mod shape;
+mod star;
 mod triangle;
 
 pub(crate) use cable::Cable;
 pub(crate) use contact::{Contact, Mirror};
 pub use ring::RingLayer;
 pub(crate) use ring::{Carried as CarriedByRing, Layer, Ring};
+pub(crate) use star::{Star, corners};
 pub(crate) use triangle::{Carried, Triangle};
 
 /// A vector.

@@ -4,7 +4,7 @@
 //! ([`crate::assembly`]), so that results are identical for any number of threads.
 
 use crate::dofs::NodeDofs;
-use crate::element::{Cable, Contact, Local, Ring, Triangle, Vector, dot};
+use crate::element::{Cable, Contact, Local, Ring, Star, Triangle, Vector, dot};
 use rayon::prelude::*;
 
 /// One kind of element with N nodes.
@@ -84,6 +84,20 @@ impl Element<1> for Contact {
         Self::local(self, x, penalty)
     }
     fn hold(&mut self, _: &[Vector; 1], _: f64) -> f64 {
+        0.0
+    }
+}
+
+impl<const N: usize> Element<N> for Star<N> {
+    type Rule = ();
+    fn rule() {}
+    fn measure(&self, x: &[Vector; N], _: f64, (): &()) -> [f64; 2] {
+        [self.energy(x), 0.0]
+    }
+    fn local(&self, x: &[Vector; N], _: f64, _: f64, (): &()) -> Local<N> {
+        Self::local(self, x)
+    }
+    fn hold(&mut self, _: &[Vector; N], _: f64) -> f64 {
         0.0
     }
 }

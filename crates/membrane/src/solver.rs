@@ -18,7 +18,7 @@ use crate::element::Vector;
 use crate::error::MembraneError;
 use crate::factor::{Factor, zeros};
 use crate::load::{Inflation, Load};
-use crate::set::{Elements, Place};
+use crate::set::Place;
 use crate::state::{Copies, Effort, State, Tolerance};
 use crate::structure::{Fitting, Group, Structure};
 use faer::Par;
@@ -54,7 +54,7 @@ impl Solver {
     /// # Errors
     /// [`MembraneError::Memory`].
     pub fn new(structure: Structure, copies: Copies, tolerance: Tolerance) -> Result<Self, MembraneError> {
-        let sets = sets(&structure);
+        let sets = structure.sets();
         let assembly = Assembly::new(&sets, &structure.dofs)?;
         // The factorisation uses one thread: a second one gains little on a surface, and would change the
         // last digits.
@@ -249,7 +249,7 @@ impl Solver {
     pub(crate) fn measure(&mut self, y: &[f64]) -> [f64; 2] {
         let clock = Instant::now();
         self.structure.dofs.places(y, &mut self.x);
-        let sets = sets(&self.structure);
+        let sets = self.structure.sets();
         let place = place(&self.x, &self.structure, self.penalty, 0.0);
         let measured = self.assembly.measure(&sets, place);
         self.effort.assembling += clock.elapsed();
@@ -259,7 +259,7 @@ impl Solver {
     pub(crate) fn work(&mut self, y: &[f64], pressure: f64) {
         let clock = Instant::now();
         self.structure.dofs.places(y, &mut self.x);
-        let sets = sets(&self.structure);
+        let sets = self.structure.sets();
         let place = place(&self.x, &self.structure, self.penalty, pressure);
         self.assembly.work(&sets, place, self.structure.dofs.free, &mut self.totals, &mut self.matrix);
         self.effort.assembling += clock.elapsed();
@@ -327,11 +327,6 @@ impl Load {
         let loaded = self.fittings.iter().zip(kinds).filter(|(_, kind)| **kind == Fitting::Loaded);
         loaded.fold(0.0, |a, (force, _)| a.max(force.abs()))
     }
-}
-
-fn sets(structure: &Structure) -> Vec<&dyn Elements> {
-    let contacts: &dyn Elements = &structure.contacts;
-    structure.groups.iter().map(|(_, group)| group.elements()).chain([contacts]).collect()
 }
 
 fn place<'a>(x: &'a [Vector], structure: &'a Structure, penalty: f64, pressure: f64) -> Place<'a> {

@@ -1,15 +1,18 @@
 //! A structure: the elements of a mesh, and the supports of its nodes.
 
+mod bending;
 mod held;
 mod mirrors;
 mod rigid;
+
+pub(crate) use bending::Stars;
 
 use crate::dofs::Dofs;
 use crate::element::{Cable, Contact, Ring, RingLayer, Triangle, Vector};
 use crate::error::MembraneError;
 use crate::material::{Sheet, Thread};
 use crate::mesh::{Block, CellKind, Mesh};
-use crate::set::{Element, Elements, Set};
+use crate::set::{Element, Elements, Set, packed};
 use crate::surface::{Rims, backwards, oriented};
 use serde::Serialize;
 
@@ -114,6 +117,8 @@ pub struct Structure {
     pub(crate) groups: Vec<(String, Group)>,
     /// Nodes that planes of symmetry stop.
     pub(crate) contacts: Set<Contact, 1>,
+    /// Nodes of sheets that resist bending.
+    pub(crate) stars: Stars,
     pub(crate) dofs: Dofs,
     /// Values of the degrees of freedom at the positions of the mesh.
     pub(crate) start: Vec<f64>,
@@ -160,19 +165,9 @@ impl Structure {
             return Err(MembraneError::nothing_moves());
         }
         rigid::check(mesh, &groups, &dofs, &is_flat)?;
-        let numbers: usize = groups
-            .iter()
-            .map(|(_, group)| {
-                let set = group.elements();
-                let own = 3 * set.each();
-                set.count() * own * (own + 1) / 2
-            })
-            .sum();
-        if numbers > u32::MAX as usize / 2 {
-            return Err(MembraneError::Memory { unknowns: dofs.free });
-        }
         let contacts = Set::new(Vec::new(), Vec::new());
-        Ok(Self { groups, contacts, dofs, start, places: mesh.nodes.clone(), fittings: fittings.to_vec() })
+        let (stars, places, fittings) = (Stars::default(), mesh.nodes.clone(), fittings.to_vec());
+        Self { groups, contacts, stars, dofs, start, places, fittings }.with_room()
     }
 
     /// The same with planes of symmetry that stop the triangles, because their mirror image is on the other side: the
@@ -188,6 +183,42 @@ impl Structure {
     ) -> Result<Self, MembraneError> {
         self.contacts = mirrors::contacts(mesh, &self.groups, supports, groups)?;
         Ok(self)
+    }
+
+    /// The same with sheets that resist bending: groups of triangles with three nodes, and their bending stiffness D \[N m\].
+    /// They are free of stress when flat. A sheet goes on beyond a plane of symmetry that it crosses; where it touches one,
+    /// ends, or meets another group, it hinges freely.
+    ///
+    /// # Errors
+    /// An unknown group, triangles with six nodes, or a sector whose edges follow each other.
+    pub fn resisting_bending(
+        mut self,
+        mesh: &Mesh,
+        supports: &[(String, Support)],
+        groups: &[(String, f64)],
+    ) -> Result<Self, MembraneError> {
+        self.stars = bending::stars(mesh, supports, groups)?;
+        self.with_room()
+    }
+
+    /// Refuses more numbers than the assembly can count.
+    fn with_room(self) -> Result<Self, MembraneError> {
+        let numbers: usize = self.sets().iter().map(|set| set.count() * packed(3 * set.each())).sum();
+        if numbers > u32::MAX as usize / 2 {
+            return Err(MembraneError::Memory { unknowns: self.dofs.free });
+        }
+        Ok(self)
+    }
+
+    /// Everything that has energy or volume.
+    pub(crate) fn sets(&self) -> Vec<&dyn Elements> {
+        let contacts: &dyn Elements = &self.contacts;
+        self.groups
+            .iter()
+            .map(|(_, group)| group.elements())
+            .chain([contacts])
+            .chain(self.stars.sets())
+            .collect()
     }
 
     /// Number of degrees of freedom that are solved for.

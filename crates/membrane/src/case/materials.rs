@@ -19,6 +19,7 @@ const KEYS: Keys = &[
     ("limit", "limit = 50.0"),
     ("wrinkles", "wrinkles = true"),
     ("residual", "residual = 1e-6"),
+    ("bending", "bending = true"),
 ];
 
 #[derive(Debug, Clone, Copy)]
@@ -43,8 +44,15 @@ const KINDS: &[(&str, Kind)] = &[
 /// Fraction of the stiffness that a wrinkled sheet keeps.
 const RESIDUAL: f64 = 1e-6;
 
-pub(super) fn read(settings: &Settings<'_>) -> Result<Vec<(String, Sheet)>, FileError> {
+/// The sheets by name, and the bending stiffness D \[N m\] of those that resist bending.
+pub(super) struct Materials {
+    pub(super) sheets: Vec<(String, Sheet)>,
+    pub(super) bending: Vec<(String, f64)>,
+}
+
+pub(super) fn read(settings: &Settings<'_>) -> Result<Materials, FileError> {
     let mut found: Vec<(String, Sheet)> = Vec::new();
+    let mut bending = Vec::new();
     for table in settings.tables("material", "a `[[material]]`", KEYS)?.unwrap_or_default() {
         table.check_keys()?;
         let name = name(&table, "name")?;
@@ -52,9 +60,20 @@ pub(super) fn read(settings: &Settings<'_>) -> Result<Vec<(String, Sheet)>, File
             let what = format!("there are two materials called `{name}`");
             return Err(table.error(table.value_span("name"), what, "give each its own name"));
         }
-        found.push((name.to_owned(), sheet(&table)?));
+        let sheet = sheet(&table)?;
+        if table.flag("bending")?.unwrap_or(false) {
+            let Cloth::Isotropic(law) = sheet.cloth else {
+                let what = "woven cloth has a bending stiffness for each direction, which isn't known here";
+                let instead = "leave `bending` out, or take `law = \"st-venant\"`";
+                return Err(table.error(table.key_span("bending"), what, instead));
+            };
+            let h = needed(&table, "thickness", Dimension::LENGTH)?;
+            // The stress over the thickness is that of small strains: D = Y h^3/12(1 - nu^2).
+            bending.push((name.to_owned(), law.in_plane() * h * h / 12.0));
+        }
+        found.push((name.to_owned(), sheet));
     }
-    Ok(found)
+    Ok(Materials { sheets: found, bending })
 }
 
 fn sheet(table: &Settings<'_>) -> Result<Sheet, FileError> {

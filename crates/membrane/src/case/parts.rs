@@ -5,6 +5,7 @@ use bulge_muscles::shown::listed;
 use bulge_muscles::{Dimension, FileError, Muscle, Parameter};
 use std::collections::BTreeSet;
 
+use super::materials::Materials;
 use super::read::{direction, in_range, name, number, positive};
 use super::source::Source;
 use crate::element::RingLayer;
@@ -77,6 +78,32 @@ pub(super) fn read(
         }
     }
     Ok(parts)
+}
+
+/// Groups whose material resists bending, with their bending stiffness.
+pub(super) fn bending(
+    settings: &Settings<'_>,
+    source: &Source,
+    materials: &Materials,
+) -> Result<Vec<(String, f64)>, FileError> {
+    let mut found = Vec::new();
+    for table in &settings.tables("part", "a `[[part]]`", KEYS)?.unwrap_or_default() {
+        let Some(material) = table.get("material").and_then(Setting::text) else { continue };
+        let Some((_, bending)) = materials.bending.iter().find(|(name, _)| name == material) else {
+            continue;
+        };
+        let group = group(table, "group", source)?;
+        let of_group = || source.mesh.blocks.iter().filter(|block| block.group == group);
+        if of_group().any(|block| !matches!(block.kind, CellKind::Point | CellKind::Triangle3)) {
+            let what = format!(
+                "`{material}` resists bending, which only triangles with three nodes do, and `{group}` has other cells"
+            );
+            let instead = "mesh it with `order = 1` and two numbers of `cells`, or give this part a material without `bending`";
+            return Err(table.error(table.value_span("material"), what, instead));
+        }
+        found.push((group.to_owned(), *bending));
+    }
+    Ok(found)
 }
 
 /// A group of the mesh, by name.

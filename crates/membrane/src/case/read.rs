@@ -61,7 +61,8 @@ impl Case {
         settings.check_keys()?;
         let source = source::read(&settings, folder)?;
         let materials = materials::read(&settings)?;
-        let parts = parts::read(&settings, &source, &materials)?;
+        let parts = parts::read(&settings, &source, &materials.sheets)?;
+        let bending = parts::bending(&settings, &source, &materials)?;
         let supports = supports::read(&settings, &source)?;
         supports::check_sectors(&settings, &source, &parts, &supports)?;
         let ends = Ends::of(&source.mesh, &supports.held, supports.fittings.len());
@@ -79,7 +80,8 @@ impl Case {
             tolerance: tolerance(&settings)?,
             muscle: source.muscle.map(|muscle| stiffened(muscle, &parts)),
             parts,
-            materials,
+            bending,
+            materials: materials.sheets,
             mesh: source.mesh,
             lattice: source.lattice,
         })

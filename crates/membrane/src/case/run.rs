@@ -123,6 +123,7 @@ impl Case {
         let fittings: Vec<Fitting> = self.fittings.iter().map(|(_, fitting)| *fitting).collect();
         let structure = Structure::new(&self.mesh, &self.parts, &self.supports, &fittings)?;
         let structure = structure.stopped(&self.mesh, &self.supports, &self.contacts)?;
+        let structure = structure.resisting_bending(&self.mesh, &self.supports, &self.bending)?;
         let mut solver = Solver::new(structure, self.copies, self.tolerance)?;
         let last = solver.at_rest();
         Ok(CaseRun {
