@@ -165,8 +165,10 @@ impl Sheet {
     }
 }
 
-/// Nodes and flat places of the triangles of a group.
-fn cells(mesh: &Mesh, group: &str) -> Result<Vec<([u32; 3], [Vector; 3])>, MembraneError> {
+/// Nodes of a triangle, and their flat places.
+type Cell = ([u32; 3], [Vector; 3]);
+
+fn cells(mesh: &Mesh, group: &str) -> Result<Vec<Cell>, MembraneError> {
     let mut cells = Vec::new();
     let mut is_known = false;
     for block in mesh.blocks.iter().filter(|block| block.group == group) {
@@ -185,8 +187,9 @@ fn cells(mesh: &Mesh, group: &str) -> Result<Vec<([u32; 3], [Vector; 3])>, Membr
             clippy::cast_possible_truncation,
             reason = "a mesh has fewer than 2^31 nodes: checked when it is read"
         )]
+        let numbers = |cell: &[usize; 3]| cell.map(|node| node as u32);
         let own = block.cells.as_chunks::<3>().0.iter().enumerate();
-        cells.extend(own.map(|(i, cell)| (cell.map(|node| node as u32), source.stress_free(i))));
+        cells.extend(own.map(|(i, cell)| (numbers(cell), source.stress_free(i))));
     }
     if is_known { Ok(cells) } else { Err(MembraneError::unknown_group(group, mesh)) }
 }

@@ -59,9 +59,9 @@ const TUBE: &str = "[mesher]\nkind = \"tube\"\nradius = \"10 mm\"\nlength = \"20
 /// own reaches in four.
 #[test]
 fn states_of_a_step_start_on_the_line_of_the_two_before() {
-    let alone: String = (1..=6).map(|i| format!("[[step]]\npressure = \"{} kPa\"\n", 4 * i)).collect();
+    let alone = ["4", "8", "12", "16", "20", "24"].map(|kpa| format!("[[step]]\npressure = \"{kpa} kPa\"\n"));
     let series = rows_of(&format!("{TUBE}[[step]]\npressure = \"24 kPa\"\nstates = 6\n")).unwrap();
-    let alone = rows_of(&format!("{TUBE}{alone}")).unwrap();
+    let alone = rows_of(&(TUBE.to_owned() + &alone.concat())).unwrap();
     assert_eq!((series.len(), alone.len()), (6, 6));
     for (own, other) in series.iter().zip(&alone) {
         assert!((own.volume / other.volume - 1.0).abs() < 1e-12, "{} {}", own.volume, other.volume);
