@@ -171,9 +171,9 @@ def ratios(measured):
 
 def limits(measured):
     """What each kernel takes beside what its operations need at least."""
-    lines = ["| a call of | needs: + x, divisions, roots | instructions | time | limit as compiled | limit in four lanes |", "|---|---|---|---|---|---|"]
+    lines = ["| a call of | needs: + x, divisions, roots; bytes | instructions | time | limit as compiled | limit in four lanes |", "|---|---|---|---|---|---|"]
     for row in measured["rows"]:
-        needs = f"{_count(row['arithmetic'])}, {_count(row['divisions'])}, {_count(row['roots'])}"
+        needs = f"{_count(row['arithmetic'])}, {_count(row['divisions'])}, {_count(row['roots'])}; {_count(row['bytes'])}"
         instructions = _count(row["instructions"]) if row["instructions"] else ""
         bounds = [f"{_time(1e-9 * row[key])}: {float(format(row['time_ns'] / row[key], '.2g')):g} times" for key in ("compiled_ns", "lanes_ns")]
         cells = [f"{row['kernel']} ({row['counted']})", needs, instructions, _time(1e-9 * row["time_ns"]), *bounds]

@@ -90,6 +90,8 @@ pub const CHECKS: &[fn() -> Check] = &[
     membrane::cloth::airbag_stress,
     membrane::cloth::wrinkled_panel,
     membrane::cloth::wrinkled_panel_order,
+    membrane::plates::rectangles,
+    membrane::plates::orders,
     tables::lookups,
     tables::gradients,
     meridian::first_integral,

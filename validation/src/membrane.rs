@@ -3,6 +3,7 @@
 pub(crate) mod cloth;
 pub(crate) mod discs;
 pub(crate) mod muscles;
+pub(crate) mod plates;
 mod rig;
 pub(crate) mod slack;
 pub(crate) mod spheres;

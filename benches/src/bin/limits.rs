@@ -9,11 +9,12 @@
 //! in the same run, each by a loop whose numbers stay in registers: as this program is compiled (two lanes of SSE2) and in
 //! four lanes of AVX2 where the processor has it, both without fused multiplication and addition, whose results are others. The
 //! limit of a kernel is the longer of its additions and multiplications on one hand, and of its divisions and roots, which
-//! share a unit, on the other:
+//! share a unit, on the other; or what its numbers take from and to memory, if they didn't stay in a cache:
 //!
 //! ```text
-//! limit = max(arithmetic t_a, divisions t_d + roots t_r)
+//! limit = max(arithmetic t_a, divisions t_d + roots t_r, bytes t_b)
 //! ```
+//! t_b is that of a copy of [`COPIED`] numbers by one thread, what is read and written.
 //!
 //! Instructions are counted by `valgrind --tool=callgrind` in two runs of this program, one with twice as many calls, where
 //! valgrind is there. Virtual machines seldom have the counters of `perf`.
@@ -46,20 +47,29 @@ const POINTS: usize = 4096;
 const ROUNDS: usize = 15;
 
 /// Operations that a formula needs.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy)]
 struct Operations {
     /// Additions and multiplications.
     arithmetic: f64,
     divisions: f64,
     roots: f64,
+    /// Bytes that are read or written: arguments, coefficients and results, each once.
+    bytes: f64,
 }
 
 impl Operations {
+    const NONE: Self = Self { arithmetic: 0.0, divisions: 0.0, roots: 0.0, bytes: 0.0 };
+
+    fn with_bytes(self, bytes: f64) -> Self {
+        Self { bytes, ..self }
+    }
+
     fn times(self, factor: f64) -> Self {
         Self {
             arithmetic: self.arithmetic * factor,
             divisions: self.divisions * factor,
             roots: self.roots * factor,
+            bytes: self.bytes * factor,
         }
     }
 
@@ -68,6 +78,7 @@ impl Operations {
             arithmetic: self.arithmetic + other.arithmetic,
             divisions: self.divisions + other.divisions,
             roots: self.roots + other.roots,
+            bytes: self.bytes + other.bytes,
         }
     }
 }
@@ -138,26 +149,38 @@ struct Rates {
     arithmetic: f64,
     division: f64,
     root: f64,
+    byte: f64,
+}
+
+/// Numbers that are copied to measure the memory's rate: ten times what caches hold.
+const COPIED: usize = 1 << 24;
+
+/// Nanoseconds of a byte from memory or to it.
+fn copied() -> f64 {
+    let (from, mut to) = (vec![1.0_f64; COPIED], vec![0.0_f64; COPIED]);
+    1e3 * median_us(5, 16 * COPIED, || black_box(&mut to).copy_from_slice(black_box(&from)))
 }
 
 impl Rates {
-    fn as_compiled() -> Self {
+    fn as_compiled(byte: f64) -> Self {
         Self {
             arithmetic: 0.5 * plain::<MultiplyAndAdd>(),
             division: plain::<Divide>(),
             root: plain::<Root>(),
+            byte,
         }
     }
 
-    fn in_lanes() -> Self {
-        Self { arithmetic: 0.5 * wide::<MultiplyAndAdd>(), division: wide::<Divide>(), root: wide::<Root>() }
+    fn in_lanes(byte: f64) -> Self {
+        let arithmetic = 0.5 * wide::<MultiplyAndAdd>();
+        Self { arithmetic, division: wide::<Divide>(), root: wide::<Root>(), byte }
     }
 
     /// Nanoseconds that operations take at least.
     fn limit(&self, needed: &Operations) -> f64 {
         let arithmetic = needed.arithmetic * self.arithmetic;
         let divider = needed.divisions * self.division + needed.roots * self.root;
-        arithmetic.max(divider)
+        arithmetic.max(divider).max(needed.bytes * self.byte)
     }
 }
 
@@ -176,40 +199,42 @@ struct Kernel {
 /// A pair of elliptic integrals after so many duplications.
 fn pair(duplications: f64) -> Operations {
     // lambda, the sum, four means.
-    let duplication = Operations { arithmetic: 16.0, divisions: 1.0, roots: 3.0 };
+    let duplication = Operations { arithmetic: 16.0, divisions: 1.0, roots: 3.0, ..Operations::NONE };
     // Both series, the arguments, the factors in front.
-    let series = Operations { arithmetic: 88.0, divisions: 2.0, roots: 2.0 };
+    let series = Operations { arithmetic: 88.0, divisions: 2.0, roots: 2.0, ..Operations::NONE };
     duplication.times(duplications).and(series)
 }
 
 /// The start of the closed form: an inverse tangent and two polynomials of 36 terms.
-const BEGIN: Operations = Operations { arithmetic: 190.0, divisions: 3.0, roots: 3.0 };
+const BEGIN: Operations = Operations { arithmetic: 190.0, divisions: 3.0, roots: 3.0, ..Operations::NONE };
 /// An iteration of Newton's method in the closed form beside its pair: residuals, Jacobian, step. Logarithms and exponentials
 /// of numbers near one are ratios.
-const NEWTON: Operations = Operations { arithmetic: 84.0, divisions: 13.0, roots: 1.0 };
+const NEWTON: Operations = Operations { arithmetic: 84.0, divisions: 13.0, roots: 1.0, ..Operations::NONE };
 /// Force, volume and radius with their derivatives by contraction, slenderness and compliance.
-const OUTPUTS: Operations = Operations { arithmetic: 150.0, divisions: 4.0, roots: 1.0 };
+const OUTPUTS: Operations = Operations { arithmetic: 150.0, divisions: 4.0, roots: 1.0, ..Operations::NONE };
 /// Pairs that an equilibrium needs: one that corrects a start good to six digits, and one whose derivatives correct the
 /// answer to sixteen.
 const PAIRS: f64 = 2.0;
 /// A point of the meridian's quadrature without derivatives and with those by two unknowns, whose divisions and roots are
 /// products: the divided differences, the rates of length, shortening and volume, and their sums. The places are a table's.
 const BRAID: [Operations; 2] = [
-    Operations { arithmetic: 48.0, divisions: 6.0, roots: 2.0 },
-    Operations { arithmetic: 247.0, divisions: 6.0, roots: 2.0 },
+    Operations { arithmetic: 48.0, divisions: 6.0, roots: 2.0, ..Operations::NONE },
+    Operations { arithmetic: 247.0, divisions: 6.0, roots: 2.0, ..Operations::NONE },
 ];
 /// The same of straight fibres: sigma is one.
 const STRAIGHT: [Operations; 2] = [
-    Operations { arithmetic: 33.0, divisions: 3.0, roots: 1.0 },
-    Operations { arithmetic: 150.0, divisions: 3.0, roots: 1.0 },
+    Operations { arithmetic: 33.0, divisions: 3.0, roots: 1.0, ..Operations::NONE },
+    Operations { arithmetic: 150.0, divisions: 3.0, roots: 1.0, ..Operations::NONE },
 ];
 /// Splines of 4 x 4 coefficients for two outputs: two bases with slopes (32), values and slopes along the rows and their sums
-/// across (144), the edge's spline (33), the coordinates and the chain rule (65).
-const SPLINE: Operations = Operations { arithmetic: 274.0, divisions: 3.0, roots: 1.0 };
+/// across (144), the edge's spline (33), the coordinates and the chain rule (65). Its bytes: the coefficients, two coordinates,
+/// two values with two slopes each.
+const SPLINE: Operations = Operations { arithmetic: 274.0, divisions: 3.0, roots: 1.0, bytes: 320.0 };
 /// The tangent of a flat triangle of three nodes: metric and strain (39), a stress with its three by three moduli (60), B (45),
 /// its forces (54), B^T D B (nine by nine, symmetric: 432), the stress's own part (40), that of the pressure (60), and the
-/// sums over elements (115).
-const TRIANGLE: Operations = Operations { arithmetic: 845.0, divisions: 2.0, roots: 1.0 };
+/// sums over elements (115). Its bytes: three places (72), the flat shape (80), energy, volume, forces and stiffness written and
+/// read once more to be summed (2 x 8 x (2 + 18 + 45)) with their sources.
+const TRIANGLE: Operations = Operations { arithmetic: 845.0, divisions: 2.0, roots: 1.0, bytes: 1450.0 };
 
 fn elliptic(name: &'static str) -> Kernel {
     let mut random = Random::new(1, 0);
@@ -220,7 +245,7 @@ fn elliptic(name: &'static str) -> Kernel {
     Kernel {
         name,
         counted: "Carlson's duplications until the series are exact",
-        needed: pair(mean),
+        needed: pair(mean).with_bytes(32.0),
         calls: Box::new(move |count| {
             for _ in 0..count {
                 next = (next + 1) % POINTS;
@@ -253,7 +278,8 @@ fn closed(name: &'static str, in_one_call: bool) -> Kernel {
     Kernel {
         name,
         counted: "a start, two pairs, each in an iteration of Newton's method",
-        needed: pair(mean).and(NEWTON).times(PAIRS).and(BEGIN).and(OUTPUTS),
+        // Three numbers in; force, volume, radius, unknowns and their derivatives out.
+        needed: pair(mean).and(NEWTON).times(PAIRS).and(BEGIN).and(OUTPUTS).with_bytes(160.0),
         calls: if in_one_call { Box::new(many) } else { Box::new(one_by_one) },
         traced: 10_000,
     }
@@ -264,7 +290,8 @@ fn shot(name: &'static str, problem: Problem, node: [Operations; 2], nodes: f64,
     Kernel {
         name,
         counted: "two passes over the nodes of one or two pieces, one of them with two derivatives",
-        needed: node[0].and(node[1]).times(nodes),
+        // Two numbers of a table each, in both passes.
+        needed: node[0].and(node[1]).times(nodes).with_bytes(32.0 * nodes),
         calls: Box::new(move |count| {
             for i in 0..count {
                 let contraction = 0.05 + 0.2 * (i % 64) as f64 / 63.0;
@@ -344,8 +371,9 @@ fn instructions(kernel: &Kernel, table: &Path) -> Option<f64> {
 }
 
 /// Triangles of the square airbag and its factors: nanoseconds of one in an iteration, nanoseconds of a
-/// factor, and the operations that a factor with so many entries needs at least, sum c_j^2 >= (sum c_j)^2/n of its columns.
-fn membrane() -> Result<[f64; 3], Failure> {
+/// factor, the operations that a factor with so many entries needs at least, sum c_j^2 >= (sum c_j)^2/n of its columns, and its
+/// bytes, each entry written and read.
+fn membrane() -> Result<[f64; 4], Failure> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../meshes/airbag.toml");
     // Odd numbers of cells have no coarser mesh to start from, whose iterations would count.
     let text = std::fs::read_to_string(&path)?.replace("[40, 40]", "[41, 39]");
@@ -358,11 +386,12 @@ fn membrane() -> Result<[f64; 3], Failure> {
     let least = (factors as f64).powi(2) / unknowns as f64;
     let tangent = effort.assembling.as_secs_f64() / elements;
     let factor = effort.factorising.as_secs_f64() / effort.factorisations as f64;
-    Ok([1e9 * tangent, 1e9 * factor, least])
+    Ok([1e9 * tangent, 1e9 * factor, least, 16.0 * factors as f64])
 }
 
 fn measured(table: &Path) -> Result<Value, Failure> {
-    let [compiled, lanes] = [Rates::as_compiled(), Rates::in_lanes()];
+    let byte = copied();
+    let [compiled, lanes] = [Rates::as_compiled(byte), Rates::in_lanes(byte)];
     let mut rows = Vec::new();
     let row = |name: &str, counted: &str, needed: &Operations, time_ns: f64, instructions: Option<f64>| {
         json!({
@@ -371,6 +400,7 @@ fn measured(table: &Path) -> Result<Value, Failure> {
             "arithmetic": needed.arithmetic,
             "divisions": needed.divisions,
             "roots": needed.roots,
+            "bytes": needed.bytes,
             "instructions": instructions,
             "time_ns": time_ns,
             "compiled_ns": compiled.limit(needed),
@@ -382,7 +412,7 @@ fn measured(table: &Path) -> Result<Value, Failure> {
         let time = 1e3 * median_us(ROUNDS, kernel.traced, || (kernel.calls)(kernel.traced));
         rows.push(row(kernel.name, kernel.counted, &kernel.needed, time, instructions(&kernel, table)));
     }
-    let [tangent, factor, least] = membrane()?;
+    let [tangent, factor, least, bytes] = membrane()?;
     rows.push(row(
         "an iteration of an airbag, per triangle",
         "its tangent and the sums; the line search has energies besides",
@@ -390,7 +420,7 @@ fn measured(table: &Path) -> Result<Value, Failure> {
         tangent,
         None,
     ));
-    let needed = Operations { arithmetic: least, ..Operations::default() };
+    let needed = Operations { arithmetic: least, bytes, ..Operations::NONE };
     rows.push(row(
         "factor of an airbag of 3200 triangles",
         "at least the square of its entries over its columns",
@@ -403,6 +433,7 @@ fn measured(table: &Path) -> Result<Value, Failure> {
             "arithmetic_ns": rates.arithmetic,
             "division_ns": rates.division,
             "root_ns": rates.root,
+            "byte_ns": rates.byte,
         })
     };
     Ok(json!({
