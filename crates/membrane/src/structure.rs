@@ -186,11 +186,12 @@ impl Structure {
     }
 
     /// The same with sheets that resist bending: groups of triangles with three nodes, and their bending stiffness D \[N m\].
-    /// They are free of stress when flat. A sheet goes on beyond a plane of symmetry that it crosses; where it touches one,
-    /// ends, or meets another group, it hinges freely.
+    /// They are free of stress when flat, stretch little, and go on beyond planes of symmetry that they cross (within 30
+    /// degrees of the normal); at other supports they hinge freely, along straight lines.
     ///
     /// # Errors
-    /// An unknown group, triangles with six nodes, or a sector whose edges follow each other.
+    /// An unknown group, triangles with six nodes, a mesh that is curved without a pattern, an edge or a fold that nothing holds,
+    /// a node with more than 16 neighbours, or a sector whose edges follow each other.
     pub fn resisting_bending(
         mut self,
         mesh: &Mesh,

@@ -36,7 +36,7 @@ shear = \"0.4 MPa\"               # neo-hooke, gent; G of orthotropic cloth
 # poisson = 0.3
 wrinkles = false                # gives way to compression; the default is true for hencky, st-venant and orthotropic
 # residual = 1e-6               # part of the stiffness that wrinkles leave
-# bending = true                # resists bending, D = Y h^3/12 (1 - nu^2): triangles of order 1, free of stress when flat
+# bending = true                # hencky, st-venant: resists bending, D = Y h^3/12 (1 - nu^2); triangles of order 1, flat or with a pattern
 
 [[part]]
 group = \"wall\"                  # of the mesh; one group may have several parts

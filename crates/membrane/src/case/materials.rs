@@ -62,14 +62,16 @@ pub(super) fn read(settings: &Settings<'_>) -> Result<Materials, FileError> {
         }
         let sheet = sheet(&table)?;
         if table.flag("bending")?.unwrap_or(false) {
-            let Cloth::Isotropic(law) = sheet.cloth else {
-                let what = "woven cloth has a bending stiffness for each direction, which isn't known here";
+            let Cloth::Isotropic(
+                Law::Hencky { stiffness, poisson } | Law::SaintVenantKirchhoff { stiffness, poisson },
+            ) = sheet.cloth
+            else {
+                let what = "only foil that stretches little resists bending here: rubber gets thinner as it stretches, and woven cloth is stiffer one way";
                 let instead = "leave `bending` out, or take `law = \"st-venant\"`";
                 return Err(table.error(table.key_span("bending"), what, instead));
             };
             let h = needed(&table, "thickness", Dimension::LENGTH)?;
-            // The stress over the thickness is that of small strains: D = Y h^3/12(1 - nu^2).
-            bending.push((name.to_owned(), law.in_plane() * h * h / 12.0));
+            bending.push((name.to_owned(), stiffness * h * h / (12.0 * (1.0 - poisson * poisson))));
         }
         found.push((name.to_owned(), sheet));
     }

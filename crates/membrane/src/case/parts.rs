@@ -98,7 +98,7 @@ pub(super) fn bending(
             let what = format!(
                 "`{material}` resists bending, which only triangles with three nodes do, and `{group}` has other cells"
             );
-            let instead = "mesh it with `order = 1` and two numbers of `cells`, or give this part a material without `bending`";
+            let instead = "make it of triangles (`kind = \"membrane\"`) with three nodes each (`order = 1`), or give it a material without `bending`";
             return Err(table.error(table.value_span("material"), what, instead));
         }
         found.push((group.to_owned(), *bending));

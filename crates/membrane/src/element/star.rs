@@ -9,8 +9,9 @@
 //! (Bergou, Wardetzky, Harmon, Zorin and Grinspun 2006, A quadratic bending model for inextensible surfaces). It is quadratic in
 //! the positions and never negative.
 //!
-//! Nodes at which a sheet ends have none, so that it hinges freely there. At a plane of symmetry the images are summed as well:
-//! b loses its part across the plane and doubles, A doubles, and half of the energy belongs to the structure.
+//! Nodes at which a sheet ends have none, so that it hinges freely there; something must hold them, since fields whose Laplacian
+//! is zero everywhere else cost nothing. At a plane of symmetry the images are summed as well: b loses its part across the plane
+//! and doubles, A doubles, and half of the energy belongs to the structure; likewise where several planes meet.
 
 use super::{Local, Vector, add, cross, dot, mixed, norm, scaled, sub};
 
@@ -31,11 +32,11 @@ pub(crate) fn corners([x0, x1, x2]: [Vector; 3]) -> ([f64; 2], f64) {
 }
 
 impl<const N: usize> Star<N> {
-    /// With the weights of node and neighbours, the area of the triangles around, D \[N m\], and normals of planes of symmetry
-    /// through the node, each orthogonal to the others.
+    /// With the weights of node and neighbours, the area of the triangles around, D \[N m\], and what is across the planes of
+    /// symmetry through the node, unit vectors at right angles.
     pub(crate) fn new(weights: [f64; N], area: f64, bending: f64, across: Vec<Vector>) -> Self {
         let share = area / 3.0;
-        // Of 2^k images b and A double k times, and 2^-k of the energy counts: D/(2 A) |b|^2 stays as it is.
+        // With k images b and A are k times as large, and a k-th of the energy counts: D/(2 A) |b|^2 stays as it is.
         Self { weights, stiffness: bending / share, across }
     }
 

@@ -50,19 +50,6 @@ pub enum Law {
     },
 }
 
-impl Law {
-    /// Stiffness against a small strain in one direction alone: Y h/(1 - nu^2), 4 mu h if incompressible \[N/m\].
-    pub(crate) fn in_plane(&self) -> f64 {
-        match *self {
-            Self::Hencky { stiffness, poisson } | Self::SaintVenantKirchhoff { stiffness, poisson } => {
-                stiffness / (1.0 - poisson * poisson)
-            }
-            Self::NeoHooke { shear } | Self::Gent { shear, .. } => 4.0 * shear,
-            Self::MooneyRivlin { c1, c2 } => 8.0 * (c1 + c2),
-        }
-    }
-}
-
 /// An energy and its derivatives by the squared principal stretches c1, c2.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Energy {

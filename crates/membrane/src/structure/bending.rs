@@ -11,6 +11,12 @@ use std::collections::{BTreeMap, BTreeSet};
 /// it, and is a fold or a seam there.
 const CROSSES: f64 = 0.5;
 
+/// Sine of the angle between planes of symmetry below which they are one.
+const SAME: f64 = 1e-6;
+/// Cosine of the angle over an edge from which a mesh is folded there: 60 degrees.
+const FOLDED: f64 = 0.5;
+/// Distance of a neighbour from the plane of the others, over its own, that isn't rounding.
+const CURVED: f64 = 1e-6;
 /// Weight of a neighbour over that of the node that is rounding: edges opposite to two right angles have none.
 const NONE: f64 = 1e-12;
 
@@ -36,11 +42,14 @@ impl Stars {
     }
 }
 
-/// A node of a sheet: the weights of its neighbours, and the area around.
+/// A node of the sheets: the weights of its neighbours, the area around, the sum of bending stiffness times area, and whether
+/// all triangles around are flat where the mesh puts them.
 #[derive(Default)]
 struct Around {
     weights: BTreeMap<u32, f64>,
     area: f64,
+    bending: f64,
+    is_placed: bool,
 }
 
 impl Around {
@@ -58,30 +67,35 @@ pub(super) fn stars(
     supports: &[(String, Support)],
     groups: &[(String, f64)],
 ) -> Result<Stars, MembraneError> {
-    let cyclic = supports.iter().find(|(_, support)| matches!(support, Support::Cyclic { .. }));
-    if let (Some((name, _)), false) = (cyclic, groups.is_empty()) {
+    let mut stars = Stars::default();
+    if groups.is_empty() {
+        return Ok(stars);
+    }
+    if let Some((name, _)) = supports.iter().find(|(_, support)| matches!(support, Support::Cyclic { .. })) {
         return Err(MembraneError::Structure(format!(
-            "sheets that resist bending can't be a sector whose edges follow each other, as `{name}` does: mesh the whole, or a part between planes of symmetry"
+            "sheets that resist bending can't be a sector whose edges follow each other, as `{name}` does: mesh a part between planes of symmetry, or the whole"
         )));
     }
-    let planes = planes(mesh, supports)?;
-    let mut stars = Stars::default();
-    for (group, bending) in groups {
-        let sheet = Sheet::new(mesh, group, &planes)?;
-        for (node, around) in &sheet.nodes {
-            let Some(across) = sheet.across(*node) else { continue };
-            let all = around.row(*node);
-            match all.len() {
-                0..=7 => push(&mut stars.six, &all, around.area, *bending, across),
-                8..=9 => push(&mut stars.eight, &all, around.area, *bending, across),
-                10..=17 => push(&mut stars.sixteen, &all, around.area, *bending, across),
-                many => {
-                    return Err(MembraneError::Structure(format!(
-                        "node {} of `{group}` has {} neighbours, but a sheet that resists bending at most 16: mesh it again",
-                        mesh.number(*node as usize),
-                        many - 1
-                    )));
-                }
+    let sheets = Sheets::new(mesh, supports, groups)?;
+    for (node, around) in &sheets.nodes {
+        let Some(across) = sheets.across(*node) else { continue };
+        let all = around.row(*node);
+        let number = mesh.number(*node as usize);
+        if around.is_placed && is_curved(mesh, &all) {
+            return Err(MembraneError::Structure(format!(
+                "the mesh is curved at node {number}, but sheets that resist bending are flat when free of stress: give its cells a flat pattern, or leave `bending` out"
+            )));
+        }
+        let bending = around.bending / around.area;
+        match all.len() {
+            0..=7 => push(&mut stars.six, &all, around.area, bending, across),
+            8..=9 => push(&mut stars.eight, &all, around.area, bending, across),
+            10..=17 => push(&mut stars.sixteen, &all, around.area, bending, across),
+            many => {
+                return Err(MembraneError::Structure(format!(
+                    "node {number} has {} neighbours, but in a sheet that resists bending at most 16: mesh it again",
+                    many - 1
+                )));
             }
         }
     }
@@ -100,74 +114,108 @@ fn push<const N: usize>(
     set.elements.push(Star::new(core::array::from_fn(|i| at(i).1), area, bending, across));
 }
 
-/// The nodes on each plane of symmetry, with its unit normal.
-fn planes(mesh: &Mesh, supports: &[(String, Support)]) -> Result<Vec<(Vec<usize>, Vector)>, MembraneError> {
-    let mut planes = Vec::new();
-    for (name, support) in supports {
-        if let Support::Plane { normal } = support {
-            let on = mesh.nodes_of(name).ok_or_else(|| MembraneError::unknown_group(name, mesh))?;
-            planes.push((on, scaled(*normal, 1.0 / norm(*normal))));
-        }
-    }
-    Ok(planes)
+/// Whether a node lies off the plane of its neighbours in the mesh: b of their distances from it along any normal.
+fn is_curved(mesh: &Mesh, all: &[(u32, f64)]) -> bool {
+    let own = mesh.nodes[all[0].0 as usize];
+    let rays: Vec<Vector> = all[1..].iter().map(|(node, _)| sub(mesh.nodes[*node as usize], own)).collect();
+    let normals = rays.iter().enumerate().flat_map(|(i, a)| rays[..i].iter().map(|b| cross(*a, *b)));
+    let Some(normal) = normals.max_by(|a, b| norm(*a).total_cmp(&norm(*b))) else { return false };
+    rays.iter().any(|ray| dot(*ray, normal).abs() > CURVED * norm(*ray) * norm(normal))
 }
 
-/// A group of triangles.
-struct Sheet {
+/// The groups that resist bending, as one sheet where they share nodes.
+struct Sheets {
     nodes: BTreeMap<u32, Around>,
-    /// Nodes at which it ends, or is sewn together.
+    /// Nodes at which it ends, or is folded.
     ends: BTreeSet<u32>,
     /// Normals of planes that it crosses at a node.
     mirrors: BTreeMap<u32, Vec<Vector>>,
 }
 
-impl Sheet {
-    fn new(mesh: &Mesh, group: &str, planes: &[(Vec<usize>, Vector)]) -> Result<Self, MembraneError> {
-        let mut sheet = Self { nodes: BTreeMap::new(), ends: BTreeSet::new(), mirrors: BTreeMap::new() };
-        let mut edges: BTreeMap<[u32; 2], Vec<[u32; 3]>> = BTreeMap::new();
-        for (nodes, flat) in cells(mesh, group)? {
-            for k in 0..3 {
-                let [a, b, c] = [k, (k + 1) % 3, (k + 2) % 3];
-                let ([at_b, at_c], area) = corners([flat[a], flat[b], flat[c]]);
-                let around = sheet.nodes.entry(nodes[a]).or_default();
-                around.area += area;
-                // The edge to a corner is opposite to the other one.
-                *around.weights.entry(nodes[b]).or_default() += at_c;
-                *around.weights.entry(nodes[c]).or_default() += at_b;
-                edges.entry([nodes[a].min(nodes[b]), nodes[a].max(nodes[b])]).or_default().push(nodes);
+impl Sheets {
+    fn new(
+        mesh: &Mesh,
+        supports: &[(String, Support)],
+        groups: &[(String, f64)],
+    ) -> Result<Self, MembraneError> {
+        let (mut held, mut planes) = (BTreeSet::new(), Vec::new());
+        for (name, support) in supports {
+            let on = mesh.nodes_of(name).ok_or_else(|| MembraneError::unknown_group(name, mesh))?;
+            held.extend(on.iter().copied());
+            if let Support::Plane { normal } = support {
+                planes.push((on, scaled(*normal, 1.0 / norm(*normal))));
             }
         }
-        for (edge, triangles) in edges.into_iter().filter(|(_, triangles)| triangles.len() != 2) {
+        let mut sheets = Self { nodes: BTreeMap::new(), ends: BTreeSet::new(), mirrors: BTreeMap::new() };
+        let mut edges: BTreeMap<[u32; 2], Vec<[u32; 3]>> = BTreeMap::new();
+        for (group, bending) in groups {
+            for Cell { nodes, flat, is_placed } in cells(mesh, group)? {
+                for k in 0..3 {
+                    let [a, b, c] = [k, (k + 1) % 3, (k + 2) % 3];
+                    let ([at_b, at_c], area) = corners([flat[a], flat[b], flat[c]]);
+                    let around = sheets
+                        .nodes
+                        .entry(nodes[a])
+                        .or_insert(Around { is_placed: true, ..Around::default() });
+                    around.area += area;
+                    around.bending += area * bending;
+                    around.is_placed &= is_placed;
+                    // The edge to a corner is opposite to the other one.
+                    *around.weights.entry(nodes[b]).or_default() += at_c;
+                    *around.weights.entry(nodes[c]).or_default() += at_b;
+                    edges.entry([nodes[a].min(nodes[b]), nodes[a].max(nodes[b])]).or_default().push(nodes);
+                }
+            }
+        }
+        for (edge, triangles) in edges {
+            if let [one, other] = triangles[..]
+                && !is_folded(mesh, edge, one, other)
+            {
+                continue;
+            }
             let lies_on = |on: &[usize]| edge.iter().all(|node| on.binary_search(&(*node as usize)).is_ok());
             let plane =
                 planes.iter().find(|(on, normal)| lies_on(on) && crosses(mesh, triangles[0], *normal));
             match plane.filter(|_| triangles.len() == 1) {
                 Some((_, normal)) => {
                     for node in edge {
-                        let own = sheet.mirrors.entry(node).or_default();
-                        if !own.contains(normal) {
-                            own.push(*normal);
-                        }
+                        sheets.mirrors.entry(node).or_default().push(*normal);
                     }
                 }
-                None => sheet.ends.extend(edge),
+                // Where it isn't held, ripples along an edge would cost nothing.
+                None if edge.iter().all(|node| held.contains(&(*node as usize))) => sheets.ends.extend(edge),
+                None => {
+                    let [a, b] = edge.map(|node| mesh.number(node as usize));
+                    return Err(MembraneError::Structure(format!(
+                        "a sheet that resists bending ends or is folded between the nodes {a} and {b}, where nothing holds it: it needs a support or a plane of symmetry there"
+                    )));
+                }
             }
         }
-        Ok(sheet)
+        Ok(sheets)
     }
 
-    /// Normals of the planes of symmetry at a node; `None` if the sheet ends there, or if planes meet at an angle.
+    /// Unit vectors across all planes of symmetry at a node, at right angles; `None` if the sheet ends there.
     fn across(&self, node: u32) -> Option<Vec<Vector>> {
-        let own = self.mirrors.get(&node).cloned().unwrap_or_default();
-        let is_square =
-            own.iter().enumerate().all(|(i, a)| own[..i].iter().all(|b| dot(*a, *b).abs() < 1e-9));
-        (is_square && !self.ends.contains(&node)).then_some(own)
+        let mut across: Vec<Vector> = Vec::new();
+        for normal in self.mirrors.get(&node).into_iter().flatten() {
+            let rest = across.iter().fold(*normal, |rest, own| sub(rest, scaled(*own, dot(*own, rest))));
+            if norm(rest) > SAME {
+                across.push(scaled(rest, 1.0 / norm(rest)));
+            }
+        }
+        (!self.ends.contains(&node)).then_some(across)
     }
 }
 
-/// Nodes of a triangle, and their flat places.
-type Cell = ([u32; 3], [Vector; 3]);
+/// Nodes of a triangle and their flat places, and whether these are those of the mesh.
+struct Cell {
+    nodes: [u32; 3],
+    flat: [Vector; 3],
+    is_placed: bool,
+}
 
+/// The triangles of a group.
 fn cells(mesh: &Mesh, group: &str) -> Result<Vec<Cell>, MembraneError> {
     let mut cells = Vec::new();
     let mut is_known = false;
@@ -189,9 +237,23 @@ fn cells(mesh: &Mesh, group: &str) -> Result<Vec<Cell>, MembraneError> {
         )]
         let numbers = |cell: &[usize; 3]| cell.map(|node| node as u32);
         let own = block.cells.as_chunks::<3>().0.iter().enumerate();
-        cells.extend(own.map(|(i, cell)| (numbers(cell), source.stress_free(i))));
+        cells.extend(own.map(|(i, cell)| Cell {
+            nodes: numbers(cell),
+            flat: source.stress_free(i),
+            is_placed: block.pattern.is_none(),
+        }));
     }
     if is_known { Ok(cells) } else { Err(MembraneError::unknown_group(group, mesh)) }
+}
+
+/// Whether two triangles are folded over their edge in the mesh, as two sheets are that are joined at a seam.
+fn is_folded(mesh: &Mesh, [a, b]: [u32; 2], one: [u32; 3], other: [u32; 3]) -> bool {
+    let at = |node: u32| mesh.nodes[node as usize];
+    let third = |nodes: [u32; 3]| nodes.into_iter().find(|node| ![a, b].contains(node)).map_or(at(a), at);
+    let edge = sub(at(b), at(a));
+    let [up, down] = [one, other].map(|nodes| cross(edge, sub(third(nodes), at(a))));
+    // Opposite to each other where the sheet goes on.
+    dot(up, down) > -FOLDED * norm(up) * norm(down)
 }
 
 /// Whether a triangle crosses a plane.

@@ -5,8 +5,10 @@
 use bulge_membrane::case::{Case, Row};
 use bulge_membrane::mesher::{Surface, grid};
 use bulge_membrane::{
-    Cloth, Copies, Inflation, Law, Load, MembraneError, Part, Sheet, Solver, Structure, Support, Tolerance,
+    CellKind, Cloth, Copies, Inflation, Law, Load, MembraneError, Mesh, Part, Sheet, Solver, Structure,
+    Support, Tolerance,
 };
+use std::collections::BTreeSet;
 
 /// D and the side of a square plate of N, mm.
 const BENDING: f64 = 0.8;
@@ -16,21 +18,33 @@ fn plane(normal: [f64; 3]) -> Support {
     Support::Plane { normal }
 }
 
-/// Deflection of the middle of a square plate, of which a quarter is meshed, under a small pressure.
-fn deflection(cells: usize, pressure: f64) -> f64 {
+/// A quarter of a square plate.
+fn quarter(cells: usize) -> Mesh {
     let place = |u: f64, v: f64| [0.5 * SIDE * u, 0.5 * SIDE * v, 0.0];
-    let mesh = grid(&Surface { place: &place, pattern: None, cells: [cells; 2], is_quadratic: false });
+    grid(&Surface { place: &place, pattern: None, cells: [cells; 2], is_quadratic: false })
+}
+
+/// Deflection of the middle of a square plate under a small pressure; `u0` is the normal of its first plane of symmetry.
+fn deflection(mesh: &Mesh, u0: [f64; 3], pressure: f64) -> f64 {
     let law = Law::SaintVenantKirchhoff { stiffness: 1e4, poisson: 0.3 };
     let sheet = Sheet { cloth: Cloth::Isotropic(law), wrinkles: false, residual: 0.0 };
-    let parts = [("cloth".to_owned(), Part::Membrane { sheet: Some(sheet), warp: [1.0, 0.0, 0.0] })];
+    let part = || Part::Membrane { sheet: Some(sheet), warp: [1.0, 0.0, 0.0] };
+    let groups: BTreeSet<&str> = mesh
+        .blocks
+        .iter()
+        .filter(|block| block.kind == CellKind::Triangle3)
+        .map(|block| &block.group[..])
+        .collect();
+    let parts: Vec<(String, Part)> = groups.iter().map(|group| ((*group).to_owned(), part())).collect();
+    let bending: Vec<(String, f64)> = groups.iter().map(|group| ((*group).to_owned(), BENDING)).collect();
     let supports = [
-        ("u0".to_owned(), plane([1.0, 0.0, 0.0])),
+        ("u0".to_owned(), plane(u0)),
         ("v0".to_owned(), plane([0.0, 1.0, 0.0])),
         ("u1".to_owned(), plane([0.0, 0.0, 1.0])),
         ("v1".to_owned(), plane([0.0, 0.0, 1.0])),
     ];
-    let structure = Structure::new(&mesh, &parts, &supports, &[]).unwrap();
-    let structure = structure.resisting_bending(&mesh, &supports, &[("cloth".to_owned(), BENDING)]).unwrap();
+    let structure = Structure::new(mesh, &parts, &supports, &[]).unwrap();
+    let structure = structure.resisting_bending(mesh, &supports, &bending).unwrap();
     let mut solver = Solver::new(structure, Copies::ONE, Tolerance::default()).unwrap();
     let rest = solver.at_rest();
     let load = |pressure| Load { inflation: Inflation::Pressure(pressure), fittings: Vec::new() };
@@ -44,9 +58,29 @@ fn deflection(cells: usize, pressure: f64) -> f64 {
 fn a_square_under_pressure_bends_as_a_plate() {
     let pressure = 1e-7;
     let exact = 0.004_062_353 * pressure * SIDE.powi(4) / BENDING;
-    let errors = [6, 12, 24].map(|cells| deflection(cells, pressure) / exact - 1.0);
+    let across = [1.0, 0.0, 0.0];
+    let errors = [6, 12, 24].map(|cells| deflection(&quarter(cells), across, pressure) / exact - 1.0);
     let orders = [(errors[0] / errors[1]).log2(), (errors[1] / errors[2]).log2()];
     assert!(errors[2].abs() < 2e-3 && orders.iter().all(|order| *order > 1.8), "{errors:?} {orders:?}");
+}
+
+/// Two groups are one sheet where they meet, and a plane is one plane whichever way its normals point.
+#[test]
+fn groups_that_meet_and_normals_that_differ_change_nothing() {
+    let (mesh, pressure) = (quarter(6), 1e-7);
+    let expected = deflection(&mesh, [1.0, 0.0, 0.0], pressure);
+    let mut parted = mesh.clone();
+    let cloth = parted.blocks.iter().position(|block| block.kind == CellKind::Triangle3).unwrap();
+    let mut other = parted.blocks[cloth].clone();
+    let half = other.cells.len() / 6 * 3;
+    "more".clone_into(&mut other.group);
+    other.cells.drain(..half);
+    parted.blocks[cloth].cells.truncate(half);
+    parted.blocks.push(other);
+    for (mesh, normal) in [(&parted, [1.0, 0.0, 0.0]), (&mesh, [-2.0, 1e-17, 0.0])] {
+        let found = deflection(mesh, normal, pressure);
+        assert!((found / expected - 1.0).abs() < 1e-6, "{found} {expected}");
+    }
 }
 
 /// A square airbag whose foil resists bending as it is thick.
@@ -87,8 +121,17 @@ fn only_triangles_with_three_nodes_bend_and_no_woven_cloth() {
         .replace("young", "weft = \"588 MPa\"\nshear = \"9 MPa\"\nyoung");
     refused(&woven, "leave `bending` out");
     refused(&bends.replace("bending = true", "bending = 1"), "bending");
-    let tube = include_str!("../../../../meshes/tube.toml").replace("shear", "bending = true\nshear");
-    refused(&tube, "only triangles with three nodes");
+    let foil = "law = \"st-venant\"\nyoung = \"1 MPa\"\npoisson = 0.4\nbending = true\n";
+    let tube = |file: &str| file.replace("law = \"neo-hooke\"\n", foil).replace("shear = \"0.4 MPa\"\n", "");
+    refused(&tube(include_str!("../../../../meshes/tube.toml")), "only triangles with three nodes");
+    refused(
+        &include_str!("../../../../meshes/tube-3d.toml").replace("shear", "bending = true\nshear"),
+        "rubber",
+    );
+    let curved =
+        Case::from_toml(&tube(include_str!("../../../../meshes/tube-3d.toml")), "case.toml", None).unwrap();
+    let error = curved.start().err().unwrap().to_string();
+    assert!(error.contains("curved at node") && error.contains("a flat pattern"), "{error}");
     let case = Case::from_toml(&bends, "case.toml", None).unwrap();
     let structure = |supports: &[(String, Support)], group: &str| {
         let structure = Structure::new(&case.mesh, &case.parts, &case.supports, &[]).unwrap();
@@ -98,4 +141,8 @@ fn only_triangles_with_three_nodes_bend_and_no_woven_cloth() {
     let says = |found: Result<Structure, MembraneError>| found.unwrap_err().to_string();
     assert!(says(structure(&[("v0".to_owned(), cyclic)], "cloth")).contains("as `v0` does"));
     assert!(says(structure(&case.supports, "bag")).contains("`bag`"));
+    // Without the plane of its seam.
+    let free: Vec<(String, Support)> =
+        case.supports.iter().filter(|(name, _)| ["u0", "v0"].contains(&name.as_str())).cloned().collect();
+    assert!(says(structure(&free, "cloth")).contains("where nothing holds it"));
 }
