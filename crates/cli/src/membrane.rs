@@ -1,7 +1,7 @@
 //! `bulge membrane`: a finite-element membrane case, state by state.
 
+use bulge_membrane::Effort;
 use bulge_membrane::case::{CASE_EXAMPLE, Case, CaseError, CaseRun, Row};
-use bulge_membrane::{Effort, Fields, State};
 use bulge_report::cloth::{self, ClothDocument};
 use bulge_vtk::CaseFolder;
 use clap::Args;
@@ -9,8 +9,6 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::fmt::Write;
 use std::io::{IsTerminal, stderr, stdout};
 use std::path::PathBuf;
-use std::sync::mpsc::sync_channel;
-use std::thread;
 use std::time::{Duration, Instant};
 
 use crate::arguments::{Json, pretty};
@@ -18,9 +16,6 @@ use crate::failure::Failure;
 use crate::files;
 use crate::fit;
 use crate::text::{shown, significant, table};
-
-/// States that wait to be written, at most: those of a large mesh fill the memory.
-const AHEAD: usize = 1;
 
 /// A finite-element membrane case: a mesh, what it is made of, what holds it, and loads in turn.
 #[derive(Debug, Args)]
@@ -60,21 +55,28 @@ impl MembraneCommand {
         let mut output = CaseFolder::new(&self.out, &case, self.whole)?;
         let bar = self.bar(case.states());
         let clock = Instant::now();
-        let (error, mut waited) = states(&mut run, &mut output, &bar)?;
-        bar.finish_and_clear();
-        if let Some(error) = error {
-            let rescued = run.rescued();
-            let is_rescued = rescued.is_some();
-            if let Some((row, state, fields)) = rescued {
-                output.take(row, &state, &fields)?;
+        while let Some(next) = run.advance(|_, _| bar.tick()) {
+            match next {
+                Ok((row, state, fields)) => {
+                    bar.set_message(line(&row));
+                    bar.inc(1);
+                    output.take(row, &state, &fields)?;
+                }
+                Err(error) => {
+                    bar.finish_and_clear();
+                    let rescued = run.rescued();
+                    let is_rescued = rescued.is_some();
+                    if let Some((row, state, fields)) = rescued {
+                        output.take(row, &state, &fields)?;
+                    }
+                    output.finish(&mut run)?;
+                    return Err(refused(error, kept(&output, is_rescued)));
+                }
             }
-            output.finish(&mut run)?;
-            return Err(refused(error, kept(&output, is_rescued)));
         }
-        let last = Instant::now();
+        bar.finish_and_clear();
         output.finish(&mut run)?;
-        waited += last.elapsed();
-        let time = [clock.elapsed(), waited];
+        let time = clock.elapsed();
         let learnt = match &self.as_effect {
             Some(path) => {
                 let learnt = cloth::learn(&case, output.rows(), &output.forces().display().to_string())?;
@@ -120,46 +122,6 @@ impl MembraneCommand {
     }
 }
 
-/// Finds all states, while another thread writes those before: the error of the one that has no equilibrium, and how long the
-/// search waited for files.
-fn states(
-    run: &mut CaseRun<'_>,
-    output: &mut CaseFolder,
-    bar: &ProgressBar,
-) -> Result<(Option<CaseError>, Duration), Failure> {
-    let mut waited = Duration::ZERO;
-    let (send, receive) = sync_channel::<(Row, State, Fields)>(AHEAD);
-    let mut error = None;
-    thread::scope(|scope| {
-        let writer = scope.spawn(move || {
-            receive.iter().try_for_each(|(row, state, fields)| output.take(row, &state, &fields))
-        });
-        while let Some(next) = run.advance(|_, _| bar.tick()) {
-            let found = match next {
-                Ok(found) => found,
-                Err(source) => {
-                    error = Some(source);
-                    break;
-                }
-            };
-            bar.set_message(line(&found.0));
-            bar.inc(1);
-            let clock = Instant::now();
-            // It has ended if a file couldn't be written, and says why below.
-            if send.send(found).is_err() {
-                break;
-            }
-            waited += clock.elapsed();
-        }
-        drop(send);
-        let clock = Instant::now();
-        let written = writer.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
-        waited += clock.elapsed();
-        Ok(written?)
-    })
-    .map(|()| (error, waited))
-}
-
 /// What remains of a run that ended early, as text.
 fn kept(output: &CaseFolder, is_rescued: bool) -> String {
     match output.rows().last() {
@@ -175,7 +137,7 @@ fn kept(output: &CaseFolder, is_rescued: bool) -> String {
     }
 }
 
-fn describe(case: &Case, run: &CaseRun<'_>, output: &CaseFolder, [time, waited]: [Duration; 2]) -> String {
+fn describe(case: &Case, run: &CaseRun<'_>, output: &CaseFolder, time: Duration) -> String {
     let rows = output.rows();
     let [unknowns, _, factors] = run.sizes();
     let mut text = format!(
@@ -198,13 +160,12 @@ fn describe(case: &Case, run: &CaseRun<'_>, output: &CaseFolder, [time, waited]:
     let Effort { iterations, factorisations, assembling, factorising, solving } = run.effort();
     let _ = writeln!(
         text,
-        "\n  {iterations} iterations, {factorisations} factorisations of {factors} numbers in {}: elements {}, factors {}, solving {}, files {} (waited for {})",
+        "\n  {iterations} iterations, {factorisations} factorisations of {factors} numbers in {}: elements {}, factors {}, solving {}, files {}",
         seconds(time),
         seconds(assembling),
         seconds(factorising),
         seconds(solving),
-        seconds(output.writing()),
-        seconds(waited)
+        seconds(output.writing())
     );
     text
 }
