@@ -2,6 +2,8 @@
 
 use crate::support::{Folder, bulge, failure, json, refused};
 use bulge_membrane::case::{Case, Row};
+use std::path::Path;
+use std::process::Command;
 
 const TUBE: &str = include_str!("../../../../meshes/tube.toml");
 
@@ -29,6 +31,26 @@ fn a_case_gives_states_tables_and_pictures() {
     }
     let text = bulge(&["membrane", &case, "--out", &out]);
     assert!(String::from_utf8_lossy(&text.stdout).contains("clamped tube of rubber: 61 nodes, 30 elements"));
+}
+
+/// A command runs on a thread of the pool: with one, nothing else may wait for the pool.
+#[test]
+fn one_thread_is_enough_and_gives_the_same_bytes() {
+    let folder = Folder::new("membrane-threads");
+    let airbag = include_str!("../../../../meshes/airbag.toml").replace("[40, 40]", "[16, 16]");
+    let case = folder.write("case.toml", &airbag.replace("poisson = 0.4", "poisson = 0.4\nbending = true"));
+    let [one, two] = ["1", "2"].map(|threads| {
+        let out = folder.path(threads);
+        let run = Command::new(env!("CARGO_BIN_EXE_bulge"))
+            .args(["membrane", &case, "--out", &out])
+            .env("RAYON_NUM_THREADS", threads)
+            .output()
+            .unwrap();
+        assert!(run.status.success());
+        let read = |name: &str| std::fs::read(Path::new(&out).join(name)).unwrap();
+        [read("states.csv"), read("square-airbag_0000.vtu"), read("square-airbag-whole.vtu")]
+    });
+    assert!(one == two && one.iter().all(|bytes| bytes.len() > 100));
 }
 
 #[test]
