@@ -13,8 +13,8 @@ use crate::unit::{PERCENT, SECOND};
 /// a = alpha_b dT and b = alpha dT in terms of the effect `temperature`. The force determines only the
 /// product of temperature rise and coefficient.
 ///
-/// A wall of thickness h that gives its heat off to the air warms up within rho c h/k: 33 s for 0.3 mm of rubber
-/// (rho = 1100 kg/m^3, c = 2000 J/(kg K), k = 20 W/(m^2 K)), 5.5 min for 1.5 mm with k = 10 W/(m^2 K). What settles
+/// A wall of thickness d that gives its heat off to the air warms up within rho c d/h: 33 s for 0.3 mm of rubber
+/// (rho = 1100 kg/m^3, c = 2000 J/(kg K), h = 20 W/(m^2 K)), 5.5 min for 1.5 mm with h = 10 W/(m^2 K). What settles
 /// faster is a gain of the force on all rows but the first.
 #[derive(Debug)]
 pub(crate) struct SelfHeating;
@@ -112,7 +112,7 @@ mod tests {
 
     #[test]
     fn no_wall_is_warm_at_once() {
-        // rho c h/k of the thinnest bladder in moving air, 0.3 mm of latex: faster warming would be a gain.
+        // rho c d/h of the thinnest bladder in moving air, 0.3 mm of latex: faster warming would be a gain.
         let thinnest = 1100.0 * 2000.0 * 0.3e-3 / 20.0;
         let time = SelfHeating.parameters()[1];
         assert!((0.8..=1.0).contains(&(time.low / thinnest)), "{} s, {thinnest} s", time.low);

@@ -114,7 +114,7 @@ fn push<const N: usize>(
     set.elements.push(Star::new(core::array::from_fn(|i| at(i).1), area, bending, across));
 }
 
-/// Whether a node lies off the plane of its neighbours in the mesh: b of their distances from it along any normal.
+/// Whether a node and its neighbours don't lie in a plane in the mesh.
 fn is_curved(mesh: &Mesh, all: &[(u32, f64)]) -> bool {
     let own = mesh.nodes[all[0].0 as usize];
     let rays: Vec<Vector> = all[1..].iter().map(|(node, _)| sub(mesh.nodes[*node as usize], own)).collect();
