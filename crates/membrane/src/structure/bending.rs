@@ -187,7 +187,7 @@ impl Sheets {
                 None => {
                     let [a, b] = edge.map(|node| mesh.number(node as usize));
                     return Err(MembraneError::Structure(format!(
-                        "a sheet that resists bending ends or is folded between the nodes {a} and {b}, where nothing holds it: it needs a support or a plane of symmetry there"
+                        "a sheet that resists bending ends or is folded between the nodes {a} and {b}, where nothing holds it: it needs a support or a plane of symmetry there, or `bending` in the material of the group beside it as well"
                     )));
                 }
             }
