@@ -9,7 +9,7 @@ use std::rc::Rc;
 
 use crate::comparison::rows::{full_scale, lines};
 use crate::diagnosis::odd::{DENIED, SHOWN};
-use crate::diagnosis::shift::slopes;
+use crate::diagnosis::shift::{is_noise, name, shown, slopes};
 use crate::diagnosis::trimmed::{Linearised, variance};
 use crate::diagnosis::write::Findings;
 use crate::median::median;
@@ -29,8 +29,6 @@ const MOST: usize = 3;
 /// full scale is rare.
 const ANEW: f64 = 0.03;
 const ANEW_CONTRACTION: f64 = 0.005;
-/// What is left over the noise, at most.
-const NOISE: f64 = 1.2;
 /// Least width of a zero, in standard deviations of the noise.
 const LEAST: f64 = 0.01;
 
@@ -73,10 +71,9 @@ pub(crate) fn each_sweep(
     let beside = named.with(&linear, best)?;
     let left = beside.left(&all)?;
     let rmse = (dot(&left, &left) / left.len() as f64).sqrt();
-    let is_noise = rmse < NOISE * found.context.row_n.hypot(found.context.law.correlated_n);
     let share = beside.share(&minus(&found.last().linear.force, &base.linear.force), &all)?;
     let is_seen = share.expected > DENIED && share.shown >= SHOWN;
-    if is_seen || !is_noise || best.evidence - bending - named.evidence < -CHOSEN {
+    if is_seen || !is_noise(found, rmse) || best.evidence - bending - named.evidence < -CHOSEN {
         return None;
     }
     let alike = tried.iter().filter(|other| best.evidence - other.evidence < ALIKE).take(MOST);
@@ -228,20 +225,17 @@ impl Each {
         let away = |number: f64| (number - usual).abs();
         let furthest = self.numbers.iter().max_by(|a, b| away(a.1).total_cmp(&away(b.1)));
         let (sweep, number) = furthest.cloned().unwrap_or_default();
-        let (what, scale, unit) = match self.wrong {
-            Wrong::Zero(Channel::Pressure) => ("zero", 1e5, "bar"),
-            Wrong::Zero(Channel::Motion) => ("zero", 0.01, "points"),
-            Wrong::Zero(Channel::Force) => ("zero", 1.0, "N"),
-            Wrong::Gain(_) => ("gain", 0.01, "%"),
-        };
         let (Wrong::Zero(channel) | Wrong::Gain(channel)) = self.wrong;
-        let name = if channel == Channel::Motion { "contraction" } else { channel.name() };
         let rows: Vec<usize> = sweep.filter_map(|place| groups.get(place)).flatten().copied().collect();
-        let by = (usual - number) / scale;
+        let by = usual - number;
         let side = if by > 0.0 { "more" } else { "less" };
-        let by = significant(by.abs(), 2);
+        let (what, by) = match self.wrong {
+            Wrong::Zero(_) => ("zero", shown(channel, by)),
+            Wrong::Gain(_) => ("gain", format!("{} %", significant((100.0 * by).abs(), 2))),
+        };
         format!(
-            "a {what} of the {name} that changed (line {}: {by} {unit} {side} than before or after)",
+            "a {what} of the {} that changed (line {}: {by} {side} than before or after)",
+            name(channel),
             lines(data, &rows)
         )
     }

@@ -7,6 +7,8 @@
 //! - *a late column*: nothing is missing if it is moved by some rows,
 //! - *each sweep* has a zero or a gain of its own, which is the likelier cause of what isn't seen within the sweeps,
 //! - *readings that are wrong*, or a specimen that changes within a sweep, stand beside what no effect explains,
+//! - *a wrong channel*: nothing is left of what no effect explains if a bit of its converter is stuck, or if it bends below a
+//!   ceiling,
 //! - *exchanged specimens*: if nothing is missing when two specimens have each other's numbers, they may have
 //!   each other's name.
 
@@ -15,10 +17,12 @@ use bulge_muscles::shown::shortened;
 
 use crate::comparison::analysis::Analysis;
 use crate::comparison::rows::lines;
+use crate::diagnosis::ceiling::ceiling;
 use crate::diagnosis::document::{Diagnosis, Verdict};
 use crate::diagnosis::each_sweep::each_sweep;
 use crate::diagnosis::late::Late;
 use crate::diagnosis::odd::odd;
+use crate::diagnosis::stuck_bit::stuck_bit;
 use crate::diagnosis::trimmed::{Linearised, by_chance};
 use crate::diagnosis::write::Findings;
 use crate::vector::minus;
@@ -66,9 +70,41 @@ pub(crate) fn event(
         late(found, analysis, anew)
             .or_else(|| odd(found, &linear, data, groups, anew))
             .or_else(|| each_sweep(found, &linear, data, groups))
+            .or_else(|| wrong_channel(found, &linear, data, groups))
     };
     let event = jump(found, data, groups, anew).or_else(among_the_rows);
-    event.or_else(|| exchanged(found, data, anew)).or_else(|| disturbed(found, data))
+    event
+        .or_else(|| exchanged(found, data, anew))
+        .or_else(|| unread(found, data))
+        .or_else(|| disturbed(found, data))
+}
+
+/// What is named from few readings of pressure or motion, between which the muscle's path isn't known.
+fn unread(found: &Findings<'_>, data: &Data) -> Option<String> {
+    let unread = data.unread_path();
+    (found.verdict().0 == Verdict::Missing && 2 * unread > data.len()).then(|| {
+        let claims: Vec<&str> = found.claims().iter().map(|(name, _)| *name).collect();
+        format!(
+            "the pressure or the motion was read in {} of {} rows only, and filled in between: {} may rest on what the muscle did there. Record all channels equally often, \
+             and ask again",
+            data.len() - unread,
+            data.len(),
+            claims.join(" and "),
+        )
+    })
+}
+
+/// A channel that is wrong in a way that leaves nothing of what no effect explains.
+fn wrong_channel(
+    found: &Findings<'_>,
+    linear: &Linearised,
+    data: &Data,
+    groups: &[Vec<usize>],
+) -> Option<String> {
+    stuck_bit(found, linear, data, groups).or_else(|| {
+        let is_unknown = found.verdict().0 == Verdict::Unknown;
+        is_unknown.then(|| ceiling(found, linear, data, groups))?
+    })
 }
 
 /// What no effect explains beside a specimen that changes within a sweep, or beside readings that are known to be wrong:

@@ -160,8 +160,9 @@ impl Doubt {
         }
         let mut exact = answer_on(&self.exact)?;
         // Take the exact geometry if its diagnosis got as far as an answer, whatever a tolerance says about
-        // it.
-        if is_beyond && exact.noise.law.source != NoiseSource::Instruments {
+        // it; and if an event explains there what nothing explains in a muscle that may have any of these numbers.
+        let is_event = doubtful.verdict == Verdict::Unknown && exact.remaining.event.is_some();
+        if (is_beyond || is_event) && exact.noise.law.source != NoiseSource::Instruments {
             let if_doubtful = Some(OtherAnswer::of(&doubtful, &exact));
             exact.geometry = Geometry { if_doubtful, ..doubtful.geometry };
             return Ok(exact);

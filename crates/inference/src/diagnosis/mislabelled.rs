@@ -7,7 +7,7 @@ use bulge_muscles::Quantity;
 use bulge_muscles::shown::shortened;
 
 use crate::diagnosis::event::MOST_SPECIMENS;
-use crate::diagnosis::shift::{AS_WELL, Otherwise};
+use crate::diagnosis::shift::{AS_WELL, Otherwise, is_noise};
 use crate::diagnosis::trimmed::{Linearised, by_chance};
 use crate::diagnosis::write::Findings;
 use crate::vector::minus;
@@ -66,17 +66,21 @@ pub(crate) fn mislabelled(
     let all = vec![true; record.len()];
     let [before, named, gain] = [&own, &minus(record.force(), &found.last().linear.force), &relabelled]
         .map(|left| linear.square_of(left, &all));
+    let left_n = (gain? / record.len() as f64).sqrt();
+    let named = if found.claims().is_empty() { before } else { named };
     let (named, gain) = (before? - named?, before? - gain?);
     let chance = by_chance(&relabelled);
     let name = shortened(record.specimens().get(other as usize)?);
-    // Where nothing is named, half of the misfit.
-    let is_as_good = if named > 0.0 { gain > AS_WELL * named } else { 2.0 * gain > before? };
+    // Where nothing is named, half of the misfit, or all but noise.
+    let is_enough = || Some(2.0 * gain > before? || is_noise(found, left_n));
+    let is_as_good = if named > 0.0 { gain > AS_WELL * named } else { is_enough()? };
     let is_so = 2 * stretch.len() <= record.len() && is_as_good && gain > chance;
     is_so.then(|| Otherwise {
         odd,
         says: format!("the specimen `{name}` was measured"),
         explains_all: gain >= named,
         is_better: gain - chance > named,
+        leaves_noise: is_noise(found, left_n),
     })
 }
 

@@ -46,6 +46,9 @@ const LEAP: f64 = 0.3;
 const FEW: [(f64, f64); 2] = [(0.1, FALLS), (0.3, 0.1)];
 /// The same where nothing is named, and no claim is lost.
 const NONE_NAMED: [(f64, f64); 2] = [(0.1, 0.75), (1.0, FALLS)];
+/// Largest step from one odd row to the next that leaves no other between them: a part of all odd rows, or so many.
+const HOLE: f64 = 0.1;
+const HOLE_ROWS: f64 = 3.0;
 /// Fraction on which nothing is named if most of what was explained is there, whatever the others have.
 const SINGLE: f64 = 0.01;
 
@@ -71,7 +74,8 @@ pub(crate) fn odd(
     let others = mislabelled(found, linear, data, groups).into_iter().chain(shifts(found, linear));
     let others = others.map(|other| (other.odd.clone(), Some(other)));
     let mut tried = BTreeSet::new();
-    others.chain(parts.chain(linear.odd()).map(|odd| (odd, None))).find_map(|(odd, otherwise)| {
+    let trimmed = linear.odd().into_iter().flat_map(|odd| [without_holes(&odd), odd]);
+    others.chain(parts.chain(trimmed).chain(sorted(data, groups)).map(|odd| (odd, None))).find_map(|(odd, otherwise)| {
         let is_better = otherwise.as_ref().is_some_and(|otherwise| otherwise.is_better);
         let others = if is_better { Some(Others::Deny { surely: true }) } else { doubt.about(&odd, otherwise.as_ref()) };
         let others = others.filter(|others| tried.insert((odd.clone(), *others)))?;
@@ -105,6 +109,50 @@ pub(crate) fn odd(
     })
 }
 
+/// Odd rows with those in small holes between them: by chance a wrong reading is right.
+fn without_holes(odd: &[bool]) -> Vec<bool> {
+    let most = (HOLE * count(odd) as f64).max(HOLE_ROWS);
+    let mut filled = odd.to_vec();
+    let rows: Vec<usize> = (0..odd.len()).filter(|row| odd[*row]).collect();
+    for pair in rows.windows(2).filter(|pair| (pair[1] - pair[0]) as f64 <= most) {
+        filled[pair[0]..pair[1]].fill(true);
+    }
+    filled
+}
+
+/// For each channel, the longest stretch of rows in which its readings only rise or only fall: a part of one column may have been
+/// sorted.
+fn sorted(data: &Data, groups: &[Vec<usize>]) -> Vec<Vec<bool>> {
+    let stretches = [data.pressure(), data.motion().values(), data.force()].map(monotone);
+    let short = stretches.into_iter().filter(|stretch| 2 * stretch.len() <= data.len());
+    short
+        .map(|stretch| groups.iter().map(|group| group.iter().any(|row| stretch.contains(row))).collect())
+        .collect()
+}
+
+/// The longest stretch of values that only rise or only fall.
+fn monotone(values: &[f64]) -> Range<usize> {
+    let (mut best, mut start, mut side) = (0..values.len().min(1), 0, 0.0);
+    for place in 1..values.len() {
+        let step = values[place] - values[place - 1];
+        if step * side < 0.0 {
+            // Values that rest before the turn belong to both.
+            start = (0..place)
+                .rev()
+                .take_while(|before| values[*before] == values[place - 1])
+                .last()
+                .unwrap_or(place);
+        }
+        if step != 0.0 {
+            side = step;
+        }
+        if place + 1 - start > best.len() {
+            best = start..place + 1;
+        }
+    }
+    best
+}
+
 /// Why an answer may rest on some rows alone.
 struct Doubt<'a> {
     linear: &'a Linearised,
@@ -132,8 +180,9 @@ impl<'a> Doubt<'a> {
         let part = count(odd) as f64 / odd.len() as f64;
         if !self.is_named {
             // What comes back at one state is no event.
+            let leaves_noise = otherwise.is_some_and(|otherwise| 2.0 * part <= 1.0 && otherwise.leaves_noise);
             let is_event = NONE_NAMED.iter().any(|(few, below)| part <= *few && falls(*below));
-            let is_event = is_event && !comes_back(self.record, odd);
+            let is_event = leaves_noise || is_event && !comes_back(self.record, odd);
             return is_event.then_some(Others::Deny { surely: false });
         }
         let share = self.linear.share(&self.claimed, &kept)?;
@@ -330,6 +379,27 @@ mod tests {
         assert!(words.contains("hardly another row has a pressure as high"), "{words}");
         assert_eq!(or_what(&record(), &rows(|i| (6..12).contains(&i))), "");
         assert!(or_what(&record(), &rows(|i| i < 4)).contains("repeat the first strokes"));
+    }
+
+    #[test]
+    fn small_holes_between_odd_rows_are_odd() {
+        let of = |rows: &[usize]| (0..60).map(|row| rows.contains(&row)).collect::<Vec<bool>>();
+        let filled = |rows: &[usize]| {
+            let filled = without_holes(&of(rows));
+            (0..60).filter(|row| filled[*row]).collect::<Vec<usize>>()
+        };
+        // Two rows between 5 and 8, three between 8 and 12, which is more than a tenth of few.
+        assert_eq!(filled(&[5, 8, 12, 40]), [5, 6, 7, 8, 12, 40]);
+        let most: Vec<usize> = (0..45).filter(|row| !(20..23).contains(row)).chain([50]).collect();
+        assert_eq!(filled(&most), (0..45).chain([50]).collect::<Vec<usize>>());
+    }
+
+    #[test]
+    fn the_longest_stretch_that_only_rises_or_falls() {
+        assert_eq!(monotone(&[3.0, 1.0, 2.0, 2.0, 5.0, 4.0, 3.0]), 1..5);
+        assert_eq!(monotone(&[0.0, 0.0, 4.0, 3.0, 2.0, 2.0, 1.0, 6.0]), 2..7);
+        assert_eq!(monotone(&[7.0, 7.0]), 0..2);
+        assert!(monotone(&[]).is_empty());
     }
 
     #[test]

@@ -13,6 +13,10 @@ use bulge_numerics::vector::dot;
 
 /// Sum of squares that another explanation takes up over that of what was named, at least.
 pub(crate) const AS_WELL: f64 = 0.8;
+/// RMS of what is left over the noise, at most.
+const NOISE: f64 = 1.2;
+/// How much more it may be where a wrong reading has one number.
+const NEARLY: f64 = 1.25;
 /// Fraction of the rows that must be left: a few say nothing against the others.
 const LEAST: f64 = 0.25;
 /// Rows on either side of one at which another state may be set, and the least step as a fraction of the range.
@@ -28,6 +32,8 @@ pub(crate) struct Otherwise {
     pub(crate) explains_all: bool,
     /// and clearly more, and begins where no other state was set.
     pub(crate) is_better: bool,
+    /// Whether it leaves noise.
+    pub(crate) leaves_noise: bool,
 }
 
 /// The shift of a channel that explains the data as well as what was named: in its window, or in all other rows.
@@ -40,7 +46,9 @@ pub(crate) fn shifts(found: &Findings<'_>, linear: &Linearised) -> Vec<Otherwise
             let left = minus(record.force(), force);
             dot(&left, &left)
         };
-        let named = square(&base.linear.force) - square(&found.last().linear.force);
+        let is_named = !found.claims().is_empty();
+        let named =
+            if is_named { square(&base.linear.force) - square(&found.last().linear.force) } else { 0.0 };
         let slopes = [(Channel::Pressure, pressure), (Channel::Motion, motion), (Channel::Force, force)];
         Some((linear.shift(&slopes, record.sweeps(), AS_WELL * named)?, named))
     };
@@ -48,25 +56,56 @@ pub(crate) fn shifts(found: &Findings<'_>, linear: &Linearised) -> Vec<Otherwise
     let rows = found.context.record.len();
     let explains_all = shift.explained >= named;
     let is_better = shift.more > named && !is_another_state(found.context.record, shift.window.start);
+    let leaves_noise = nearly_noise(found, shift.rest_n);
     let part = |is_window: bool| {
         let says = |(channel, by): &(Channel, f64)| {
             // The model's force needs another reading than the one that was taken.
             let by = if is_window { -by } else { *by };
-            let (name, scale, unit) = match channel {
-                Channel::Pressure => ("pressure", 1e5, "bar"),
-                Channel::Motion => ("contraction", 0.01, "points"),
-                Channel::Force => ("force", 1.0, "N"),
-            };
             let side = if by > 0.0 { "much" } else { "little" };
-            format!("the {name} read {} {unit} too {side}", significant((by / scale).abs(), 2))
+            format!("the {} read {} too {side}", name(*channel), shown(*channel, by))
         };
         let says = shift.by.iter().map(says).collect::<Vec<String>>().join(" or ");
         let odd = (0..rows).map(|place| shift.window.contains(&place) == is_window).collect();
-        Otherwise { odd, says, explains_all, is_better }
+        Otherwise { odd, says, explains_all, is_better, leaves_noise }
     };
     let is_small = 2 * shift.window.len() <= rows;
     let leaves_enough = |part: &Otherwise| (rows - count(&part.odd)) as f64 >= LEAST * rows as f64;
     [part(is_small), part(!is_small)].into_iter().filter(leaves_enough).collect()
+}
+
+/// Whether an RMS misfit is no more than the noise \[N\].
+pub(crate) fn is_noise(found: &Findings<'_>, rms_n: f64) -> bool {
+    rms_n < NOISE * found.context.row_n.hypot(found.context.law.correlated_n)
+}
+
+/// Whether it is if one number may be a little wrong in its form.
+pub(crate) fn nearly_noise(found: &Findings<'_>, rms_n: f64) -> bool {
+    is_noise(found, rms_n / NEARLY)
+}
+
+/// Readings of a channel.
+pub(crate) fn readings(record: &Record, channel: Channel) -> Vec<f64> {
+    let of = |state: fn(&Moment) -> f64| record.moments().iter().map(state).collect();
+    match channel {
+        Channel::Pressure => of(|moment| moment.pressure),
+        Channel::Motion => of(|moment| moment.contraction),
+        Channel::Force => record.force().to_vec(),
+    }
+}
+
+/// What a record holds of a channel.
+pub(crate) fn name(channel: Channel) -> &'static str {
+    if channel == Channel::Motion { "contraction" } else { channel.name() }
+}
+
+/// The size of a change of a reading, with its unit.
+pub(crate) fn shown(channel: Channel, by: f64) -> String {
+    let (scale, unit) = match channel {
+        Channel::Pressure => (1e5, "bar"),
+        Channel::Motion => (0.01, "points"),
+        Channel::Force => (1.0, "N"),
+    };
+    format!("{} {unit}", significant((by / scale).abs(), 2))
 }
 
 /// Derivatives of the base's force by pressure and contraction, and what the force reads too little.

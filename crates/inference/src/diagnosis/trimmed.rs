@@ -216,7 +216,8 @@ impl Linearised {
         self.left_of(&self.residual, kept)
     }
 
-    fn left_of(&self, residual: &[f64], kept: &[bool]) -> Option<Vec<f64>> {
+    /// The same of other readings.
+    pub(crate) fn left_of(&self, residual: &[f64], kept: &[bool]) -> Option<Vec<f64>> {
         // The weight of the priors depends on the noise, and the noise on what is left: twice is enough.
         let first = self.on(kept, robust_sd(residual))?.outside(residual, 1.0);
         Some(self.on(kept, robust_sd(&first))?.outside(residual, 1.0))
@@ -325,7 +326,9 @@ impl Linearised {
         let chance = by_chance(&rest);
         let alike = channels.iter().filter(|(gain, _, _)| *gain >= ALIKE * most);
         let by = alike.map(|(_, by, _)| *by).collect();
-        (*most > least && *most > chance).then(|| Shift { window, by, explained: *most, more: most - chance })
+        let rest_n = (dot(&rest, &rest) / rows as f64).sqrt();
+        let is_clear = *most > least && *most > chance;
+        is_clear.then(|| Shift { window, by, explained: *most, more: most - chance, rest_n })
     }
 }
 
@@ -360,6 +363,8 @@ pub(crate) struct Shift {
     pub(crate) explained: f64,
     /// and beyond chance.
     pub(crate) more: f64,
+    /// RMS of what it leaves \[N\].
+    pub(crate) rest_n: f64,
 }
 
 /// Factor by which what neighbouring values share makes sums of them vary more than those of independent ones, from

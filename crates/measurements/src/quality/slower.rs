@@ -41,7 +41,7 @@ pub(super) fn rows(gate: &Gate, column: &Column<'_>, tolerance: f64) -> Option<S
         let goes_on =
             |row: &&usize| (values[**row] - values[**row - 1]) * (values[**row + 1] - values[**row]) > 0.0;
         let steady = found.readings.iter().filter(goes_on).count();
-        (2 * steady > found.readings.len()).then_some(found)
+        (4 * steady > found.readings.len()).then_some(found)
     };
     let Readings { every, readings } = held().or_else(drawn)?;
     let (at, between): (Vec<usize>, Vec<usize>) =

@@ -1,0 +1,291 @@
+//! A bit of a converter that is always set, or never: readings whose bit was otherwise are wrong by one step of it. They
+//! leave every second band of that width empty, whatever the muscle does, and the misfit has two values.
+
+use bulge_measurements::{Channel, Data};
+use bulge_model::{Wanted, Warm};
+
+use crate::comparison::rows::lines;
+use crate::diagnosis::shift::{is_noise, name, readings, shown};
+use crate::diagnosis::trimmed::Linearised;
+use crate::diagnosis::write::Findings;
+use crate::vector::{count, minus, range, rms};
+
+/// Fewest rows that show bands.
+const FEWEST: usize = 60;
+/// Readings that are looked at, at a regular stride.
+const ENOUGH: usize = 2000;
+/// Moments at which the fault may begin, in eighths of the record.
+const STARTS: [usize; 3] = [0, 2, 4];
+/// Distances of two bands, over the range of the readings: three bands at least, and steps of a five-hundredth of it.
+const PERIODS: [f64; 2] = [0.7, 1.0 / 250.0];
+/// By how much of a band readings at the other end of the range move from one period to the next that is tried.
+const STEP: f64 = 0.02;
+/// Part of a period that is empty,
+const EMPTY: [f64; 2] = [0.46, 0.54];
+/// and largest gap in the other part: readings that rest at set points fill a little of it. Of set points that are a little less than
+/// a period apart half is empty as well, but their misfit hasn't two values.
+const GAP: f64 = 0.15;
+/// Bins of a period that are counted first.
+const BINS: usize = 32;
+/// Most pairs of fits and choices of the rows.
+const ROUNDS: usize = 30;
+/// Fewest bands, and the part of them that readings must go through.
+const FEWEST_BANDS: f64 = 3.0;
+const COVERED: f64 = 0.6;
+/// Fewest changes from one band to another, and how often at least right and wrong readings take turns for each.
+const FEWEST_CHANGES: usize = 8;
+const TURNS: f64 = 0.3;
+/// RMS misfit with the bit put right over that without.
+const FALLS: f64 = 0.42;
+/// The same over what was named.
+const BETTER: f64 = 0.8;
+
+/// What is said of a stuck bit that leaves nothing but noise, if there is one.
+pub(crate) fn stuck_bit(
+    found: &Findings<'_>,
+    linear: &Linearised,
+    data: &Data,
+    groups: &[Vec<usize>],
+) -> Option<String> {
+    let record = found.context.record;
+    let before = rms(&linear.left(&vec![true; record.len()])?);
+    let named = rms(&minus(record.force(), &found.last().linear.force));
+    let enough = (FALLS * before).min(if found.claims().is_empty() { f64::INFINITY } else { BETTER * named });
+    let tried = Channel::ALL.into_iter().flat_map(|channel| {
+        let values = readings(record, channel);
+        let signed = bands(&values).into_iter().flat_map(|bands| [(bands, 0.5), (bands, -0.5)]);
+        let tried = signed.filter_map(|(bands, side)| {
+            let stuck = Stuck::of(found, linear, channel, side * bands.period)?;
+            bands.take_turns(&values, &stuck.wrong).then_some(stuck)
+        });
+        tried.collect::<Vec<_>>()
+    });
+    let stuck = tried.min_by(|a, b| a.left_n.total_cmp(&b.left_n))?;
+    (stuck.left_n < enough && is_noise(found, stuck.left_n)).then(|| stuck.says(data, groups))
+}
+
+/// A bit of a channel, and the rows in which it was otherwise.
+struct Stuck {
+    channel: Channel,
+    /// By how much they read too little.
+    step: f64,
+    wrong: Vec<bool>,
+    /// RMS of what is left once they are put right \[N\].
+    left_n: f64,
+}
+
+impl Stuck {
+    /// The rows that are wrong by a step, chosen and fitted in turns.
+    fn of(found: &Findings<'_>, linear: &Linearised, channel: Channel, step: f64) -> Option<Self> {
+        let (record, base) = (found.context.record, found.search.stages.first()?);
+        let own = minus(record.force(), &base.linear.force);
+        let right: Vec<f64> = readings(record, channel).iter().map(|reading| reading + step).collect();
+        let other = match channel {
+            Channel::Force => own.iter().map(|own| own + step).collect(),
+            Channel::Pressure | Channel::Motion => {
+                let fixed = if channel == Channel::Pressure { Channel::Motion } else { Channel::Pressure };
+                let fixed = readings(record, fixed);
+                let [pressure, contraction] =
+                    if channel == Channel::Pressure { [&right, &fixed] } else { [&fixed, &right] };
+                let moved = record.clone().at(pressure, contraction);
+                let (model, theta) = (&base.confirmed.prepared.model, &base.confirmed.theta);
+                let force = model.evaluate_partly(&moved, theta, &Wanted::default(), &Warm::new()).ok()?;
+                minus(record.force(), &force.prediction.force)
+            }
+        };
+        let all = vec![true; own.len()];
+        // Where the moved reading has no state, the reading is right.
+        let by: Vec<f64> =
+            minus(&other, &own).iter().map(|by| if by.is_finite() { *by } else { 0.0 }).collect();
+        let mut wrong: Vec<f64> = vec![0.5; own.len()];
+        let mut left = Vec::new();
+        for _ in 0..ROUNDS {
+            let residual: Vec<f64> =
+                own.iter().zip(&by).zip(&wrong).map(|((own, by), wrong)| own + wrong * by).collect();
+            left = linear.left_of(&residual, &all)?;
+            let next: Vec<f64> = (left.iter().zip(&by).zip(&wrong))
+                .map(|((left, by), wrong)| {
+                    let right = left - wrong * by;
+                    if (right + by).abs() < right.abs() { 1.0 } else { 0.0 }
+                })
+                .collect();
+            if next == wrong {
+                break;
+            }
+            wrong = next;
+        }
+        let wrong = wrong.iter().map(|wrong| *wrong > 0.5).collect();
+        Some(Self { channel, step, wrong, left_n: rms(&left) })
+    }
+
+    fn says(&self, data: &Data, groups: &[Vec<usize>]) -> String {
+        let first = self.wrong.iter().position(|wrong| *wrong).unwrap_or_default();
+        let last = self.wrong.iter().rposition(|wrong| *wrong).unwrap_or_default();
+        let rows: Vec<usize> = groups.iter().take(last + 1).skip(first).flatten().copied().collect();
+        let side = if self.step > 0.0 { "little" } else { "much" };
+        format!(
+            "the {name} skips every other band of {step}, and nothing is left if {count} of its readings are {step} too {side} (line {}): is a bit of \
+             its converter stuck? Repeat the test with another one",
+            lines(data, &rows),
+            name = name(self.channel),
+            step = shown(self.channel, self.step),
+            count = count(&self.wrong),
+        )
+    }
+}
+
+/// Bands of readings, of which every other one is empty.
+#[derive(Debug, Clone, Copy)]
+struct Bands {
+    /// From one to the next of those that hold readings, and where one of them begins.
+    period: f64,
+    start: f64,
+    /// Row from which it is so.
+    from: usize,
+    /// How unevenly they are filled (the distance of Kolmogorov and Smirnov).
+    uneven: f64,
+}
+
+/// The bands of a channel: from each start, the most evenly filled of each octave of periods.
+fn bands(values: &[f64]) -> Vec<Bands> {
+    let starts = STARTS.map(|eighths| eighths * values.len() / 8);
+    let of = |from: usize| {
+        let values: Vec<f64> = values.iter().skip(from).copied().collect();
+        if values.len() < FEWEST {
+            return Vec::new();
+        }
+        let some: Vec<f64> = values.iter().copied().step_by(values.len().div_ceil(ENOUGH)).collect();
+        let [low, high] = range(some.iter().copied());
+        let width = high - low;
+        let mut best: Vec<Bands> = Vec::new();
+        let mut period = PERIODS[0] * width;
+        let mut octave = period;
+        while period > PERIODS[1] * width {
+            if period < 0.5 * octave {
+                octave = period;
+            }
+            let found = Bands::of(&some, low, period).filter(|bands| bands.cover(&values));
+            if let Some(found) = found.map(|bands| Bands { from, ..bands }) {
+                match best.last_mut().filter(|last| last.period <= octave) {
+                    Some(last) if last.uneven <= found.uneven => {}
+                    Some(last) => *last = found,
+                    None => best.push(found),
+                }
+            }
+            period *= 1.0 - STEP * period / width;
+        }
+        best
+    };
+    starts.into_iter().flat_map(of).collect()
+}
+
+impl Bands {
+    /// Those of a period, if readings fill one half of it and leave the other empty.
+    fn of(values: &[f64], low: f64, period: f64) -> Option<Self> {
+        let place = |value: &f64| ((value - low) / period).rem_euclid(1.0);
+        let mut is_filled = [false; BINS];
+        let mut filled = 0;
+        for value in values {
+            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 0 and 32")]
+            let bin = (place(value) * BINS as f64) as usize;
+            let bin = &mut is_filled[bin.min(BINS - 1)];
+            filled += usize::from(!std::mem::replace(bin, true));
+            // The bins at both ends of the half may be partly filled.
+            if filled > BINS / 2 + 4 {
+                return None;
+            }
+        }
+        if filled + 2 < BINS / 2 {
+            return None;
+        }
+        let mut places: Vec<f64> = values.iter().map(place).collect();
+        places.sort_by(f64::total_cmp);
+        let next = |index: usize| places.get(index + 1).copied().unwrap_or(places[0] + 1.0);
+        let gap = |index: usize| next(index) - places[index];
+        let widest = (0..places.len()).max_by(|a, b| gap(*a).total_cmp(&gap(*b)))?;
+        if !(EMPTY[0]..=EMPTY[1]).contains(&gap(widest)) {
+            return None;
+        }
+        let start = next(widest);
+        let mut inside: Vec<f64> = places.iter().map(|place| (place - start).rem_euclid(1.0)).collect();
+        inside.sort_by(f64::total_cmp);
+        if inside.windows(2).any(|pair| pair[1] - pair[0] > GAP) {
+            return None;
+        }
+        let (full, count) = (1.0 - gap(widest), inside.len() as f64);
+        let distance = |(index, place): (usize, &f64)| (place / full - (index as f64 + 0.5) / count).abs();
+        let uneven = inside.iter().enumerate().map(distance).fold(0.0, f64::max);
+        Some(Self { period, start: low + period * start, from: 0, uneven })
+    }
+
+    /// Number of the band of a reading.
+    fn number(&self, value: f64) -> f64 {
+        ((value - self.start) / self.period).floor()
+    }
+
+    /// Whether readings go through the bands: those that rest at set points leave most of them empty.
+    fn cover(&self, values: &[f64]) -> bool {
+        let mut numbers: Vec<f64> = values.iter().map(|value| self.number(*value)).collect();
+        numbers.sort_by(f64::total_cmp);
+        let all = numbers[numbers.len() - 1] - numbers[0] + 1.0;
+        numbers.dedup();
+        // By chance n readings leave one in exp(n/bands) of them empty.
+        let expected = all * (1.0 - (-(values.len() as f64) / all).exp());
+        all >= FEWEST_BANDS && numbers.len() as f64 > COVERED * expected
+    }
+
+    /// Whether right and wrong readings take turns as often as the bands change, as a bit does: a shift, a leak or a
+    /// ceiling goes on through many of them.
+    fn take_turns(&self, values: &[f64], wrong: &[bool]) -> bool {
+        let rows = self.from.max(1)..values.len();
+        let turns = rows.clone().filter(|row| wrong[*row] != wrong[row - 1]).count();
+        let changes =
+            rows.filter(|row| (self.number(values[*row]) - self.number(values[row - 1])).abs() > 0.5).count();
+        changes >= FEWEST_CHANGES && turns as f64 >= TURNS * changes as f64
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bulge_numerics::Random;
+
+    /// Four strokes over a range of 100 with a little noise.
+    fn strokes() -> Vec<f64> {
+        let mut random = Random::new(3, 0);
+        let of = |row: u32| {
+            // No stroke repeats the places of another.
+            let part = (f64::from(row) / 98.73).rem_euclid(2.0);
+            100.0 * (1.0 - (part - 1.0).abs())
+        };
+        (0..800).map(|row| of(row) + 0.2 * random.normal()).collect()
+    }
+
+    #[test]
+    fn a_bit_leaves_every_other_band_of_its_width_empty() {
+        for (step, from) in [(20.0, 0), (3.0, 0), (0.7, 0), (6.0, 300)] {
+            let stick = |(row, value): (usize, f64)| {
+                let is_set = (value / step).floor().rem_euclid(2.0) > 0.5;
+                if is_set || row < from { value } else { value + step }
+            };
+            let found = bands(&strokes().into_iter().enumerate().map(stick).collect::<Vec<f64>>());
+            let best = found.iter().min_by(|a, b| a.uneven.total_cmp(&b.uneven)).unwrap();
+            assert!((best.period / (2.0 * step) - 1.0).abs() < 0.02, "{step}: {found:?}");
+            assert!(best.from >= from, "{best:?}");
+            // Where one begins, but for whole periods.
+            let begins = (best.start / best.period).rem_euclid(1.0);
+            assert!((begins - 0.5).abs() < 0.1, "{step}: {begins}");
+        }
+        assert!(bands(&strokes()).is_empty());
+    }
+
+    #[test]
+    fn a_bit_takes_turns_and_a_shift_does_not() {
+        let values = strokes();
+        let bands = Bands { period: 10.0, start: 0.0, from: 0, uneven: 0.0 };
+        let bit: Vec<bool> = values.iter().map(|value| (value / 10.0).rem_euclid(1.0) > 0.5).collect();
+        assert!(bands.take_turns(&values, &bit));
+        let shift: Vec<bool> = (0..values.len()).map(|row| row >= 350).collect();
+        assert!(!bands.take_turns(&values, &shift));
+    }
+}
