@@ -225,21 +225,6 @@ impl Data {
     }
 }
 
-impl Data {
-    /// Number of rows without a reading of the pressure, or of the motion, because that channel is slower than the others
-    /// and was filled in between: there the path of the muscle isn't known.
-    #[must_use]
-    pub fn unread_path(&self) -> usize {
-        if self.is_empty() || !self.is_path() {
-            return 0;
-        }
-        let options = QualityOptions::default();
-        let filled = frozen::rows(&Gate::new(self, &options)).alone;
-        let slower = filled.iter().filter(|(name, how, _)| *name != "force" && how.is_slower());
-        slower.map(|(_, _, rows)| rows.len()).max().unwrap_or_default()
-    }
-}
-
 /// The description for a column.
 fn of(what: &str) -> &'static str {
     if what == "spike" {

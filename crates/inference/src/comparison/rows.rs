@@ -29,6 +29,16 @@ pub const UNPRESSURISED: &str = "a gauge pressure of";
 /// Reason for rows that a user left out.
 pub(crate) const BY_HAND: &str = "excluded by hand";
 
+/// Beginnings of the reasons for rows whose readings are right: they tell nothing of the muscle's force.
+const RIGHT: [&str; 5] = ["slack", "between pressures", "no gauge pressure", "no force", BY_HAND];
+
+impl LeftOut {
+    /// Whether it is for readings that are wrong.
+    pub(crate) fn is_wrong(&self) -> bool {
+        !RIGHT.iter().any(|reason| self.why.starts_with(reason))
+    }
+}
+
 impl Used {
     /// Leaves out rows, unless none would remain.
     pub(crate) fn leave_out(&mut self, data: &Data, rows: impl IntoIterator<Item = usize>, why: String) {

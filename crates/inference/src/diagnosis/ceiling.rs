@@ -6,7 +6,7 @@ use crate::comparison::rows::lines;
 use crate::diagnosis::shift::{name, nearly_noise, readings, shown, slopes};
 use crate::diagnosis::trimmed::Linearised;
 use crate::diagnosis::write::Findings;
-use crate::vector::rms;
+use crate::vector::{minus, rms};
 
 /// Quantiles of the readings at which they may begin to bend.
 const KNEES: [f64; 7] = [0.6, 0.7, 0.75, 0.8, 0.85, 0.9, 0.95];
@@ -14,6 +14,10 @@ const KNEES: [f64; 7] = [0.6, 0.7, 0.75, 0.8, 0.85, 0.9, 0.95];
 const NEAR: [f64; 4] = [0.4, 0.7, 0.9, 0.97];
 /// RMS misfit with the readings put right over that without.
 const FALLS: f64 = 0.45;
+/// What is named where a sensor of the force bends, and the RMS misfit over what that leaves of a ceiling of the other that can't
+/// be told from it.
+const FORCE: &str = "force-nonlinearity";
+const AS_WELL: f64 = 1.0;
 /// Standard deviation of what the largest reading lacks, over that reading.
 const LACKS: f64 = 0.1;
 
@@ -27,7 +31,8 @@ struct Ceiling {
     left_n: f64,
 }
 
-/// What is said of a ceiling that leaves nothing but noise, if there is one.
+/// What is said of a ceiling that leaves nothing but noise where nothing is named, or a bend of the other sensor that leaves as
+/// much.
 pub(crate) fn ceiling(
     found: &Findings<'_>,
     linear: &Linearised,
@@ -35,21 +40,31 @@ pub(crate) fn ceiling(
     groups: &[Vec<usize>],
 ) -> Option<String> {
     let record = found.context.record;
+    let claims = found.claims();
+    if claims.iter().any(|(name, _)| *name != FORCE) {
+        return None;
+    }
     let before = rms(&linear.left(&vec![true; record.len()])?);
+    let named = rms(&minus(record.force(), &found.last().linear.force));
+    let enough = if claims.is_empty() { FALLS * before } else { AS_WELL * named };
     let [pressure, _, force] = slopes(found)?;
     // No length ends for a sensor of it: it would be clipped where the rig stops.
-    let channels = [(Channel::Pressure, pressure), (Channel::Force, force)];
+    let mut channels = vec![(Channel::Pressure, pressure)];
+    if claims.is_empty() {
+        channels.push((Channel::Force, force));
+    }
     let best = channels.into_iter().filter_map(|(channel, slope)| {
         Ceiling::of(linear, channel, &slope, &readings(record, channel), before)
     });
     let best = best.min_by(|a, b| a.left_n.total_cmp(&b.left_n))?;
-    let is_it = best.left_n < FALLS * before && nearly_noise(found, best.left_n);
+    let is_it = best.left_n < enough && nearly_noise(found, best.left_n);
     is_it.then(|| {
         let values = readings(record, best.channel);
         let bent = groups.iter().zip(&values).filter(|(_, value)| **value > best.knee);
         let rows: Vec<usize> = bent.flat_map(|(group, _)| group.iter().copied()).collect();
+        let as_well = if claims.is_empty() { String::new() } else { format!(", as with {FORCE},") };
         format!(
-            "nothing is left if the readings of the {} bend below a ceiling, from {} on and by {} at the largest (line {}): does a sensor or an amplifier saturate \
+            "nothing is left{as_well} if the readings of the {} bend below a ceiling, from {} on and by {} at the largest (line {}): does a sensor or an amplifier saturate \
              there, or does an effect begin? Repeat the test with a sensor of a larger range",
             name(best.channel),
             shown(best.channel, best.knee),

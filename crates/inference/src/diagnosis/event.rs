@@ -12,10 +12,11 @@
 //! - *exchanged specimens*: if nothing is missing when two specimens have each other's numbers, they may have
 //!   each other's name.
 
-use bulge_measurements::{Data, Disturbance};
+use bulge_measurements::Data;
 use bulge_muscles::shown::shortened;
 
 use crate::comparison::analysis::Analysis;
+use crate::comparison::document::LeftOut;
 use crate::comparison::rows::lines;
 use crate::diagnosis::ceiling::ceiling;
 use crate::diagnosis::document::{Diagnosis, Verdict};
@@ -73,25 +74,7 @@ pub(crate) fn event(
             .or_else(|| wrong_channel(found, &linear, data, groups))
     };
     let event = jump(found, data, groups, anew).or_else(among_the_rows);
-    event
-        .or_else(|| exchanged(found, data, anew))
-        .or_else(|| unread(found, data))
-        .or_else(|| disturbed(found, data))
-}
-
-/// What is named from few readings of pressure or motion, between which the muscle's path isn't known.
-fn unread(found: &Findings<'_>, data: &Data) -> Option<String> {
-    let unread = data.unread_path();
-    (found.verdict().0 == Verdict::Missing && 2 * unread > data.len()).then(|| {
-        let claims: Vec<&str> = found.claims().iter().map(|(name, _)| *name).collect();
-        format!(
-            "the pressure or the motion was read in {} of {} rows only, and filled in between: {} may rest on what the muscle did there. Record all channels equally often, \
-             and ask again",
-            data.len() - unread,
-            data.len(),
-            claims.join(" and "),
-        )
-    })
+    event.or_else(|| exchanged(found, data, anew)).or_else(|| disturbed(found, analysis))
 }
 
 /// A channel that is wrong in a way that leaves nothing of what no effect explains.
@@ -101,15 +84,13 @@ fn wrong_channel(
     data: &Data,
     groups: &[Vec<usize>],
 ) -> Option<String> {
-    stuck_bit(found, linear, data, groups).or_else(|| {
-        let is_unknown = found.verdict().0 == Verdict::Unknown;
-        is_unknown.then(|| ceiling(found, linear, data, groups))?
-    })
+    stuck_bit(found, linear, data, groups).or_else(|| ceiling(found, linear, data, groups))
 }
 
 /// What no effect explains beside a specimen that changes within a sweep, or beside readings that are known to be wrong:
 /// what spoilt those may have spoilt others, less visibly.
-fn disturbed(found: &Findings<'_>, data: &Data) -> Option<String> {
+fn disturbed(found: &Findings<'_>, analysis: &Analysis<'_>) -> Option<String> {
+    let data = &analysis.data;
     if found.verdict().0 != Verdict::Unknown {
         return None;
     }
@@ -122,14 +103,14 @@ fn disturbed(found: &Findings<'_>, data: &Data) -> Option<String> {
             lines(data, &changes)
         ));
     }
-    let disturbed = data.disturbed();
-    let rows: usize = disturbed.iter().map(|disturbance| disturbance.rows.len()).sum();
-    let said = |one: &Disturbance| format!("line {} ({})", lines(data, &one.rows), one.why);
+    let wrong: Vec<&LeftOut> = analysis.used.left_out.iter().filter(|left_out| left_out.is_wrong()).collect();
+    let rows: usize = wrong.iter().map(|left_out| left_out.rows).sum();
+    let said = |one: &&LeftOut| format!("line {} ({})", one.lines, one.why);
     (rows >= DISTURBED).then(|| {
         format!(
             "no effect of the catalogue explains these data, and they hold readings that are wrong: {}. They don't count, but what spoilt them may have spoilt others \
              that look sound: see what happened, repeat these sweeps, and ask again",
-            disturbed.iter().map(said).collect::<Vec<_>>().join("; ")
+            wrong.iter().map(said).collect::<Vec<_>>().join("; ")
         )
     })
 }

@@ -139,7 +139,7 @@ fn monotone(values: &[f64]) -> Range<usize> {
             // Values that rest before the turn belong to both.
             start = (0..place)
                 .rev()
-                .take_while(|before| values[*before] == values[place - 1])
+                .take_while(|before| values[*before].total_cmp(&values[place - 1]).is_eq())
                 .last()
                 .unwrap_or(place);
         }

@@ -25,6 +25,8 @@ const EMPTY: [f64; 2] = [0.46, 0.54];
 /// and largest gap in the other part: readings that rest at set points fill a little of it. Of set points that are a little less than
 /// a period apart half is empty as well, but their misfit hasn't two values.
 const GAP: f64 = 0.15;
+/// Part of a period by which a reading lies beyond the edge of a band.
+const EDGE: f64 = 0.03;
 /// Bins of a period that are counted first.
 const BINS: usize = 32;
 /// Most pairs of fits and choices of the rows.
@@ -55,7 +57,7 @@ pub(crate) fn stuck_bit(
         let values = readings(record, channel);
         let signed = bands(&values).into_iter().flat_map(|bands| [(bands, 0.5), (bands, -0.5)]);
         let tried = signed.filter_map(|(bands, side)| {
-            let stuck = Stuck::of(found, linear, channel, side * bands.period)?;
+            let stuck = Stuck::of(found, linear, channel, side * bands.period, bands.from)?;
             bands.take_turns(&values, &stuck.wrong).then_some(stuck)
         });
         tried.collect::<Vec<_>>()
@@ -75,8 +77,14 @@ struct Stuck {
 }
 
 impl Stuck {
-    /// The rows that are wrong by a step, chosen and fitted in turns.
-    fn of(found: &Findings<'_>, linear: &Linearised, channel: Channel, step: f64) -> Option<Self> {
+    /// The rows that are wrong by a step from some row on, chosen and fitted in turns.
+    fn of(
+        found: &Findings<'_>,
+        linear: &Linearised,
+        channel: Channel,
+        step: f64,
+        from: usize,
+    ) -> Option<Self> {
         let (record, base) = (found.context.record, found.search.stages.first()?);
         let own = minus(record.force(), &base.linear.force);
         let right: Vec<f64> = readings(record, channel).iter().map(|reading| reading + step).collect();
@@ -95,8 +103,12 @@ impl Stuck {
         };
         let all = vec![true; own.len()];
         // Where the moved reading has no state, the reading is right.
-        let by: Vec<f64> =
-            minus(&other, &own).iter().map(|by| if by.is_finite() { *by } else { 0.0 }).collect();
+        let mut by = minus(&other, &own);
+        for (row, by) in by.iter_mut().enumerate() {
+            if row < from || !by.is_finite() {
+                *by = 0.0;
+            }
+        }
         let mut wrong: Vec<f64> = vec![0.5; own.len()];
         let mut left = Vec::new();
         for _ in 0..ROUNDS {
@@ -137,9 +149,10 @@ impl Stuck {
 /// Bands of readings, of which every other one is empty.
 #[derive(Debug, Clone, Copy)]
 struct Bands {
-    /// From one to the next of those that hold readings, and where one of them begins.
+    /// From one to the next of those that hold readings, where one of them begins, and the part of the period that it takes.
     period: f64,
     start: f64,
+    full: f64,
     /// Row from which it is so.
     from: usize,
     /// How unevenly they are filled (the distance of Kolmogorov and Smirnov).
@@ -150,7 +163,7 @@ struct Bands {
 fn bands(values: &[f64]) -> Vec<Bands> {
     let starts = STARTS.map(|eighths| eighths * values.len() / 8);
     let of = |from: usize| {
-        let values: Vec<f64> = values.iter().skip(from).copied().collect();
+        let (all, values) = (values, &values[from..]);
         if values.len() < FEWEST {
             return Vec::new();
         }
@@ -164,8 +177,8 @@ fn bands(values: &[f64]) -> Vec<Bands> {
             if period < 0.5 * octave {
                 octave = period;
             }
-            let found = Bands::of(&some, low, period).filter(|bands| bands.cover(&values));
-            if let Some(found) = found.map(|bands| Bands { from, ..bands }) {
+            let found = Bands::of(&some, low, period).filter(|bands| bands.cover(values));
+            if let Some(found) = found.map(|bands| Bands { from: bands.begin(all), ..bands }) {
                 match best.last_mut().filter(|last| last.period <= octave) {
                     Some(last) if last.uneven <= found.uneven => {}
                     Some(last) => *last = found,
@@ -215,7 +228,16 @@ impl Bands {
         let (full, count) = (1.0 - gap(widest), inside.len() as f64);
         let distance = |(index, place): (usize, &f64)| (place / full - (index as f64 + 0.5) / count).abs();
         let uneven = inside.iter().enumerate().map(distance).fold(0.0, f64::max);
-        Some(Self { period, start: low + period * start, from: 0, uneven })
+        Some(Self { period, start: low + period * start, full, from: 0, uneven })
+    }
+
+    /// The row after the last reading between the bands.
+    fn begin(&self, values: &[f64]) -> usize {
+        let is_between = |value: &f64| {
+            let place = ((value - self.start) / self.period).rem_euclid(1.0);
+            place > self.full + EDGE && place < 1.0 - EDGE
+        };
+        values.iter().rposition(is_between).map_or(0, |row| row + 1)
     }
 
     /// Number of the band of a reading.
@@ -271,7 +293,7 @@ mod tests {
             let found = bands(&strokes().into_iter().enumerate().map(stick).collect::<Vec<f64>>());
             let best = found.iter().min_by(|a, b| a.uneven.total_cmp(&b.uneven)).unwrap();
             assert!((best.period / (2.0 * step) - 1.0).abs() < 0.02, "{step}: {found:?}");
-            assert!(best.from >= from, "{best:?}");
+            assert!(best.from <= from && best.from + 12 > from, "{best:?}");
             // Where one begins, but for whole periods.
             let begins = (best.start / best.period).rem_euclid(1.0);
             assert!((begins - 0.5).abs() < 0.1, "{step}: {begins}");
@@ -282,7 +304,7 @@ mod tests {
     #[test]
     fn a_bit_takes_turns_and_a_shift_does_not() {
         let values = strokes();
-        let bands = Bands { period: 10.0, start: 0.0, from: 0, uneven: 0.0 };
+        let bands = Bands { period: 10.0, start: 0.0, full: 0.5, from: 0, uneven: 0.0 };
         let bit: Vec<bool> = values.iter().map(|value| (value / 10.0).rem_euclid(1.0) > 0.5).collect();
         assert!(bands.take_turns(&values, &bit));
         let shift: Vec<bool> = (0..values.len()).map(|row| row >= 350).collect();

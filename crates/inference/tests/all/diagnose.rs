@@ -409,14 +409,12 @@ fn damaged(name: &str) -> Diagnosis {
 ///   `force-nonlinearity`, which is what such a ceiling is, but of all rows.)
 /// - `shifted-zero-of-a-sweep-length-mixed-08`: the others deny it. One row of that sweep happens to be right.
 /// - `clipped-softly-pressure-isometric-17`: a ceiling of the pressure, of which the catalogue knows no effect.
-/// - `late-resampled-pressure-isotonic-09` of seed 1: the pressure was read every nine rows. Softening explains what is left.
 /// - `mislabelled-whole-sweep-specimen-isometric-07`: with usual widths of the geometry it is unknown.
 /// - `shifted-zero-of-a-sweep-pressure-isobaric-10`: 0.1 bar in one of five sweeps are as good a cause as what was named.
 #[test]
 fn what_some_rows_ask_for_and_others_do_not_is_no_physics() {
     for (found, says) in [
         (damaged("ceiling"), "if the readings of the pressure bend below a ceiling, from 5.7 bar on"),
-        (damaged("slower"), "the pressure or the motion was read in 23 of 200 rows only"),
         (damaged("relabelled"), "as if the specimen `C` was measured there: without line 210-225 nothing"),
         (damaged("clipped-softly"), "some rows ask for something that the others deny"),
         (

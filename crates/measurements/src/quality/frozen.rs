@@ -51,10 +51,6 @@ pub(super) enum Filled {
 }
 
 impl Filled {
-    pub(super) fn is_slower(self) -> bool {
-        matches!(self, Self::Slower(_))
-    }
-
     pub(super) fn says(self) -> String {
         match self {
             Self::Held => "repeats the row before to the last digit while the rest moved on".to_owned(),

@@ -37,11 +37,11 @@ pub(super) fn rows(gate: &Gate, column: &Column<'_>, tolerance: f64) -> Option<S
     };
     let drawn = || {
         let found = every(1..values.len().saturating_sub(1), |row| bends(row) > tolerance)?;
-        // A drive that turns at the ends of its stroke bends there alone.
+        // A drive that turns at the ends of its stroke bends there alone. No drive is a force.
         let goes_on =
             |row: &&usize| (values[**row] - values[**row - 1]) * (values[**row + 1] - values[**row]) > 0.0;
         let steady = found.readings.iter().filter(goes_on).count();
-        (4 * steady > found.readings.len()).then_some(found)
+        (column.name == "force" || 2 * steady > found.readings.len()).then_some(found)
     };
     let Readings { every, readings } = held().or_else(drawn)?;
     let (at, between): (Vec<usize>, Vec<usize>) =
