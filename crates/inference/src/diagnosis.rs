@@ -3,9 +3,11 @@
 
 pub(crate) mod averaged;
 pub(crate) mod averaged_data;
+mod backwards;
 pub(crate) mod bending;
 pub(crate) mod candidates;
 mod ceiling;
+pub(crate) mod channel;
 pub(crate) mod claim;
 pub(crate) mod classes;
 pub(crate) mod confidence;
@@ -56,3 +58,4 @@ mod trimmed;
 mod unanswered;
 mod verdict;
 pub(crate) mod write;
+mod wrong_channel;

@@ -17,6 +17,8 @@ const WILD: usize = 10;
 const PULLS: f64 = 0.1;
 /// Correlation from which the motion under a weight goes with the pressure, and not with its noise.
 const GOES_WITH: f64 = 0.5;
+/// What the sizes of the forces leave of themselves beside a plane, over what the forces do, from which the load cell was turned.
+const TURNED: f64 = 0.5;
 /// Largest difference between a contraction and the one that follows from the length.
 const SAME: f64 = 5e-3;
 
@@ -127,8 +129,9 @@ struct Sign {
 
 /// The sign of c in force = a + b pressure + c displacement, since the force falls as a muscle shortens at
 /// constant pressure. Under a weight a muscle shortens as the pressure rises. A wild reading counts as the last but a tenth of
-/// its column; a load cell that reads most pulls as negative is turned over. Where what then still pulls is a weight, the cell was
-/// turned for a while; otherwise it may have been tared under a load, and all readings count.
+/// its column; a load cell that reads most pulls as negative is turned over. What it then still reads as a push it may have read
+/// turned over for a while, or tared under a load: where what pulls is a weight, or the sizes of the forces follow such a plane
+/// much better, it was turned.
 fn sign(slots: &[Slot], place: usize, is_good: &[bool]) -> Sign {
     let numbers = |field| place_of(slots, field).map_or(&[][..], |place| slots[place].numbers());
     let of = |values: &[f64]| clamped(rows(is_good).map(|row| values[row]).collect());
@@ -146,24 +149,40 @@ fn sign(slots: &[Slot], place: usize, is_good: &[bool]) -> Sign {
         let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
         values.iter().map(|value| value - mean).collect()
     };
-    let covariance = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     let pulls = |row: usize| force[row] >= -large;
     let [p, d] = [&pressure, &way].map(|values| centred(values, &pulls));
-    let (pp, dd, pd) = (covariance(&p, &p), covariance(&d, &d), covariance(&p, &d));
+    let (pp, dd, pd) = (dot(&p, &p), dot(&d, &d), dot(&p, &d));
     let pulling = force.iter().copied().filter(|force| *force >= -large);
     if sweep::is_weight(pulling) && pd.abs() > GOES_WITH * (pp * dd).sqrt() {
         return Sign { shortens: pd > 0.0, why: "at a held force it goes with the pressure" };
     }
-    let [p, f, d] = [&pressure, &force, &way].map(|values| centred(values, &|_| true));
-    let (pp, dd, pd) = (covariance(&p, &p), covariance(&d, &d), covariance(&p, &d));
-    let (pf, df) = (covariance(&p, &f), covariance(&d, &f));
-    // c = (df pp - pf pd) / (pp dd - pd^2); at a single pressure pp and pd vanish.
-    let slope = if pp > 0.0 && pp * dd > 1.0001 * pd * pd { df * pp - pf * pd } else { df };
+    let [p, d] = [&pressure, &way].map(|values| centred(values, &|_| true));
+    let [as_read, turned] = [force.clone(), force.iter().map(|force| force.abs()).collect()]
+        .map(|force| plane(&p, &d, &centred(&force, &|_| true)));
+    let (slope, _) = if turned.1 < TURNED * as_read.1 { turned } else { as_read };
     match slope {
         slope if slope < 0.0 => Sign { shortens: true, why: "the force falls as it grows" },
         slope if slope > 0.0 => Sign { shortens: false, why: "the force rises as it grows" },
         _ => Sign { shortens: true, why: "nothing shows which way it counts" },
     }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// The slope c of force = b pressure + c displacement, all of mean 0, and the fraction of the force's squares that this leaves. At a
+/// single pressure the force follows the displacement alone.
+fn plane(pressure: &[f64], way: &[f64], force: &[f64]) -> (f64, f64) {
+    let [pp, dd, pd] = [dot(pressure, pressure), dot(way, way), dot(pressure, way)];
+    let [pf, df, ff] = [dot(pressure, force), dot(way, force), dot(force, force)];
+    let determinant = pp * dd - pd * pd;
+    let [b, c] = if pp > 0.0 && pp * dd > 1.0001 * pd * pd {
+        [(pf * dd - df * pd) / determinant, (df * pp - pf * pd) / determinant]
+    } else {
+        [0.0, if dd > 0.0 { df / dd } else { 0.0 }]
+    };
+    (c, if ff > 0.0 { (ff - b * pf - c * df) / ff } else { 0.0 })
 }
 
 /// The values, those of the outer tenth on either side moved to where it begins.
@@ -253,6 +272,18 @@ mod tests {
             })
             .collect();
         assert!(says(&weights).starts_with("lengthening"), "{}", says(&weights));
+    }
+
+    #[test]
+    fn a_load_cell_that_was_turned_for_a_sweep_does_not_decide() {
+        // Three isobaric sweeps of a muscle that shortens as the displacement falls; the cell is turned over in the last.
+        let rows: Vec<[f64; 3]> = (0..30)
+            .map(|i| {
+                let [bar, d] = [f64::from(2 + i / 10), 2.0 * f64::from(i % 10)];
+                [bar, -d, if i < 20 { bar * (200.0 - 5.0 * d) } else { -bar * (200.0 - 5.0 * d) }]
+            })
+            .collect();
+        assert!(says(&rows).starts_with("lengthening"), "{}", says(&rows));
     }
 
     #[test]

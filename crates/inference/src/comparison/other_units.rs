@@ -17,13 +17,13 @@ use crate::vector::count;
 
 /// Rows on which meanings are tried.
 const ROWS: usize = 400;
-/// Fewest parts, and fewest of these rows in each.
-const FEWEST: [usize; 2] = [3, 5];
+/// Fewest parts, and fewest of these rows in each. Of two, the muscle as stated says which is right.
+const FEWEST: [usize; 2] = [2, 5];
 /// Most parts, each of which takes an evaluation.
 const MOST_PARTS: usize = 100;
 /// At most this fraction of the rows may be off: the others say what is meant.
 const MOST: f64 = 0.5;
-/// RMS error over the median of all parts from which a part is off. With the least force that is still measured
+/// RMS error over the (lower) median of all parts from which a part is off. With the least force that is still measured
 /// well, effects of the muscle make sweeps differ by less.
 const OFF: f64 = 6.0;
 /// RMS error over the RMS force of the other parts from which it is.
@@ -101,7 +101,8 @@ impl Parts<'_> {
         };
         let errors: Vec<f64> =
             parts.values().map(|own| error(own, &|read| read).unwrap_or(f64::INFINITY)).collect();
-        let usual = median(&mut errors.clone());
+        // Of an even number the less: half of them may be off.
+        let usual = median(&mut errors.iter().map(|error| -error).collect::<Vec<_>>()).abs();
         let rest = parts.values().zip(&errors).filter(|(_, error)| **error <= OFF * usual);
         let (square, rows) = rest.fold((0.0, 0), |(square, rows), (own, _)| {
             let forces = thin.force().iter().zip(own).filter(|(_, own)| **own);
@@ -254,6 +255,18 @@ mod tests {
             },
             "inches",
         );
+        // Of two sweeps the muscle as stated says which is right.
+        let mut columns = whole.clone();
+        let Trace::Length(lengths) = &mut columns.motion else { unreachable!() };
+        lengths.truncate(80);
+        columns.pressure_pa.truncate(80);
+        columns.force_n.truncate(80);
+        columns.sweep = Some((0..80).map(|row| (1 + row / 40).to_string()).collect());
+        assert_eq!(found(&muscle, columns.clone()), []);
+        columns.pressure_pa[..40].iter_mut().for_each(|pressure| *pressure *= 10.0);
+        let of_two = found(&muscle, columns);
+        let [(rows, why)] = &of_two[..] else { panic!("{of_two:?}") };
+        assert!(*rows == (0..40).collect::<Vec<_>>() && why.contains("0.1000 times as large"), "{why}");
         // All of it in another unit is no part, and neither is half of it.
         let mut columns = whole.clone();
         columns.force_n.iter_mut().for_each(|force| *force *= 100.0);

@@ -11,6 +11,9 @@ const MOST_BETWEEN: f64 = 0.2;
 /// If more than this fraction of the rows pushes, the force must have the other sign.
 const MOST_IDLE: f64 = 0.8;
 
+/// A push above this fraction of the largest force is none: pressed beyond its free contraction a muscle buckles.
+const BUCKLES: f64 = 0.25;
+
 /// Rows that count, and the reasons for the others.
 #[derive(Debug, Clone)]
 pub(crate) struct Used {
@@ -134,6 +137,11 @@ pub(crate) fn used(data: &Data) -> Used {
     // If nearly all rows push, the load cell has the other sign, which is left to a question.
     let idle = data.not_pulling();
     if idle.len() as f64 <= MOST_IDLE * force.len() as f64 {
+        let (turned, idle): (Vec<usize>, Vec<usize>) =
+            idle.into_iter().partition(|row| force[*row] < -BUCKLES * full);
+        let why =
+            "pushing as hard as a muscle pulls, which would buckle: was the load cell turned over there?";
+        used.leave_out(data, turned, why.to_owned());
         let why = "slack or pushing: the muscle didn't pull, and says nothing about its force";
         used.leave_out(data, idle, why.to_owned());
     }

@@ -1,12 +1,14 @@
 //! A reading that bends below a ceiling: an amplifier that saturates, a sensor beyond its range.
 
 use bulge_measurements::{Channel, Data};
+use bulge_model::Record;
 
 use crate::comparison::rows::lines;
-use crate::diagnosis::shift::{name, nearly_noise, readings, shown, slopes};
+use crate::diagnosis::channel::{name, readings, shown, slopes};
 use crate::diagnosis::trimmed::Linearised;
 use crate::diagnosis::write::Findings;
-use crate::vector::{minus, rms};
+use crate::diagnosis::wrong_channel::WrongChannel;
+use crate::vector::rms;
 
 /// Quantiles of the readings at which they may begin to bend.
 const KNEES: [f64; 7] = [0.6, 0.7, 0.75, 0.8, 0.85, 0.9, 0.95];
@@ -14,8 +16,10 @@ const KNEES: [f64; 7] = [0.6, 0.7, 0.75, 0.8, 0.85, 0.9, 0.95];
 const NEAR: [f64; 4] = [0.4, 0.7, 0.9, 0.97];
 /// RMS misfit with the readings put right over that without.
 const FALLS: f64 = 0.45;
-/// What is named where a sensor of the force bends, and the RMS misfit over what that leaves of a ceiling of the other that can't
-/// be told from it.
+/// RMS misfit with a ceiling of the one channel over that with one of the other, up to which both are said.
+const ALIKE: f64 = 1.05;
+/// What is named where a sensor of the force bends, and the RMS misfit over what that leaves of a ceiling that can't be told
+/// from it.
 const FORCE: &str = "force-nonlinearity";
 const AS_WELL: f64 = 1.0;
 /// Standard deviation of what the largest reading lacks, over that reading.
@@ -31,47 +35,35 @@ struct Ceiling {
     left_n: f64,
 }
 
-/// What is said of a ceiling that leaves nothing but noise where nothing is named, or a bend of the other sensor that leaves as
-/// much.
+/// The ceiling that leaves least, where nothing is named or a bend of the force.
 pub(crate) fn ceiling(
     found: &Findings<'_>,
     linear: &Linearised,
     data: &Data,
     groups: &[Vec<usize>],
-) -> Option<String> {
+) -> Option<WrongChannel> {
     let record = found.context.record;
     let claims = found.claims();
     if claims.iter().any(|(name, _)| *name != FORCE) {
         return None;
     }
     let before = rms(&linear.left(&vec![true; record.len()])?);
-    let named = rms(&minus(record.force(), &found.last().linear.force));
-    let enough = if claims.is_empty() { FALLS * before } else { AS_WELL * named };
-    let [pressure, _, force] = slopes(found)?;
     // No length ends for a sensor of it: it would be clipped where the rig stops.
-    let mut channels = vec![(Channel::Pressure, pressure)];
-    if claims.is_empty() {
-        channels.push((Channel::Force, force));
-    }
-    let best = channels.into_iter().filter_map(|(channel, slope)| {
+    let [pressure, _, force] = slopes(found)?;
+    let of = |(channel, slope): (Channel, Vec<f64>)| {
         Ceiling::of(linear, channel, &slope, &readings(record, channel), before)
-    });
-    let best = best.min_by(|a, b| a.left_n.total_cmp(&b.left_n))?;
-    let is_it = best.left_n < enough && nearly_noise(found, best.left_n);
-    is_it.then(|| {
-        let values = readings(record, best.channel);
-        let bent = groups.iter().zip(&values).filter(|(_, value)| **value > best.knee);
-        let rows: Vec<usize> = bent.flat_map(|(group, _)| group.iter().copied()).collect();
-        let as_well = if claims.is_empty() { String::new() } else { format!(", as with {FORCE},") };
-        format!(
-            "nothing is left{as_well} if the readings of the {} bend below a ceiling, from {} on and by {} at the largest (line {}): does a sensor or an amplifier saturate \
-             there, or does an effect begin? Repeat the test with a sensor of a larger range",
-            name(best.channel),
-            shown(best.channel, best.knee),
-            shown(best.channel, best.lacks),
-            lines(data, &rows),
-        )
-    })
+    };
+    let mut tried: Vec<Ceiling> =
+        [(Channel::Pressure, pressure), (Channel::Force, force)].into_iter().filter_map(of).collect();
+    tried.sort_by(|a, b| a.left_n.total_cmp(&b.left_n));
+    let left_n = tried.first()?.left_n;
+    let alike = tried.iter().filter(|one| one.left_n < ALIKE * left_n);
+    let says = format!(
+        "nothing is left{}{}: does a sensor or an amplifier saturate there, or does an effect begin? Repeat the test with a sensor of a larger range",
+        if claims.is_empty() { String::new() } else { format!(", as with {FORCE},") },
+        alike.map(|one| one.says(record, data, groups)).collect::<Vec<_>>().join(", or"),
+    );
+    Some(WrongChannel { left_n, of_misfit: FALLS, of_named: AS_WELL, is_curve: true, says })
 }
 
 impl Ceiling {
@@ -98,6 +90,19 @@ impl Ceiling {
             (lacks > 0.0).then_some(Self { channel, knee, lacks, left_n })
         });
         each.min_by(|a, b| a.left_n.total_cmp(&b.left_n))
+    }
+
+    fn says(&self, record: &Record, data: &Data, groups: &[Vec<usize>]) -> String {
+        let values = readings(record, self.channel);
+        let bent = groups.iter().zip(&values).filter(|(_, value)| **value > self.knee);
+        let rows: Vec<usize> = bent.flat_map(|(group, _)| group.iter().copied()).collect();
+        format!(
+            " if the readings of the {} bend below a ceiling, from {} on and by {} at the largest (line {})",
+            name(self.channel),
+            shown(self.channel, self.knee),
+            shown(self.channel, self.lacks),
+            lines(data, &rows),
+        )
     }
 }
 

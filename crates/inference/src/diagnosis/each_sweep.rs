@@ -8,8 +8,9 @@ use std::ops::Range;
 use std::rc::Rc;
 
 use crate::comparison::rows::{full_scale, lines};
+use crate::diagnosis::channel::{name, shown, slopes};
 use crate::diagnosis::odd::{DENIED, SHOWN};
-use crate::diagnosis::shift::{is_noise, name, shown, slopes};
+use crate::diagnosis::shift::is_noise;
 use crate::diagnosis::trimmed::{Linearised, variance};
 use crate::diagnosis::write::Findings;
 use crate::median::median;

@@ -7,8 +7,8 @@
 //! - *a late column*: nothing is missing if it is moved by some rows,
 //! - *each sweep* has a zero or a gain of its own, which is the likelier cause of what isn't seen within the sweeps,
 //! - *readings that are wrong*, or a specimen that changes within a sweep, stand beside what no effect explains,
-//! - *a wrong channel*: nothing is left of what no effect explains if a bit of its converter is stuck, or if it bends below a
-//!   ceiling,
+//! - *a wrong channel*: nothing is left if a bit of its converter is stuck, if it bends below a ceiling, or if it stands in the
+//!   reverse order in some sweeps,
 //! - *exchanged specimens*: if nothing is missing when two specimens have each other's numbers, they may have
 //!   each other's name.
 
@@ -18,14 +18,13 @@ use bulge_muscles::shown::shortened;
 use crate::comparison::analysis::Analysis;
 use crate::comparison::document::LeftOut;
 use crate::comparison::rows::lines;
-use crate::diagnosis::ceiling::ceiling;
 use crate::diagnosis::document::{Diagnosis, Verdict};
 use crate::diagnosis::each_sweep::each_sweep;
 use crate::diagnosis::late::Late;
 use crate::diagnosis::odd::odd;
-use crate::diagnosis::stuck_bit::stuck_bit;
 use crate::diagnosis::trimmed::{Linearised, by_chance};
 use crate::diagnosis::write::Findings;
+use crate::diagnosis::wrong_channel::{bent_channel, wrong_channel};
 use crate::vector::minus;
 use bulge_numerics::vector::dot;
 
@@ -69,22 +68,14 @@ pub(crate) fn event(
         let base = &found.search.stages.first()?.confirmed;
         let linear = Linearised::of(&base.prepared, &base.theta, found.context.record).ok()?;
         late(found, analysis, anew)
+            .or_else(|| wrong_channel(found, &linear, data, groups))
             .or_else(|| odd(found, &linear, data, groups, anew))
             .or_else(|| each_sweep(found, &linear, data, groups))
-            .or_else(|| wrong_channel(found, &linear, data, groups))
+            // Rows that ask for a ceiling say more of it than a twin of what was named does.
+            .or_else(|| bent_channel(found, &linear, data, groups))
     };
     let event = jump(found, data, groups, anew).or_else(among_the_rows);
     event.or_else(|| exchanged(found, data, anew)).or_else(|| disturbed(found, analysis))
-}
-
-/// A channel that is wrong in a way that leaves nothing of what no effect explains.
-fn wrong_channel(
-    found: &Findings<'_>,
-    linear: &Linearised,
-    data: &Data,
-    groups: &[Vec<usize>],
-) -> Option<String> {
-    stuck_bit(found, linear, data, groups).or_else(|| ceiling(found, linear, data, groups))
 }
 
 /// What no effect explains beside a specimen that changes within a sweep, or beside readings that are known to be wrong:
@@ -101,6 +92,14 @@ fn disturbed(found: &Findings<'_>, analysis: &Analysis<'_>) -> Option<String> {
             "no effect of the catalogue explains these data, and the specimen changes within a sweep (line {}): have rows there the name of another one? See which \
              was on the bench, and ask again",
             lines(data, &changes)
+        ));
+    }
+    let against = data.against_the_motion();
+    if !against.is_empty() {
+        return Some(format!(
+            "no effect of the catalogue explains these data, and their directions are against the motion (line {}): does the motion count the other way, or were rows \
+             or labels exchanged? See which, and ask again",
+            lines(data, &against)
         ));
     }
     let wrong: Vec<&LeftOut> = analysis.used.left_out.iter().filter(|left_out| left_out.is_wrong()).collect();

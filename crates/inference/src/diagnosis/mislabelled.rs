@@ -1,11 +1,11 @@
 //! Rows under the name of another specimen: a stretch of the readings of one fits the numbers of another.
 
 use bulge_effects::Moment;
-use bulge_measurements::Data;
-use bulge_model::{Wanted, Warm};
+use bulge_measurements::{Channel, Data};
 use bulge_muscles::Quantity;
 use bulge_muscles::shown::shortened;
 
+use crate::diagnosis::channel::{left_at, readings};
 use crate::diagnosis::event::MOST_SPECIMENS;
 use crate::diagnosis::shift::{AS_WELL, Otherwise, is_noise};
 use crate::diagnosis::trimmed::{Linearised, by_chance};
@@ -26,19 +26,18 @@ pub(crate) fn mislabelled(
 ) -> Option<Otherwise> {
     let (record, base) = (found.context.record, found.search.stages.first()?);
     let count = u32::try_from(record.specimens().len()).ok().filter(|count| *count <= MOST_SPECIMENS)?;
-    let (model, theta) = (&base.confirmed.prepared.model, &base.confirmed.theta);
+    let length = base.confirmed.prepared.model.muscle().length().si();
     let own = minus(record.force(), &base.linear.force);
     let mut best: Option<(f64, u32, Range<usize>, Vec<f64>)> = None;
     for other in (0..count).filter(|_| count > 1) {
         let contraction = |(place, moment): (usize, &Moment)| {
             let row = groups.get(place).and_then(|group| group.first()).copied().unwrap_or(place);
-            data.contraction_as(other, row, moment.contraction, model.muscle().length().si())
+            data.contraction_as(other, row, moment.contraction, length)
         };
         let contraction: Vec<f64> = record.moments().iter().enumerate().map(contraction).collect();
-        let pressure: Vec<f64> = record.moments().iter().map(|moment| moment.pressure).collect();
+        let pressure = readings(record, Channel::Pressure);
         let of_other = record.clone().at(&pressure, &contraction).of_specimen(other);
-        let force = model.evaluate_partly(&of_other, theta, &Wanted::default(), &Warm::new()).ok()?;
-        let left = minus(record.force(), &force.prediction.force);
+        let left = left_at(found, &of_other)?;
         for rows in record.moments().chunk_by(|a, b| a.specimen == b.specimen).scan(0, |end, rows| {
             *end += rows.len();
             Some(*end - rows.len()..*end)

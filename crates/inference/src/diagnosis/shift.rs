@@ -3,9 +3,9 @@
 
 use bulge_effects::Moment;
 use bulge_measurements::Channel;
-use bulge_model::{Record, Wanted, Warm};
-use bulge_muscles::units::significant;
+use bulge_model::Record;
 
+use crate::diagnosis::channel::{name, shown, slopes};
 use crate::diagnosis::trimmed::Linearised;
 use crate::diagnosis::write::Findings;
 use crate::vector::{count, minus};
@@ -81,41 +81,6 @@ pub(crate) fn is_noise(found: &Findings<'_>, rms_n: f64) -> bool {
 /// Whether it is if one number may be a little wrong in its form.
 pub(crate) fn nearly_noise(found: &Findings<'_>, rms_n: f64) -> bool {
     is_noise(found, rms_n / NEARLY)
-}
-
-/// Readings of a channel.
-pub(crate) fn readings(record: &Record, channel: Channel) -> Vec<f64> {
-    let of = |state: fn(&Moment) -> f64| record.moments().iter().map(state).collect();
-    match channel {
-        Channel::Pressure => of(|moment| moment.pressure),
-        Channel::Motion => of(|moment| moment.contraction),
-        Channel::Force => record.force().to_vec(),
-    }
-}
-
-/// What a record holds of a channel.
-pub(crate) fn name(channel: Channel) -> &'static str {
-    if channel == Channel::Motion { "contraction" } else { channel.name() }
-}
-
-/// The size of a change of a reading, with its unit.
-pub(crate) fn shown(channel: Channel, by: f64) -> String {
-    let (scale, unit) = match channel {
-        Channel::Pressure => (1e5, "bar"),
-        Channel::Motion => (0.01, "points"),
-        Channel::Force => (1.0, "N"),
-    };
-    format!("{} {unit}", significant((by / scale).abs(), 2))
-}
-
-/// Derivatives of the base's force by pressure and contraction, and what the force reads too little.
-pub(crate) fn slopes(found: &Findings<'_>) -> Option<[Vec<f64>; 3]> {
-    let (record, base) = (found.context.record, found.search.stages.first()?);
-    let wanted = Wanted { parameters: Vec::new(), readings: true };
-    let at = &base.confirmed;
-    let slopes = at.prepared.model.evaluate_warm(record, &at.theta, &wanted, &Warm::new()).ok()?;
-    // A force that reads too much is no change of the model's.
-    Some([slopes.by_pressure, slopes.by_contraction, vec![-1.0; record.len()]])
 }
 
 /// Whether another state is set at a row: an effect of what is held then changes there as well.

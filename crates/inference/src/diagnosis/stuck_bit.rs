@@ -2,13 +2,14 @@
 //! leave every second band of that width empty, whatever the muscle does, and the misfit has two values.
 
 use bulge_measurements::{Channel, Data};
-use bulge_model::{Wanted, Warm};
+use std::ops::Range;
 
 use crate::comparison::rows::lines;
-use crate::diagnosis::shift::{is_noise, name, readings, shown};
+use crate::diagnosis::channel::{PutRight, name, readings, shown};
 use crate::diagnosis::trimmed::Linearised;
 use crate::diagnosis::write::Findings;
-use crate::vector::{count, minus, range, rms};
+use crate::diagnosis::wrong_channel::WrongChannel;
+use crate::vector::{count, range, rms};
 
 /// Fewest rows that show bands.
 const FEWEST: usize = 60;
@@ -29,41 +30,39 @@ const GAP: f64 = 0.15;
 const EDGE: f64 = 0.03;
 /// Bins of a period that are counted first.
 const BINS: usize = 32;
-/// Most pairs of fits and choices of the rows.
-const ROUNDS: usize = 30;
 /// Fewest bands, and the part of them that readings must go through.
 const FEWEST_BANDS: f64 = 3.0;
 const COVERED: f64 = 0.6;
 /// Fewest changes from one band to another, and how often at least right and wrong readings take turns for each.
 const FEWEST_CHANGES: usize = 8;
 const TURNS: f64 = 0.3;
-/// RMS misfit with the bit put right over that without.
-const FALLS: f64 = 0.42;
-/// The same over what was named.
+/// RMS misfit over that as read, and over what was named leaves.
+const FALLS: f64 = 0.45;
 const BETTER: f64 = 0.8;
 
-/// What is said of a stuck bit that leaves nothing but noise, if there is one.
+/// The stuck bit that leaves least.
 pub(crate) fn stuck_bit(
     found: &Findings<'_>,
     linear: &Linearised,
     data: &Data,
     groups: &[Vec<usize>],
-) -> Option<String> {
+) -> Option<WrongChannel> {
     let record = found.context.record;
-    let before = rms(&linear.left(&vec![true; record.len()])?);
-    let named = rms(&minus(record.force(), &found.last().linear.force));
-    let enough = (FALLS * before).min(if found.claims().is_empty() { f64::INFINITY } else { BETTER * named });
     let tried = Channel::ALL.into_iter().flat_map(|channel| {
         let values = readings(record, channel);
         let signed = bands(&values).into_iter().flat_map(|bands| [(bands, 0.5), (bands, -0.5)]);
         let tried = signed.filter_map(|(bands, side)| {
-            let stuck = Stuck::of(found, linear, channel, side * bands.period, bands.from)?;
-            bands.take_turns(&values, &stuck.wrong).then_some(stuck)
+            let step = side * bands.period;
+            let others: Vec<f64> = values.iter().map(|reading| reading + step).collect();
+            let rows: Vec<Range<usize>> = (bands.from..values.len()).map(|row| row..row + 1).collect();
+            let PutRight { wrong, left } = PutRight::of(found, linear, (channel, &others), &rows)?;
+            bands.take_turns(&values, &wrong).then(|| Stuck { channel, step, wrong, left_n: rms(&left) })
         });
         tried.collect::<Vec<_>>()
     });
     let stuck = tried.min_by(|a, b| a.left_n.total_cmp(&b.left_n))?;
-    (stuck.left_n < enough && is_noise(found, stuck.left_n)).then(|| stuck.says(data, groups))
+    let says = stuck.says(data, groups);
+    Some(WrongChannel { left_n: stuck.left_n, of_misfit: FALLS, of_named: BETTER, is_curve: false, says })
 }
 
 /// A bit of a channel, and the rows in which it was otherwise.
@@ -77,59 +76,6 @@ struct Stuck {
 }
 
 impl Stuck {
-    /// The rows that are wrong by a step from some row on, chosen and fitted in turns.
-    fn of(
-        found: &Findings<'_>,
-        linear: &Linearised,
-        channel: Channel,
-        step: f64,
-        from: usize,
-    ) -> Option<Self> {
-        let (record, base) = (found.context.record, found.search.stages.first()?);
-        let own = minus(record.force(), &base.linear.force);
-        let right: Vec<f64> = readings(record, channel).iter().map(|reading| reading + step).collect();
-        let other = match channel {
-            Channel::Force => own.iter().map(|own| own + step).collect(),
-            Channel::Pressure | Channel::Motion => {
-                let fixed = if channel == Channel::Pressure { Channel::Motion } else { Channel::Pressure };
-                let fixed = readings(record, fixed);
-                let [pressure, contraction] =
-                    if channel == Channel::Pressure { [&right, &fixed] } else { [&fixed, &right] };
-                let moved = record.clone().at(pressure, contraction);
-                let (model, theta) = (&base.confirmed.prepared.model, &base.confirmed.theta);
-                let force = model.evaluate_partly(&moved, theta, &Wanted::default(), &Warm::new()).ok()?;
-                minus(record.force(), &force.prediction.force)
-            }
-        };
-        let all = vec![true; own.len()];
-        // Where the moved reading has no state, the reading is right.
-        let mut by = minus(&other, &own);
-        for (row, by) in by.iter_mut().enumerate() {
-            if row < from || !by.is_finite() {
-                *by = 0.0;
-            }
-        }
-        let mut wrong: Vec<f64> = vec![0.5; own.len()];
-        let mut left = Vec::new();
-        for _ in 0..ROUNDS {
-            let residual: Vec<f64> =
-                own.iter().zip(&by).zip(&wrong).map(|((own, by), wrong)| own + wrong * by).collect();
-            left = linear.left_of(&residual, &all)?;
-            let next: Vec<f64> = (left.iter().zip(&by).zip(&wrong))
-                .map(|((left, by), wrong)| {
-                    let right = left - wrong * by;
-                    if (right + by).abs() < right.abs() { 1.0 } else { 0.0 }
-                })
-                .collect();
-            if next == wrong {
-                break;
-            }
-            wrong = next;
-        }
-        let wrong = wrong.iter().map(|wrong| *wrong > 0.5).collect();
-        Some(Self { channel, step, wrong, left_n: rms(&left) })
-    }
-
     fn says(&self, data: &Data, groups: &[Vec<usize>]) -> String {
         let first = self.wrong.iter().position(|wrong| *wrong).unwrap_or_default();
         let last = self.wrong.iter().rposition(|wrong| *wrong).unwrap_or_default();

@@ -308,14 +308,8 @@ fn a_column_that_comes_late_is_seen_among_more_rows_than_models_are_tried_on() {
     assert!(data.len() > 1500 && late.says.contains("the force 12 rows (2.4 s) earlier"), "{}", late.says);
 }
 
-/// Fillings and ventings at four held lengths, with noise of 2 N and pauses between them.
-fn fillings() -> Data {
-    let states = [0.02, 0.07, 0.12, 0.17].into_iter().zip(0..).flat_map(|(held, sweep)| {
-        (0..84).map(move |i| {
-            let part = f64::from(i) / 42.0;
-            (f64::from(200 * sweep + i), 6e4 + 5.4e5 * (1.0 - (part - 1.0).abs()), held)
-        })
-    });
+/// Readings of the braid at times, pressures and contractions, with noise of 2 N.
+fn at(states: impl Iterator<Item = (f64, f64, f64)>) -> Data {
     let (time, (pressure, contraction)): (Vec<f64>, (Vec<f64>, Vec<f64>)) =
         states.map(|(t, p, e)| (t, (p, e))).unzip();
     let mut columns = Columns::new(pressure, Trace::Contraction(contraction), vec![0.0; time.len()]);
@@ -325,6 +319,26 @@ fn fillings() -> Data {
     let mut random = Random::new(12, 0);
     columns.force_n = exact.iter().map(|force| force + 2.0 * random.normal()).collect();
     Data::from_columns(columns).unwrap()
+}
+
+/// Fillings and ventings at four held lengths, with pauses between them.
+fn fillings() -> Data {
+    at([0.02, 0.07, 0.12, 0.17].into_iter().zip(0..).flat_map(|(held, sweep)| {
+        (0..84).map(move |i| {
+            let part = f64::from(i) / 42.0;
+            (f64::from(200 * sweep + i), 6e4 + 5.4e5 * (1.0 - (part - 1.0).abs()), held)
+        })
+    }))
+}
+
+/// Strokes at two pressures that shorten for 60 rows and lengthen for 30, with a pause between them.
+fn strokes() -> Data {
+    at([2e5, 5e5].into_iter().zip(0..).flat_map(|(held, sweep)| {
+        (0..90).map(move |i| {
+            let part = if i < 60 { f64::from(i) / 60.0 } else { f64::from(90 - i) / 30.0 };
+            (f64::from(200 * sweep + i), held, 0.01 + 0.16 * part)
+        })
+    }))
 }
 
 #[test]
@@ -391,6 +405,57 @@ fn a_channel_that_is_wrong_in_itself_is_no_effect() {
     }
     let says = sentence(&|columns| columns.force_n[120..200].sort_by(f64::total_cmp));
     assert!(says.contains("nothing is missing"), "{says}");
+}
+
+/// A column of one of two sweeps that stands in the reverse order: no effect explains it, and no other sweep says which is wrong.
+#[test]
+fn a_column_of_a_sweep_in_the_reverse_order_is_no_effect() {
+    let found = diagnosed(&strokes());
+    assert_eq!((found.verdict, found.remaining.event), (Verdict::Adequate, None), "{}", found.says);
+    let force: fn(&mut Columns) = |columns| columns.force_n[90..].reverse();
+    let motion: fn(&mut Columns) = |columns| match &mut columns.motion {
+        Trace::Contraction(values) => values[90..].reverse(),
+        _ => unreachable!(),
+    };
+    for spoil in [force, motion] {
+        let found = spoilt(&strokes(), spoil);
+        assert_eq!((found.verdict, names(&found)), (Verdict::CannotTell, vec![]), "{}", found.says);
+        // At a held pressure the two are one.
+        let both = ["force or of the contraction", "contraction or of the force"];
+        let says =
+            both.map(|both| format!("the readings of the {both} stand in the reverse order in line 91-180"));
+        assert!(says.iter().any(|says| found.says.contains(says)), "{}", found.says);
+    }
+}
+
+/// Ends that touch each other, which no effect of the catalogue explains, beside directions that are all turned over, and beside
+/// a load cell that was turned over for a while.
+#[test]
+fn what_nothing_explains_beside_readings_that_contradict_themselves_may_be_theirs() {
+    let touching = |also: &dyn Fn(&mut Columns)| {
+        spoilt(&measured(&[], &protocol(2.0, 0.0), 10), |columns| {
+            let contraction = columns.motion.values().to_vec();
+            columns.force_n.iter_mut().zip(contraction).for_each(|(force, e)| {
+                *force -= 80.0 * ((e - 0.18) / 0.004).exp();
+            });
+            also(columns);
+        })
+    };
+    let says = |also: &dyn Fn(&mut Columns)| {
+        let found = touching(also);
+        assert_eq!((found.verdict, names(&found)), (Verdict::CannotTell, vec![]), "{}", found.says);
+        found.says
+    };
+    let labelled = |columns: &mut Columns, sign: i8| {
+        let steps: Vec<f64> = columns.motion.values().windows(2).map(|pair| pair[1] - pair[0]).collect();
+        let direction = |step: &f64| if *step > 0.0 { sign } else { -sign };
+        columns.direction = Some(steps.first().into_iter().chain(&steps).map(direction).collect());
+    };
+    assert_eq!(touching(&|columns| labelled(columns, 1)).verdict, Verdict::Unknown);
+    let turned = says(&|columns| labelled(columns, -1));
+    assert!(turned.contains("their directions are against the motion"), "{turned}");
+    let cell = says(&|columns| columns.force_n[..20].iter_mut().for_each(|force| *force = -*force));
+    assert!(cell.contains("line 1-15 (pushing as hard as a muscle pulls"), "{cell}");
 }
 
 /// The diagnosis of a set of `validation/damage`.

@@ -16,16 +16,8 @@ pub(super) fn find(gate: &Gate) -> Vec<Finding> {
 }
 
 fn directions(gate: &Gate) -> Option<Finding> {
-    let stated = gate.data.columns().direction.as_deref()?;
-    let (mut wrong, mut moving) = (Vec::new(), 0);
-    for (sweep, driven) in gate.data.driven() {
-        for stretch in driven.stretches.iter().filter(|stretch| stretch.direction != 0) {
-            let rows = stretch::inner(stretch, &sweep.rows);
-            moving += rows.len();
-            wrong.extend(rows.filter(|row| stated[*row] == -stretch.direction));
-        }
-    }
-    let all = if 2 * wrong.len() > moving {
+    let Stated { against, moving } = Stated::of(gate.data)?;
+    let all = if 2 * against.len() > moving {
         "turn the labels over (`up` and `+1` mean shortening, at held length a rising pressure), or check the unit and sign of the motion"
     } else {
         "correct the labels, or leave the column out: the direction of a path is found from its motion"
@@ -33,12 +25,34 @@ fn directions(gate: &Gate) -> Option<Finding> {
     gate.finding_if_any(
         FindingKind::DirectionContradicted,
         Severity::Warning,
-        &wrong,
+        &against,
         |count| {
             format!("{}, of {moving} that move, with a direction against the motion", rows_in_words(count))
         },
         all,
     )
+}
+
+/// Stated directions beside the motion.
+struct Stated {
+    against: Vec<usize>,
+    /// Number of rows that move.
+    moving: usize,
+}
+
+impl Stated {
+    fn of(data: &Data) -> Option<Self> {
+        let stated = data.columns().direction.as_deref()?;
+        let mut found = Self { against: Vec::new(), moving: 0 };
+        for (sweep, driven) in data.driven() {
+            for stretch in driven.stretches.iter().filter(|stretch| stretch.direction != 0) {
+                let rows = stretch::inner(stretch, &sweep.rows);
+                found.moving += rows.len();
+                found.against.extend(rows.filter(|row| stated[*row] == -stretch.direction));
+            }
+        }
+        Some(found)
+    }
 }
 
 /// Isometric sweeps whose length changes by more than that of a clamped muscle.
@@ -87,6 +101,13 @@ fn interrupted(gate: &Gate) -> Option<Finding> {
 }
 
 impl Data {
+    /// Rows with a stated direction against the motion, if those are more than half of the rows that move.
+    #[must_use]
+    pub fn against_the_motion(&self) -> Vec<usize> {
+        let found = Stated::of(self).filter(|stated| 2 * stated.against.len() > stated.moving);
+        found.map(|stated| stated.against).unwrap_or_default()
+    }
+
     /// Rows at which the specimen changes within a sweep label.
     #[must_use]
     pub fn specimen_changes(&self) -> Vec<usize> {
