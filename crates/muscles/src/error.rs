@@ -1,6 +1,7 @@
 //! Why values do not make a muscle: one variant per event, with its numbers.
 
 use crate::construction::Kind;
+use crate::digits::rounded;
 use crate::parameter::Parameter;
 use crate::quantity::Length;
 use thiserror::Error;
@@ -9,7 +10,7 @@ use thiserror::Error;
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum MuscleError {
     /// A value that must be finite and > 0.
-    #[error("`{key}` is {value} {unit}: it must be finite and greater than 0")]
+    #[error("`{key}` is {} {unit}: it must be finite and greater than 0", rounded(*value, 12))]
     NotPositive {
         /// Where it stands in a muscle file.
         key: &'static str,
@@ -19,7 +20,7 @@ pub enum MuscleError {
         unit: &'static str,
     },
     /// A value that must be finite and >= 0.
-    #[error("`{key}` is {value} {unit}: it must be finite and not negative")]
+    #[error("`{key}` is {} {unit}: it must be finite and not negative", rounded(*value, 12))]
     Negative {
         /// Where it stands in a muscle file.
         key: &'static str,

@@ -235,7 +235,7 @@ fn values_out_of_range() {
     refused(&rubber("c10 = \"-1 MPa\""), (8, 7), &["not negative", "c10 = \"0.2 MPa\""]);
     refused(&rubber("c10 = \"0 MPa\""), (8, 7), &["c10 = 0 Pa and c01 = 0 Pa", "c10 = \"0.2 MPa\""]);
     refused(&rubber("c10 = \"1 MPa\"\nc01 = \"-1 Pa\""), (9, 7), &["c01", "not negative"]);
-    refused(&rubber("c10 = \"1 MPa\"\nwall = \"-1 mm\""), (9, 8), &["greater than 0"]);
+    refused(&rubber("c10 = \"1 MPa\"\nwall = \"-7.1 mm\""), (9, 8), &["is -0.0071 m", "greater than 0"]);
     refused(&rubber("c10 = \"1 MPa\"\nwall = \"1 mm +- 1 %\""), (9, 8), &["mm +- 1 %"]);
     let instrument = |body: &str| format!("{PLEATED}[instruments]\n{body}");
     refused(&instrument("force = { noise = \"-4 N\" }"), (7, 19), &["greater than 0", "noise = \"4 N\""]);
