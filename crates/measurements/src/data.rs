@@ -2,7 +2,9 @@
 
 use crate::columns::{Channel, Columns, Trace, picked};
 use crate::error::MeasurementError;
+use crate::order::is_sorted_by_reading;
 use crate::reading::{ReadOptions, Reading, SetApart};
+use crate::recorded::is_recorded;
 use crate::resolution::{Resolution, bounds};
 use crate::source::{Source, SourceFile, fingerprint};
 use crate::stretch::{self, DeadBand, Stretch};
@@ -15,7 +17,7 @@ use std::sync::Arc;
 /// A set of measurements: at least pressure, motion and force of each row, all finite, in SI.
 ///
 /// Rows with a time or a sweep label form a path: they follow each other, and [`Data::history`] describes the
-/// motion. Without both they are a static map. Sweeps are the runs with one label. Without labels a new sweep
+/// motion. So do those of a file that go to and fro in small steps without either; others are a static map. Sweeps are the runs with one label. Without labels a new sweep
 /// begins with another file or specimen, where the time goes back or pauses for more than 20 times the median
 /// time between rows, and where the pressure steps from one isobaric run to another. Isobaric runs are
 /// stretches of constant pressure (within 8 % of the largest) over which the muscle is driven and its force
@@ -53,6 +55,8 @@ pub struct Data {
     /// Rows at which a stated sweep contradicts itself.
     pub(crate) contradictions: Vec<(usize, Contradiction)>,
     reading: Reading,
+    /// Whether the rows of files without time and labels follow each other.
+    is_recorded: bool,
     pub(crate) structure: Structure,
 }
 
@@ -95,7 +99,7 @@ impl Data {
         if !complaints.is_empty() {
             return Err(MeasurementError::of(complaints));
         }
-        all.map(Self::structured).ok_or_else(|| {
+        all.map(|all| all.in_order().structured()).ok_or_else(|| {
             let what = "no data file is given: name at least one file of CSV, Excel, MATLAB or Parquet, or `-` for standard input";
             MeasurementError::Request(what.to_owned())
         })
@@ -114,7 +118,7 @@ impl Data {
     /// # Errors
     /// If they are not a table of measurements.
     pub fn from_bytes(bytes: &[u8], origin: &str, options: &ReadOptions) -> Result<Self, MeasurementError> {
-        Ok(Self::start(Source::bytes(origin, bytes, options)?).structured())
+        Ok(Self::start(Source::bytes(origin, bytes, options)?).in_order().structured())
     }
 
     /// Takes the columns of a program.
@@ -138,6 +142,7 @@ impl Data {
             sweeps: Vec::new(),
             between: Vec::new(),
             contradictions: Vec::new(),
+            is_recorded: false,
             structure: Structure::default(),
         }
     }
@@ -157,6 +162,33 @@ impl Data {
         Ok(())
     }
 
+    /// Takes rows of files without time and labels in their order, if they were recorded in it; and no rows whose order was lost.
+    fn in_order(mut self) -> Self {
+        if self.files.len() == 1 && is_sorted_by_reading(&self.columns) {
+            let columns = Arc::make_mut(&mut self.columns);
+            (columns.time_s, columns.sweep) = (None, None);
+            let says = "the rows were sorted by a reading, and their times don't tell how they were measured: a static map, without times and sweeps. Export them \
+                        as they were measured";
+            self.reading.notes.push(says.to_owned());
+            return self;
+        }
+        if self.is_path() {
+            return self;
+        }
+        let mut start = 0;
+        self.is_recorded = self.files.iter().all(|file| {
+            let rows = start..start + file.rows;
+            start = rows.end;
+            is_recorded(&self.columns, rows)
+        });
+        if self.is_recorded {
+            let says = "no time and no sweep is given, but the rows go to and fro in small steps: they are taken in their order, without rates. If that means nothing, \
+                        number them all in a column `sweep`";
+            self.reading.notes.push(says.to_owned());
+        }
+        self
+    }
+
     fn structured(mut self) -> Self {
         self.specimens = match &self.columns.specimen {
             Some(labels) => labels.names().to_vec(),
@@ -174,7 +206,7 @@ impl Data {
                 (rows, if is_one { String::new() } else { format!("{stem}/") })
             })
             .collect();
-        let found = sweep::find(&self.columns, &files);
+        let found = sweep::find(&self.columns, &files, self.is_path());
         (self.sweeps, self.between, self.contradictions) =
             (found.sweeps, found.between, found.contradictions);
         self.finished()
@@ -222,10 +254,11 @@ impl Data {
         self
     }
 
-    /// Whether rows follow each other, because they have a time or a sweep label.
+    /// Whether rows follow each other: they have a time or a sweep label, or are those of a file that go to and fro in small
+    /// steps.
     #[must_use]
     pub fn is_path(&self) -> bool {
-        self.columns.time_s.is_some() || self.columns.sweep.is_some()
+        self.columns.time_s.is_some() || self.columns.sweep.is_some() || self.is_recorded
     }
 
     /// A quantity that grows when the muscle shortens: the contraction, or the negative length \[m\].

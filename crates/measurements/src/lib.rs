@@ -35,6 +35,7 @@ mod quality;
 mod quote;
 mod rate;
 mod reading;
+mod recorded;
 mod repeats;
 mod resolution;
 #[cfg(test)]

@@ -12,6 +12,10 @@ use std::ops::Range;
 const BEGINS_AGAIN: f64 = 0.2;
 /// Sorting is accepted if it reduces the changes from row to row to this fraction.
 const SMOOTHER: f64 = 0.9;
+/// Parts into which the rows of a sweep fall, on average, and rows of such a part, from which the order isn't that of the
+/// measurement.
+const RETURNS: usize = 4;
+const ROWS_PER_PART: usize = 4;
 /// Runs that begin again have at least so many rows, on average.
 const ROWS_PER_RUN: usize = 8;
 
@@ -39,6 +43,13 @@ pub(crate) fn put_in_order(
         let keep: Vec<usize> = (0..lines.len()).filter(|row| !is_copy.contains_key(row)).collect();
         keep_rows(columns, lines, &keep);
     }
+    if is_sorted_by_reading(columns) {
+        keep_rows(columns, lines, &by_label_and_time(columns));
+        reading
+            .notes
+            .push(format!("{file}: the rows were sorted by a reading: put into the order of their times"));
+        return Ok(());
+    }
     let mut order: Vec<usize> = (0..lines.len()).collect();
     let mut sorted = 0;
     for rows in segments(columns) {
@@ -51,6 +62,41 @@ pub(crate) fn put_in_order(
         reading.notes.push(format!("{file}: {sorted} rows were not in the order of their times: sorted"));
     }
     Ok(())
+}
+
+/// Whether the rows were sorted by a reading: it only rises or only falls, and the labels of sweeps return after a few rows.
+pub(crate) fn is_sorted_by_reading(columns: &Columns) -> bool {
+    let Some(labels) = &columns.sweep else { return false };
+    let parts = labels.rows().chunk_by(|a, b| a == b).count();
+    let readings = [&columns.pressure_pa, columns.motion.values(), &columns.force_n];
+    let only = |up: f64, values: &[f64]| values.windows(2).all(|pair| up * (pair[1] - pair[0]) >= 0.0);
+    parts > RETURNS * labels.names().len()
+        && columns.len() < ROWS_PER_PART * parts
+        && readings.iter().any(|values| only(1.0, values) || only(-1.0, values))
+}
+
+/// The rows by their sweeps and times. Sweeps of one clock follow each other as it says, others by their labels.
+fn by_label_and_time(columns: &Columns) -> Vec<usize> {
+    let time = times(columns);
+    let (names, rows) =
+        columns.sweep.as_ref().map(|labels| (labels.names(), labels.rows())).unwrap_or_default();
+    let mut spans = vec![(f64::INFINITY, f64::NEG_INFINITY); names.len()];
+    for (label, time) in rows.iter().zip(time) {
+        let (first, last) = &mut spans[*label as usize];
+        (*first, *last) = (first.min(*time), last.max(*time));
+    }
+    let mut sweeps: Vec<usize> = (0..names.len()).collect();
+    sweeps.sort_by(|a, b| spans[*a].0.total_cmp(&spans[*b].0));
+    if sweeps.windows(2).any(|pair| spans[pair[1]].0 < spans[pair[0]].1) {
+        let number = |place: &usize| names[*place].parse().unwrap_or(f64::INFINITY);
+        sweeps.sort_by(|a, b| number(a).total_cmp(&number(b)).then_with(|| names[*a].cmp(&names[*b])));
+    }
+    let mut rank = vec![0; names.len()];
+    sweeps.iter().enumerate().for_each(|(place, sweep)| rank[*sweep] = place);
+    let mut order: Vec<usize> = (0..columns.len()).collect();
+    let of = |row: usize| rank[rows[row] as usize];
+    order.sort_by(|a, b| of(*a).cmp(&of(*b)).then_with(|| time[*a].total_cmp(&time[*b])));
+    order
 }
 
 /// Ranges of rows that belong together according to their labels.
@@ -191,4 +237,55 @@ fn copies(columns: &Columns) -> Vec<(usize, usize)> {
         }
     }
     if is_coarse { Vec::new() } else { found }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{Data, ReadOptions};
+    use std::fmt::Write;
+
+    /// Three loops of 40 rows at rising pressures, with labels and a clock that begins anew in each or goes on, sorted by force.
+    fn sorted(goes_on: bool, numbered_anew: bool) -> Data {
+        let mut rows: Vec<[f64; 5]> = (0..120)
+            .map(|row| {
+                let (sweep, at) = (row / 40, f64::from(row % 40));
+                let contraction = 0.01 + 0.2 * (1.0 - (at / 20.0 - 1.0).abs());
+                let bar = f64::from(1 + sweep) + 1e-3 * at;
+                let time = if goes_on { 100.0 * f64::from(sweep) + at } else { at };
+                [
+                    time,
+                    bar,
+                    contraction,
+                    300.0 * bar * (1.0 - 3.0 * contraction) + 0.01 * at,
+                    f64::from(sweep),
+                ]
+            })
+            .collect();
+        rows.sort_by(|a, b| a[3].total_cmp(&b[3]));
+        let mut text = "time [s],pressure [bar],contraction,force [N],sweep\n".to_owned();
+        for (row, [time, p, c, f, sweep]) in rows.iter().enumerate() {
+            let time = if numbered_anew { row as f64 } else { *time };
+            let _ = writeln!(text, "{time},{p},{c},{f},{sweep}");
+        }
+        Data::from_bytes(text.as_bytes(), "d.csv", &ReadOptions::default()).unwrap()
+    }
+
+    #[test]
+    fn rows_that_were_sorted_by_a_reading_go_back_to_their_sweeps() {
+        for goes_on in [true, false] {
+            let data = sorted(goes_on, false);
+            let sweeps: Vec<_> =
+                data.sweeps().iter().map(|sweep| (sweep.name.as_str(), sweep.rows.clone())).collect();
+            assert_eq!(sweeps, [("0", 0..40), ("1", 40..80), ("2", 80..120)]);
+            assert!((data.pressure()[41] - 2.001e5).abs() < 1e-6);
+            assert!(data.reading().notes[0].contains("sorted by a reading"), "{:?}", data.reading().notes);
+        }
+    }
+
+    #[test]
+    fn rows_whose_order_is_lost_are_a_static_map() {
+        let data = sorted(true, true);
+        assert!(!data.is_path() && data.time().is_none() && data.sweeps().len() == 1);
+        assert!(data.reading().notes[0].contains("sorted by a reading"), "{:?}", data.reading().notes);
+    }
 }

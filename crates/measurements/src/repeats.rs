@@ -2,10 +2,10 @@
 
 use crate::columns::Trace;
 use crate::data::Data;
-use crate::resolution::bounds;
+use crate::resolution::{Resolution, bounds};
 use crate::stretch::Stretch;
 use serde::Serialize;
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 use std::ops::Range;
 
 /// Runs that repeat each other.
@@ -86,6 +86,8 @@ pub struct PureError {
 const LEVEL: f64 = 0.01;
 /// Ends of stretches are equal within this fraction of the stretch.
 const ENDS: f64 = 0.01;
+/// Equal forces in the same state, over those by chance, from which they are copies.
+const COPIES: f64 = 2.0;
 /// Durations of stretches are equal within this fraction.
 const DURATION: f64 = 0.1;
 
@@ -305,21 +307,43 @@ impl Data {
         found
     }
 
-    /// Sum of squares and degrees of freedom of the rows of a static map with the same state.
+    /// Sum of squares and degrees of freedom of the rows of a static map with the same state. Rows whose force is the same
+    /// as well count once, if there are more of them than chance makes on the grid of the force: they are copies.
     fn static_repeats(&self, is_sound: &[bool]) -> (f64, f64) {
         let motion = self.columns().motion.values();
-        let mut states: HashMap<(u32, u64, u64, i8), Comparison> = HashMap::new();
+        let mut states: BTreeMap<(u32, u64, u64, i8), Vec<f64>> = BTreeMap::new();
         for (row, force) in self.force().iter().enumerate().filter(|(row, _)| is_sound[*row]) {
             let direction = self.columns().direction.as_deref().map_or(0, |stated| stated[row]);
             let key =
                 (self.specimen_of(row), self.pressure()[row].to_bits(), motion[row].to_bits(), direction);
-            states.entry(key).or_default().add(*force, 1.0);
+            states.entry(key).or_default().push(*force);
         }
-        let repeated = states.values().filter(|found| found.points > 1);
-        repeated.fold((0.0, 0.0), |(squares, count), found| {
-            (squares + found.squares, count + found.points as f64 - 1.0)
-        })
+        let mut repeated: Vec<Vec<f64>> = states.into_values().filter(|forces| forces.len() > 1).collect();
+        let all = scatter(&repeated);
+        let pairs: f64 = repeated.iter().map(|forces| 0.5 * (forces.len() * (forces.len() - 1)) as f64).sum();
+        for forces in &mut repeated {
+            forces.sort_by(f64::total_cmp);
+            forces.dedup_by_key(|force| force.to_bits());
+        }
+        let once = scatter(&repeated);
+        let sd = (once.0 / once.1).sqrt();
+        let step = Resolution::of(self.force(), &[]).step;
+        // Two normal readings lie on the same level of the grid with a probability of step/(2 sqrt(pi) sd).
+        let by_chance = pairs * step / (2.0 * std::f64::consts::PI.sqrt() * sd);
+        if all.1 - once.1 > COPIES * by_chance + 1.0 { once } else { all }
     }
+}
+
+/// Sum of squares about the mean of each group, and degrees of freedom.
+fn scatter(groups: &[Vec<f64>]) -> (f64, f64) {
+    let of = |values: &Vec<f64>| {
+        let mut found = Comparison::default();
+        for value in values {
+            found.add(*value, 1.0);
+        }
+        (found.squares, found.points as f64 - 1.0)
+    };
+    groups.iter().map(of).fold((0.0, 0.0), |sum, own| (sum.0 + own.0, sum.1 + own.1))
 }
 
 impl Comparison {
@@ -497,6 +521,20 @@ mod tests {
         let found = Data::from_columns(columns.clone()).unwrap().repeats(0.3).pure_error().unwrap();
         assert_eq!([found.degrees_of_freedom, found.drift_n], [240.0, 0.0]);
         within(found, 1.5);
+        // Every second row copied: the scatter stays, and its degrees of freedom. On a coarse grid equal readings are no copies.
+        let copies = |columns: &Columns| {
+            let rows: Vec<usize> = (0..300).chain((0..300).step_by(2)).collect();
+            let mut with = columns.clone();
+            with.filter(&rows);
+            Data::from_columns(with).unwrap().repeats(0.3).pure_error().unwrap()
+        };
+        let copied = copies(&columns);
+        assert!(copied.degrees_of_freedom == 240.0 && (copied.sd_n / found.sd_n - 1.0).abs() < 1e-12);
+        let mut coarse = columns.clone();
+        coarse.force_n.iter_mut().for_each(|force| *force = force.round());
+        let coarse = Data::from_columns(coarse).unwrap().repeats(0.3).pure_error().unwrap();
+        assert_eq!(coarse.degrees_of_freedom, 240.0);
+        within(coarse, (1.5_f64.powi(2) + 1.0 / 12.0).sqrt());
         // Nothing is repeated, or repeated to the last digit: there is no estimate.
         columns.force_n.fill(1.0);
         assert_eq!(Data::from_columns(columns).unwrap().repeats(0.3).pure_error(), None);

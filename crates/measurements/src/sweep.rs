@@ -77,14 +77,14 @@ pub(crate) enum Contradiction {
     Pressure,
 }
 
-/// Finds the sweeps. `files` has the rows of each file and the prefix of its sweeps' names.
-pub(crate) fn find(columns: &Columns, files: &[(Range<usize>, String)]) -> Found {
+/// Finds the sweeps. `files` has the rows of each file and the prefix of its sweeps' names; rows that are no path are one.
+pub(crate) fn find(columns: &Columns, files: &[(Range<usize>, String)], is_path: bool) -> Found {
     let mut found = Found::default();
     for (file, prefix) in files {
         let first = found.sweeps.len();
         let mut label_before = None;
         for (specimen, part) in specimens(columns, file) {
-            for rows in runs(columns, &part, &mut found) {
+            for rows in if is_path { runs(columns, &part, &mut found) } else { vec![part.clone()] } {
                 let number = found.sweeps.len() - first + 1;
                 let labels = columns.sweep.as_ref();
                 let label = labels.and_then(|labels| labels.rows().get(rows.start).copied());
@@ -146,8 +146,6 @@ fn runs(columns: &Columns, rows: &Range<usize>, found: &mut Found) -> Vec<Range<
         let pause = GAP * median(&mut forward);
         let breaks = |i: &usize| time[*i] < time[i - 1] || time[*i] - time[i - 1] > pause;
         starts.extend((rows.start + 1..rows.end).filter(breaks));
-    } else {
-        return std::iter::once(rows.clone()).collect();
     }
     let ends = starts.iter().skip(1).copied().chain([rows.end]);
     let mut split = Vec::new();

@@ -36,8 +36,8 @@ const NEW: f64 = 1e-4;
 const ROUNDING: f64 = 1e-9;
 /// Degrees of freedom below which data sheets are better than the residuals.
 const FEWEST: f64 = 8.0;
-/// Degrees of freedom from which repeats of a static map determine the noise.
-const ENOUGH_REPEATS: f64 = 15.0;
+/// Degrees of freedom from which repeats of a static map determine the noise: to a sixth.
+const ENOUGH_REPEATS: f64 = 20.0;
 
 /// The data for estimating the law.
 pub(crate) struct Source<'a> {

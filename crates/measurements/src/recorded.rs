@@ -1,0 +1,109 @@
+//! Rows that were recorded one after another, although neither a time nor a label of sweeps says so: pressure and motion
+//! go to and fro in small steps. Set points in any order, and lists of them that begin anew for each pressure, leap.
+
+use crate::columns::{Columns, Trace};
+use crate::resolution::bounds;
+use crate::sweep;
+use std::ops::Range;
+
+/// Fewest rows.
+const FEWEST: usize = 40;
+/// A step beyond this fraction of the range is a leap,
+const LEAP: f64 = 0.25;
+/// of which one row in ten may make one, from one run to the next.
+const LEAPS: f64 = 0.1;
+/// A way of at least this fraction of the range in small steps is a stroke.
+const STROKE: f64 = 0.4;
+
+/// Whether rows follow each other along a path: a channel goes up and down in small steps, and none that isn't held leaps.
+pub(crate) fn is_recorded(columns: &Columns, rows: Range<usize>) -> bool {
+    let (pressure, motion) = (&columns.pressure_pa[rows.clone()], &columns.motion.values()[rows.clone()]);
+    let largest = |values: &[f64]| values.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
+    let scale = if matches!(columns.motion, Trace::Contraction(_)) { 1.0 } else { largest(motion) };
+    let fills = !sweep::is_held(pressure, largest(pressure));
+    let moves = sweep::drift(motion, scale).is_some();
+    let ways: Vec<Way> =
+        [(fills, pressure), (moves, motion)].into_iter().filter(|of| of.0).map(|of| Way::of(of.1)).collect();
+    rows.len() >= FEWEST
+        && ways.iter().all(|way| way.leaps as f64 <= LEAPS * rows.len() as f64)
+        && ways.iter().any(|way| way.strokes.iter().all(|strokes| *strokes > 0))
+}
+
+/// How a channel gets from row to row.
+#[derive(Debug, PartialEq, Eq)]
+struct Way {
+    leaps: usize,
+    /// Strokes upwards, and downwards.
+    strokes: [usize; 2],
+}
+
+impl Way {
+    fn of(values: &[f64]) -> Self {
+        let (low, high) = bounds(values);
+        let range = high - low;
+        let mut way = Self { leaps: 0, strokes: [0; 2] };
+        // The last turn on either side, and whether the last stroke rose.
+        let [mut least, mut most] = [values.first().copied().unwrap_or_default(); 2];
+        let mut last = None;
+        for pair in values.windows(2) {
+            let now = pair[1];
+            if (now - pair[0]).abs() > LEAP * range {
+                way.leaps += 1;
+                (least, most, last) = (now, now, None);
+                continue;
+            }
+            (least, most) = (least.min(now), most.max(now));
+            if last != Some(true) && now - least > STROKE * range {
+                way.strokes[0] += 1;
+                (most, last) = (now, Some(true));
+            } else if last != Some(false) && most - now > STROKE * range {
+                way.strokes[1] += 1;
+                (least, last) = (now, Some(false));
+            }
+        }
+        way
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn is_path(states: impl Iterator<Item = (f64, f64)>) -> bool {
+        let (pressure, contraction): (Vec<f64>, Vec<f64>) = states.unzip();
+        let rows = 0..pressure.len();
+        let force = vec![0.0; rows.len()];
+        is_recorded(&Columns::new(pressure, Trace::Contraction(contraction), force), rows)
+    }
+
+    /// To and fro between 0 and 1 in `rows` rows.
+    fn part(row: u32, rows: u32) -> f64 {
+        1.0 - (f64::from(row % rows) / f64::from(rows) * 2.0 - 1.0).abs()
+    }
+
+    #[test]
+    fn strokes_are_counted_between_leaps() {
+        let way = |values: &[f64]| Way::of(values);
+        let stairs: Vec<f64> = (0..60).map(|row| part(row, 20)).collect();
+        assert_eq!(way(&stairs), Way { leaps: 0, strokes: [3, 3] });
+        let saw: Vec<f64> = (0..60).map(|row| f64::from(row % 20)).collect();
+        assert_eq!(way(&saw), Way { leaps: 2, strokes: [3, 0] });
+    }
+
+    #[test]
+    fn loops_and_fillings_are_recorded_and_lists_of_set_points_are_not() {
+        // Loops at three pressures, fillings at three lengths, and both at once.
+        assert!(is_path((0..120).map(|row| (1e5 * f64::from(1 + row / 40), 0.2 * part(row, 40)))));
+        assert!(is_path((0..120).map(|row| (1e5 + 4e5 * part(row, 40), 0.05 * f64::from(row / 40)))));
+        assert!(is_path((0..120).map(|row| (1e5 + 4e5 * part(row, 40), 0.1 * part(row, 40)))));
+        // A grid, each pressure from the smallest contraction on; pressures at each contraction; any order; few rows.
+        assert!(!is_path((0..120).map(|row| (1e5 * f64::from(1 + row / 20), 0.01 * f64::from(row % 20)))));
+        assert!(!is_path((0..120).map(|row| (1e5 * f64::from(1 + row % 6), 0.01 * f64::from(row / 6)))));
+        assert!(!is_path(
+            (0..121).map(|row| (1e5 + 4e3 * f64::from(row * 37 % 121), 0.2 * part(row * 53 % 121, 121)))
+        ));
+        assert!(!is_path((0..30).map(|row| (2e5, 0.2 * part(row, 30)))));
+        // Sorted by a column: nothing turns.
+        assert!(!is_path((0..120).map(|row| (1e5 + 4e3 * f64::from(row), 0.1))));
+    }
+}
