@@ -2,11 +2,10 @@
 
 use crate::columns::{Channel, Columns, Trace, picked};
 use crate::error::MeasurementError;
-use crate::order::is_sorted_by_reading;
 use crate::reading::{ReadOptions, Reading, SetApart};
-use crate::recorded::is_recorded;
+use crate::recorded::Order;
 use crate::resolution::{Resolution, bounds};
-use crate::source::{Source, SourceFile, fingerprint};
+use crate::source::{Source, SourceFile};
 use crate::stretch::{self, DeadBand, Stretch};
 use crate::structure::Structure;
 use crate::sweep::{self, Contradiction, Sweep, SweepKind};
@@ -162,29 +161,15 @@ impl Data {
         Ok(())
     }
 
-    /// Takes rows of files without time and labels in their order, if they were recorded in it; and no rows whose order was lost.
+    /// Finds out whether the rows of files follow each other.
     fn in_order(mut self) -> Self {
-        if self.files.len() == 1 && is_sorted_by_reading(&self.columns) {
+        let rows: Vec<usize> = self.files.iter().map(|file| file.rows).collect();
+        let order = Order::of(&self.columns, &rows);
+        self.reading.notes.extend(order.says().map(str::to_owned));
+        self.is_recorded = order == Order::Recorded;
+        if order == Order::Lost {
             let columns = Arc::make_mut(&mut self.columns);
             (columns.time_s, columns.sweep) = (None, None);
-            let says = "the rows were sorted by a reading, and their times don't tell how they were measured: a static map, without times and sweeps. Export them \
-                        as they were measured";
-            self.reading.notes.push(says.to_owned());
-            return self;
-        }
-        if self.is_path() {
-            return self;
-        }
-        let mut start = 0;
-        self.is_recorded = self.files.iter().all(|file| {
-            let rows = start..start + file.rows;
-            start = rows.end;
-            is_recorded(&self.columns, rows)
-        });
-        if self.is_recorded {
-            let says = "no time and no sweep is given, but the rows go to and fro in small steps: they are taken in their order, without rates. If that means nothing, \
-                        number them all in a column `sweep`";
-            self.reading.notes.push(says.to_owned());
         }
         self
     }
@@ -454,17 +439,6 @@ impl Data {
         &self.reading.set_apart
     }
 
-    /// SHA-256 of the file in hexadecimal; for several files, that of their concatenated digests.
-    #[must_use]
-    pub fn sha256(&self) -> String {
-        match self.files.as_slice() {
-            [file] => file.sha256.clone(),
-            files => {
-                fingerprint(files.iter().map(|file| file.sha256.as_str()).collect::<String>().as_bytes())
-            }
-        }
-    }
-
     /// The rows with `keep` as a data set of its own; rows beyond the end of `keep` are dropped.
     ///
     /// A sweep that loses some of its rows stays one sweep. Files and specimens keep their indices. The
@@ -517,16 +491,5 @@ impl Data {
     /// The sweep of a row.
     pub(crate) fn sweep_of(&self, row: usize) -> usize {
         self.sweeps.partition_point(|sweep| sweep.rows.end <= row)
-    }
-
-    /// The pressure stretches in the sweeps of [`Data::paths`].
-    pub(crate) fn pressure_paths(&self) -> impl Iterator<Item = &[Stretch]> {
-        self.structure.pressure_stretches.iter().map(Vec::as_slice)
-    }
-
-    /// The sweeps whose rows follow each other, with the stretches of their length.
-    pub(crate) fn paths(&self) -> impl Iterator<Item = (&Sweep, &[Stretch])> {
-        let stretches = self.structure.stretches.iter().map(Vec::as_slice);
-        self.sweeps.iter().filter(|sweep| sweep.kind != SweepKind::Static).zip(stretches)
     }
 }

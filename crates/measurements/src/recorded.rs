@@ -2,6 +2,7 @@
 //! go to and fro in small steps. Set points in any order, and lists of them that begin anew for each pressure, leap.
 
 use crate::columns::{Columns, Trace};
+use crate::order::is_sorted_by_reading;
 use crate::resolution::bounds;
 use crate::sweep;
 use std::ops::Range;
@@ -15,8 +16,51 @@ const LEAPS: f64 = 0.1;
 /// A way of at least this fraction of the range in small steps is a stroke.
 const STROKE: f64 = 0.4;
 
+/// What the order of the rows of files says.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Order {
+    /// What times and labels say; nothing without either.
+    Stated,
+    /// They were recorded one after another, although neither is given.
+    Recorded,
+    /// They were sorted, and the times numbered anew.
+    Lost,
+}
+
+impl Order {
+    /// `rows` is the number of rows of each file.
+    pub(crate) fn of(columns: &Columns, rows: &[usize]) -> Self {
+        if rows.len() == 1 && is_sorted_by_reading(columns) {
+            return Self::Lost;
+        }
+        let mut start = 0;
+        let is_path = columns.time_s.is_some() || columns.sweep.is_some();
+        let is_recorded = !is_path
+            && rows.iter().all(|rows| {
+                let own = start..start + rows;
+                start = own.end;
+                is_recorded(columns, own)
+            });
+        if is_recorded { Self::Recorded } else { Self::Stated }
+    }
+
+    pub(crate) fn says(self) -> Option<&'static str> {
+        match self {
+            Self::Stated => None,
+            Self::Recorded => Some(
+                "no time and no sweep is given, but the rows go to and fro in small steps: they are taken in their order, without rates. If that means nothing, \
+                 number them all in a column `sweep`",
+            ),
+            Self::Lost => Some(
+                "the rows were sorted by a reading, and their times don't tell how they were measured: a static map, without times and sweeps. Export them as they \
+                 were measured",
+            ),
+        }
+    }
+}
+
 /// Whether rows follow each other along a path: a channel goes up and down in small steps, and none that isn't held leaps.
-pub(crate) fn is_recorded(columns: &Columns, rows: Range<usize>) -> bool {
+fn is_recorded(columns: &Columns, rows: Range<usize>) -> bool {
     let (pressure, motion) = (&columns.pressure_pa[rows.clone()], &columns.motion.values()[rows.clone()]);
     let largest = |values: &[f64]| values.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
     let scale = if matches!(columns.motion, Trace::Contraction(_)) { 1.0 } else { largest(motion) };

@@ -4,6 +4,7 @@ use crate::cell;
 use crate::cell_error::CellError;
 use crate::columns::Columns;
 use crate::csv_file;
+use crate::data::Data;
 use crate::error::MeasurementError;
 use crate::matlab;
 use crate::parquet_file;
@@ -155,6 +156,19 @@ impl Source {
     fn new(name: &str, sha256: String, table: Table) -> Self {
         let file = SourceFile { name: name.to_owned(), sha256, rows: table.lines.len() };
         Self { file, table }
+    }
+}
+
+impl Data {
+    /// SHA-256 of the file in hexadecimal; for several files, that of their concatenated digests.
+    #[must_use]
+    pub fn sha256(&self) -> String {
+        match self.files() {
+            [file] => file.sha256.clone(),
+            files => {
+                fingerprint(files.iter().map(|file| file.sha256.as_str()).collect::<String>().as_bytes())
+            }
+        }
     }
 }
 

@@ -1,7 +1,9 @@
 //! Properties derived from the columns of a data set and its sweeps.
 
+use crate::data::Data;
 use crate::resolution::Resolution;
 use crate::stretch::{DeadBand, Stretch};
+use crate::sweep::{Sweep, SweepKind};
 
 /// Properties derived from columns and sweeps.
 #[derive(Debug, Clone, Default)]
@@ -18,4 +20,17 @@ pub(crate) struct Structure {
     pub(crate) band: DeadBand,
     /// 1 for contractions, the longest length for lengths: the size of the muscle if l0 isn't known.
     pub(crate) scale: f64,
+}
+
+impl Data {
+    /// The pressure stretches in the sweeps of [`Data::paths`].
+    pub(crate) fn pressure_paths(&self) -> impl Iterator<Item = &[Stretch]> {
+        self.structure.pressure_stretches.iter().map(Vec::as_slice)
+    }
+
+    /// The sweeps whose rows follow each other, with the stretches of their length.
+    pub(crate) fn paths(&self) -> impl Iterator<Item = (&Sweep, &[Stretch])> {
+        let stretches = self.structure.stretches.iter().map(Vec::as_slice);
+        self.sweeps().iter().filter(|sweep| sweep.kind != SweepKind::Static).zip(stretches)
+    }
 }
