@@ -11,8 +11,9 @@ const MOST_BETWEEN: f64 = 0.2;
 /// If more than this fraction of the rows pushes, the force must have the other sign.
 const MOST_IDLE: f64 = 0.8;
 
-/// A push above this fraction of the largest force is none: pressed beyond its free contraction a muscle buckles.
-const BUCKLES: f64 = 0.25;
+/// Forces and pressures beyond this fraction of the largest, with the other sign, are readings whose sign is turned over: pressed
+/// beyond its free contraction a muscle buckles, and no zero is so far off.
+const TURNED: f64 = 0.25;
 
 /// Rows that count, and the reasons for the others.
 #[derive(Debug, Clone)]
@@ -77,8 +78,15 @@ impl Used {
             let reason = format!("{UNPRESSURISED} {} Pa has no equilibrium", significant(pressure[*row], 3));
             self.reading.add(file, line, reason);
         }
-        if !rows.is_empty() {
-            self.set_aside(data, &rows, "no gauge pressure: nothing balances the fibres".to_owned());
+        let full = full_scale(pressure, 0..pressure.len());
+        let (turned, rows): (Vec<usize>, Vec<usize>) =
+            rows.into_iter().partition(|row| pressure[*row] < -TURNED * full);
+        let turned_why = "pressures as far below zero as others are above it: was the sign of the sensor turned over there?";
+        let none_why = "no gauge pressure: nothing balances the fibres";
+        for (rows, why) in
+            [(turned, turned_why), (rows, none_why)].into_iter().filter(|(rows, _)| !rows.is_empty())
+        {
+            self.set_aside(data, &rows, why.to_owned());
         }
     }
 
@@ -138,7 +146,7 @@ pub(crate) fn used(data: &Data) -> Used {
     let idle = data.not_pulling();
     if idle.len() as f64 <= MOST_IDLE * force.len() as f64 {
         let (turned, idle): (Vec<usize>, Vec<usize>) =
-            idle.into_iter().partition(|row| force[*row] < -BUCKLES * full);
+            idle.into_iter().partition(|row| force[*row] < -TURNED * full);
         let why =
             "pushing as hard as a muscle pulls, which would buckle: was the load cell turned over there?";
         used.leave_out(data, turned, why.to_owned());
@@ -148,7 +156,7 @@ pub(crate) fn used(data: &Data) -> Used {
     used
 }
 
-/// Largest measured force among some rows \[N\].
+/// Largest reading among some rows.
 pub(crate) fn full_scale(force: &[f64], rows: impl Iterator<Item = usize>) -> f64 {
     rows.map(|row| force[row].abs()).fold(0.0, f64::max)
 }

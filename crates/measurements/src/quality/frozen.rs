@@ -6,6 +6,7 @@ use super::clipping::expected;
 use super::column::Column;
 use super::slower;
 use super::{Finding, FindingKind, Gate, Severity, rows_in_words};
+use crate::resolution::{bounds, median};
 use crate::sweep::SweepKind;
 use std::ops::Range;
 
@@ -21,6 +22,10 @@ const AROUND: usize = 20;
 /// its range.
 const MOVES: f64 = 10.0;
 const LEAST_SEEN: f64 = 1e-3;
+/// Change of another channel while a reading repeats, over its range in the sweep, and leap of the reading after that, over its usual
+/// step, from which it was held.
+const GOES_ON: f64 = 0.2;
+const LEAP: f64 = 4.0;
 /// A force below this fraction of the largest may be that of a slack muscle, which is constant.
 const SLACK: f64 = 0.01;
 /// If a channel is filled in in more than this fraction of the rows, the test was made that way.
@@ -84,7 +89,11 @@ pub(super) fn rows(gate: &Gate) -> Frozen {
         let mut held = filled(gate, is_force, |row| repeats(values, row));
         held.retain(|run| !all.contains(run));
         if !is_noisy {
-            held.retain(|run| is_force && is_stuck(gate, run));
+            let usual = usual_step(gate, values);
+            held.retain(|run| {
+                is_force && is_stuck(gate, run)
+                    || usual.is_some_and(|usual| catches_up(gate, column, run, usual))
+            });
         }
         let mut drawn = Vec::new();
         if is_noisy {
@@ -109,6 +118,40 @@ fn is_stuck(gate: &Gate, run: &Range<usize>) -> bool {
     let seen = (3.0 * gate.force.noise).max(gate.force.step).max(LEAST_SEEN * gate.force.range);
     // The first row of a run is a genuine reading.
     expected(gate, &(run.start - 1..run.end)) > MOVES * seen
+}
+
+/// The usual change of a reading from row to row where it changes; none if it mostly leaps from one rest to the next.
+fn usual_step(gate: &Gate, values: &[f64]) -> Option<f64> {
+    let step = |row: usize| (values[row] - values[row - 1]).abs();
+    let inner = || gate.data.sweeps().iter().flat_map(|sweep| sweep.rows.start + 1..sweep.rows.end);
+    let way: f64 = inner().map(step).sum();
+    let rests = runs(gate, |row| repeats(values, row));
+    let ends =
+        rests.iter().filter(|run| run.len() + 1 >= RUN && ends_in_sweep(gate, run)).map(|run| step(run.end));
+    let mut steps: Vec<f64> = inner().map(step).filter(|step| *step > 0.0).collect();
+    (ends.sum::<f64>() <= MOST * way && !steps.is_empty()).then(|| median(&mut steps))
+}
+
+/// Whether a row of the same sweep follows.
+fn ends_in_sweep(gate: &Gate, run: &Range<usize>) -> bool {
+    run.end < gate.data.sweeps()[gate.data.sweep_of(run.start)].rows.end
+}
+
+/// Whether a reading that repeats leaps to where it should have been, after another one went on.
+fn catches_up(gate: &Gate, column: &Column<'_>, run: &Range<usize>, usual: f64) -> bool {
+    let sweep = &gate.data.sweeps()[gate.data.sweep_of(run.start)].rows;
+    let goes_on = |other: &Column<'_>| {
+        let width = |rows: Range<usize>| {
+            let (low, high) = bounds(&other.values[rows]);
+            high - low
+        };
+        let (here, seen) = (width(run.start - 1..run.end), other.resolution.noise.max(other.resolution.step));
+        other.name != column.name && here > (GOES_ON * width(sweep.clone())).max(MOVES * seen)
+    };
+    run.len() + 1 >= RUN
+        && ends_in_sweep(gate, run)
+        && (column.values[run.end] - column.values[run.end - 1]).abs() > LEAP * usual
+        && gate.columns.iter().any(goes_on)
 }
 
 fn repeats(values: &[f64], row: usize) -> bool {
