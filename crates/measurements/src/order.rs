@@ -4,7 +4,7 @@ use crate::columns::Columns;
 use crate::error::MeasurementError;
 use crate::reading::Reading;
 use crate::table::keep_rows;
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::ops::Range;
 
@@ -12,10 +12,10 @@ use std::ops::Range;
 const BEGINS_AGAIN: f64 = 0.2;
 /// Sorting is accepted if it reduces the changes from row to row to this fraction.
 const SMOOTHER: f64 = 0.9;
-/// Parts into which the rows of a sweep fall, on average, and rows of such a part, from which the order isn't that of the
-/// measurement.
+/// Parts into which the rows of a sweep fall, on average, from which the order isn't that of the measurement; rows of such a
+/// part, on average, are fewer than these.
 const RETURNS: usize = 4;
-const ROWS_PER_PART: usize = 4;
+const ROWS_PER_PART: usize = 10;
 /// Runs that begin again have at least so many rows, on average.
 const ROWS_PER_RUN: usize = 8;
 
@@ -75,27 +75,29 @@ pub(crate) fn is_sorted_by_reading(columns: &Columns) -> bool {
         && readings.iter().any(|values| only(1.0, values) || only(-1.0, values))
 }
 
-/// The rows by their sweeps and times. Sweeps of one clock follow each other as it says, others by their labels.
+/// The rows by their sweeps and times. Sweeps of one clock follow each other as it says, others by their specimens and labels.
 fn by_label_and_time(columns: &Columns) -> Vec<usize> {
     let time = times(columns);
-    let (names, rows) =
-        columns.sweep.as_ref().map(|labels| (labels.names(), labels.rows())).unwrap_or_default();
-    let mut spans = vec![(f64::INFINITY, f64::NEG_INFINITY); names.len()];
-    for (label, time) in rows.iter().zip(time) {
-        let (first, last) = &mut spans[*label as usize];
+    let names = columns.sweep.as_ref().map(crate::columns::Labels::names).unwrap_or_default();
+    let of = |labels: &Option<crate::columns::Labels>, row: usize| {
+        labels.as_ref().map_or(0, |labels| labels.rows()[row])
+    };
+    let key = |row: usize| (of(&columns.specimen, row), of(&columns.sweep, row));
+    let mut spans: BTreeMap<(u32, u32), (f64, f64)> = BTreeMap::new();
+    for (row, time) in time.iter().enumerate() {
+        let (first, last) = spans.entry(key(row)).or_insert((f64::INFINITY, f64::NEG_INFINITY));
         (*first, *last) = (first.min(*time), last.max(*time));
     }
-    let mut sweeps: Vec<usize> = (0..names.len()).collect();
-    sweeps.sort_by(|a, b| spans[*a].0.total_cmp(&spans[*b].0));
-    if sweeps.windows(2).any(|pair| spans[pair[1]].0 < spans[pair[0]].1) {
-        let number = |place: &usize| names[*place].parse().unwrap_or(f64::INFINITY);
-        sweeps.sort_by(|a, b| number(a).total_cmp(&number(b)).then_with(|| names[*a].cmp(&names[*b])));
+    let mut sweeps: Vec<(u32, u32)> = spans.keys().copied().collect();
+    sweeps.sort_by(|a, b| spans[a].0.total_cmp(&spans[b].0));
+    if sweeps.windows(2).any(|pair| spans[&pair[1]].0 < spans[&pair[0]].1) {
+        let name = |sweep: &(u32, u32)| names.get(sweep.1 as usize).map_or("", String::as_str);
+        let number = |sweep: &(u32, u32)| name(sweep).parse().unwrap_or(f64::INFINITY);
+        sweeps.sort_by(|a, b| a.0.cmp(&b.0).then(number(a).total_cmp(&number(b))).then(name(a).cmp(name(b))));
     }
-    let mut rank = vec![0; names.len()];
-    sweeps.iter().enumerate().for_each(|(place, sweep)| rank[*sweep] = place);
+    let rank: BTreeMap<(u32, u32), usize> = sweeps.into_iter().zip(0..).collect();
     let mut order: Vec<usize> = (0..columns.len()).collect();
-    let of = |row: usize| rank[rows[row] as usize];
-    order.sort_by(|a, b| of(*a).cmp(&of(*b)).then_with(|| time[*a].total_cmp(&time[*b])));
+    order.sort_by(|a, b| rank[&key(*a)].cmp(&rank[&key(*b)]).then(time[*a].total_cmp(&time[*b])));
     order
 }
 
@@ -286,6 +288,6 @@ mod tests {
     fn rows_whose_order_is_lost_are_a_static_map() {
         let data = sorted(true, true);
         assert!(!data.is_path() && data.time().is_none() && data.sweeps().len() == 1);
-        assert!(data.reading().notes[0].contains("sorted by a reading"), "{:?}", data.reading().notes);
+        assert!(data.reading().notes[0].contains("only rises or only falls"), "{:?}", data.reading().notes);
     }
 }

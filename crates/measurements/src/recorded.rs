@@ -3,12 +3,14 @@
 
 use crate::columns::{Columns, Trace};
 use crate::order::is_sorted_by_reading;
-use crate::resolution::bounds;
-use crate::sweep;
-use std::ops::Range;
 
 /// Fewest rows.
 const FEWEST: usize = 40;
+/// A pressure within this fraction of the largest is held, and a length within this fraction of itself: its steps are noise.
+const HELD_PRESSURE: f64 = 0.2;
+const HELD_LENGTH: f64 = 0.02;
+/// One in so many readings on either side may be impossible.
+const OUTER: usize = 50;
 /// A step beyond this fraction of the range is a leap,
 const LEAP: f64 = 0.25;
 /// of which one row in ten may make one, from one run to the next.
@@ -33,15 +35,8 @@ impl Order {
         if rows.len() == 1 && is_sorted_by_reading(columns) {
             return Self::Lost;
         }
-        let mut start = 0;
         let is_path = columns.time_s.is_some() || columns.sweep.is_some();
-        let is_recorded = !is_path
-            && rows.iter().all(|rows| {
-                let own = start..start + rows;
-                start = own.end;
-                is_recorded(columns, own)
-            });
-        if is_recorded { Self::Recorded } else { Self::Stated }
+        if !is_path && is_recorded(columns, rows) { Self::Recorded } else { Self::Stated }
     }
 
     pub(crate) fn says(self) -> Option<&'static str> {
@@ -52,25 +47,41 @@ impl Order {
                  number them all in a column `sweep`",
             ),
             Self::Lost => Some(
-                "the rows were sorted by a reading, and their times don't tell how they were measured: a static map, without times and sweeps. Export them as they \
-                 were measured",
+                "a reading only rises or only falls, and labels of sweeps return every few rows: this isn't the order in which they were measured. They are taken as a static \
+                 map, without times and sweeps; if they were sorted, export them as they were measured",
             ),
         }
     }
 }
 
-/// Whether rows follow each other along a path: a channel goes up and down in small steps, and none that isn't held leaps.
-fn is_recorded(columns: &Columns, rows: Range<usize>) -> bool {
-    let (pressure, motion) = (&columns.pressure_pa[rows.clone()], &columns.motion.values()[rows.clone()]);
-    let largest = |values: &[f64]| values.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
-    let scale = if matches!(columns.motion, Trace::Contraction(_)) { 1.0 } else { largest(motion) };
-    let fills = !sweep::is_held(pressure, largest(pressure));
-    let moves = sweep::drift(motion, scale).is_some();
-    let ways: Vec<Way> =
-        [(fills, pressure), (moves, motion)].into_iter().filter(|of| of.0).map(|of| Way::of(of.1)).collect();
-    rows.len() >= FEWEST
-        && ways.iter().all(|way| way.leaps as f64 <= LEAPS * rows.len() as f64)
+/// Whether the rows of files follow each other along a path: a channel goes up and down in small steps, and none that isn't held
+/// leaps.
+fn is_recorded(columns: &Columns, rows: &[usize]) -> bool {
+    let motion = columns.motion.values();
+    let scale = if matches!(columns.motion, Trace::Contraction(_)) { 1.0 } else { inner(motion)[1].abs() };
+    let channels = [
+        (columns.pressure_pa.as_slice(), HELD_PRESSURE * inner(&columns.pressure_pa)[1].abs()),
+        (motion, HELD_LENGTH * scale),
+    ];
+    let ways: Vec<Way> = channels
+        .into_iter()
+        .filter_map(|(values, held)| {
+            let [low, high] = inner(values);
+            (high - low > held).then(|| Way::of(values, rows, high - low))
+        })
+        .collect();
+    columns.len() >= FEWEST
+        && ways.iter().all(|way| way.leaps as f64 <= LEAPS * columns.len() as f64)
         && ways.iter().any(|way| way.strokes.iter().all(|strokes| *strokes > 0))
+}
+
+/// The ends of values without the outer fiftieth on either side: an impossible reading is no range.
+fn inner(values: &[f64]) -> [f64; 2] {
+    let mut sorted = values.to_vec();
+    sorted.sort_unstable_by(f64::total_cmp);
+    let outer = sorted.len() / OUTER;
+    let at = |place: usize| sorted.get(place).copied().unwrap_or_default();
+    [at(outer), at(sorted.len().saturating_sub(outer + 1))]
 }
 
 /// How a channel gets from row to row.
@@ -82,30 +93,38 @@ struct Way {
 }
 
 impl Way {
-    fn of(values: &[f64]) -> Self {
-        let (low, high) = bounds(values);
-        let range = high - low;
+    /// Of the rows of files, one after the other.
+    fn of(values: &[f64], rows: &[usize], range: f64) -> Self {
         let mut way = Self { leaps: 0, strokes: [0; 2] };
+        let mut rest = values;
+        for count in rows {
+            let (own, others) = rest.split_at((*count).min(rest.len()));
+            rest = others;
+            way.along(own, range);
+        }
+        way
+    }
+
+    fn along(&mut self, values: &[f64], range: f64) {
         // The last turn on either side, and whether the last stroke rose.
         let [mut least, mut most] = [values.first().copied().unwrap_or_default(); 2];
         let mut last = None;
         for pair in values.windows(2) {
             let now = pair[1];
             if (now - pair[0]).abs() > LEAP * range {
-                way.leaps += 1;
+                self.leaps += 1;
                 (least, most, last) = (now, now, None);
                 continue;
             }
             (least, most) = (least.min(now), most.max(now));
             if last != Some(true) && now - least > STROKE * range {
-                way.strokes[0] += 1;
+                self.strokes[0] += 1;
                 (most, last) = (now, Some(true));
             } else if last != Some(false) && most - now > STROKE * range {
-                way.strokes[1] += 1;
+                self.strokes[1] += 1;
                 (least, last) = (now, Some(false));
             }
         }
-        way
     }
 }
 
@@ -115,9 +134,12 @@ mod tests {
 
     fn is_path(states: impl Iterator<Item = (f64, f64)>) -> bool {
         let (pressure, contraction): (Vec<f64>, Vec<f64>) = states.unzip();
-        let rows = 0..pressure.len();
-        let force = vec![0.0; rows.len()];
-        is_recorded(&Columns::new(pressure, Trace::Contraction(contraction), force), rows)
+        let count = pressure.len();
+        // In one file, or in two.
+        let columns = Columns::new(pressure, Trace::Contraction(contraction), vec![0.0; count]);
+        let found = is_recorded(&columns, &[count]);
+        assert_eq!(found, is_recorded(&columns, &[count / 2, count - count / 2]));
+        found
     }
 
     /// To and fro between 0 and 1 in `rows` rows.
@@ -127,7 +149,7 @@ mod tests {
 
     #[test]
     fn strokes_are_counted_between_leaps() {
-        let way = |values: &[f64]| Way::of(values);
+        let way = |values: &[f64]| Way::of(values, &[values.len()], inner(values)[1] - inner(values)[0]);
         let stairs: Vec<f64> = (0..60).map(|row| part(row, 20)).collect();
         assert_eq!(way(&stairs), Way { leaps: 0, strokes: [3, 3] });
         let saw: Vec<f64> = (0..60).map(|row| f64::from(row % 20)).collect();
@@ -140,6 +162,11 @@ mod tests {
         assert!(is_path((0..120).map(|row| (1e5 * f64::from(1 + row / 40), 0.2 * part(row, 40)))));
         assert!(is_path((0..120).map(|row| (1e5 + 4e5 * part(row, 40), 0.05 * f64::from(row / 40)))));
         assert!(is_path((0..120).map(|row| (1e5 + 4e5 * part(row, 40), 0.1 * part(row, 40)))));
+        // At a pressure that scatters, at a length that does, and with readings that are none.
+        let noise = |row: u32| f64::from(row * 37 % 29) / 29.0 - 0.5;
+        assert!(is_path((0..120).map(|row| (2e5 + 2e4 * noise(row), 0.2 * part(row, 40)))));
+        assert!(is_path((0..120).map(|row| (1e5 + 4e5 * part(row, 40), 0.1 + 0.01 * noise(row)))));
+        assert!(is_path((0..120).map(|row| (2e5, if row % 61 == 7 { 99.0 } else { 0.2 * part(row, 40) }))));
         // A grid, each pressure from the smallest contraction on; pressures at each contraction; any order; few rows.
         assert!(!is_path((0..120).map(|row| (1e5 * f64::from(1 + row / 20), 0.01 * f64::from(row % 20)))));
         assert!(!is_path((0..120).map(|row| (1e5 * f64::from(1 + row % 6), 0.01 * f64::from(row / 6)))));

@@ -163,7 +163,17 @@ impl Parts<'_> {
             instead: String::new(),
             of: Box::new(|[p, c, f]| [-p, c, f]),
         });
-        if matches!(self.data.motion(), Trace::Length(_)) {
+        let mut own = (0..self.used.len()).filter(|row| self.used[*row] && (self.of)(*row) == part);
+        if own.all(|row| self.data.is_displaced(row)) {
+            let turned = (-1.0, "displacements of the other sign");
+            found.extend(LENGTHS.into_iter().chain([turned]).map(|(factor, what)| Meaning {
+                kind: "length-unit",
+                with: format!("with displacements {} times as large", significant(factor, 4)),
+                question: format!("are these {what}?"),
+                instead: String::new(),
+                of: Box::new(move |[p, c, f]| [p, factor * c, f]),
+            }));
+        } else if matches!(self.data.motion(), Trace::Length(_)) {
             found.extend(LENGTHS.map(|(factor, what)| Meaning {
                 kind: "length-unit",
                 with: format!("with lengths {} times as large", significant(factor, 4)),

@@ -415,7 +415,7 @@ fn a_column_of_a_sweep_in_the_reverse_order_is_no_effect() {
     let force: fn(&mut Columns) = |columns| columns.force_n[90..].reverse();
     let motion: fn(&mut Columns) = |columns| match &mut columns.motion {
         Trace::Contraction(values) => values[90..].reverse(),
-        _ => unreachable!(),
+        Trace::Length(_) => unreachable!(),
     };
     for spoil in [force, motion] {
         let found = spoilt(&strokes(), spoil);
