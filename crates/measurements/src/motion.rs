@@ -276,10 +276,10 @@ mod tests {
 
     #[test]
     fn a_load_cell_that_was_turned_for_a_sweep_does_not_decide() {
-        // Three isobaric sweeps of a muscle that shortens as the displacement falls; the cell is turned over in the last.
+        // Three isobaric sweeps of a muscle that shortens as the displacement falls; the cell is turned over in the strongest.
         let rows: Vec<[f64; 3]> = (0..30)
             .map(|i| {
-                let [bar, d] = [f64::from(2 + i / 10), 2.0 * f64::from(i % 10)];
+                let [bar, d] = [2.0_f64.powi(i / 10), 2.0 * f64::from(i % 10)];
                 [bar, -d, if i < 20 { bar * (200.0 - 5.0 * d) } else { -bar * (200.0 - 5.0 * d) }]
             })
             .collect();

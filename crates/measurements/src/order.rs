@@ -3,6 +3,7 @@
 use crate::columns::Columns;
 use crate::error::MeasurementError;
 use crate::reading::Reading;
+use crate::recorded::leaping;
 use crate::table::keep_rows;
 use std::collections::{BTreeMap, HashMap};
 use std::hash::{DefaultHasher, Hash, Hasher};
@@ -16,6 +17,11 @@ const SMOOTHER: f64 = 0.9;
 /// part, on average, are fewer than these.
 const RETURNS: usize = 4;
 const ROWS_PER_PART: usize = 10;
+/// Fewest rows that were sorted without labels, the fraction of them with another reading than the row before, and the fraction
+/// in which another reading leaps.
+const FEWEST: usize = 40;
+const RISES: f64 = 0.7;
+const LEAPS: f64 = 0.2;
 /// Runs that begin again have at least so many rows, on average.
 const ROWS_PER_RUN: usize = 8;
 
@@ -64,15 +70,29 @@ pub(crate) fn put_in_order(
     Ok(())
 }
 
-/// Whether the rows were sorted by a reading: it only rises or only falls, and the labels of sweeps return after a few rows.
+/// Whether the rows were sorted by a reading: it only rises or only falls, while the labels of sweeps return after a few rows or
+/// another reading leaps.
 pub(crate) fn is_sorted_by_reading(columns: &Columns) -> bool {
-    let Some(labels) = &columns.sweep else { return false };
-    let parts = labels.rows().chunk_by(|a, b| a == b).count();
     let readings = [&columns.pressure_pa, columns.motion.values(), &columns.force_n];
-    let only = |up: f64, values: &[f64]| values.windows(2).all(|pair| up * (pair[1] - pair[0]) >= 0.0);
-    parts > RETURNS * labels.names().len()
-        && columns.len() < ROWS_PER_PART * parts
-        && readings.iter().any(|values| only(1.0, values) || only(-1.0, values))
+    let mut sorted = readings.into_iter().filter(|values| is_monotone(values)).peekable();
+    if sorted.peek().is_none() {
+        return false;
+    }
+    let returns = columns.sweep.as_ref().is_some_and(|labels| {
+        let parts = labels.rows().chunk_by(|a, b| a == b).count();
+        parts > RETURNS * labels.names().len() && columns.len() < ROWS_PER_PART * parts
+    });
+    // Set points in rising order are equal in many rows.
+    let steps = |values: &[f64]| values.windows(2).filter(|pair| pair[0].total_cmp(&pair[1]).is_ne()).count();
+    returns
+        || columns.len() >= FEWEST
+            && sorted.any(|values| steps(values) as f64 >= RISES * columns.len() as f64)
+            && leaping(columns) > LEAPS
+}
+
+fn is_monotone(values: &[f64]) -> bool {
+    let only = |up: f64| values.windows(2).all(|pair| up * (pair[1] - pair[0]) >= 0.0);
+    only(1.0) || only(-1.0)
 }
 
 /// The rows by their sweeps and times. Sweeps of one clock follow each other as it says, others by their specimens and labels.

@@ -12,6 +12,7 @@ mod quantisation;
 mod slack;
 mod slower;
 mod spikes;
+mod thousands;
 mod time;
 mod values;
 
@@ -205,6 +206,14 @@ impl Data {
             .into_iter()
             .map(|(name, how, rows)| Disturbance { rows, why: format!("frozen: the {name} {}", how.says()) });
         let mut found: Vec<Disturbance> = impossible.collect();
+        let thousands = |column: &Column<'_>| {
+            let Column { name, .. } = *column;
+            Disturbance {
+                rows: thousands::rows(column),
+                why: format!("comma: the {name} is {}", thousands::WHY),
+            }
+        };
+        found.extend(gate.columns.iter().map(thousands));
         if self.is_path() {
             found.extend(spikes::in_columns(&gate).into_iter().map(named("spike")));
             found.extend(clipping::in_columns(&gate).into_iter().map(named("clipped")));

@@ -47,8 +47,8 @@ impl Order {
                  number them all in a column `sweep`",
             ),
             Self::Lost => Some(
-                "a reading only rises or only falls, and labels of sweeps return every few rows: this isn't the order in which they were measured. They are taken as a static \
-                 map, without times and sweeps; if they were sorted, export them as they were measured",
+                "a reading only rises or only falls, while labels of sweeps return every few rows or another reading leaps: this isn't the order in which they were measured. They \
+                 are taken as a static map, without times and sweeps; if they were sorted, export them as they were measured",
             ),
         }
     }
@@ -57,22 +57,34 @@ impl Order {
 /// Whether the rows of files follow each other along a path: a channel goes up and down in small steps, and none that isn't held
 /// leaps.
 fn is_recorded(columns: &Columns, rows: &[usize]) -> bool {
+    let ways: Vec<Way> =
+        driven(columns).into_iter().map(|(values, range)| Way::of(values, rows, range)).collect();
+    columns.len() >= FEWEST
+        && ways.iter().all(|way| way.leaps as f64 <= LEAPS * columns.len() as f64)
+        && ways.iter().any(|way| way.strokes.iter().all(|strokes| *strokes > 0))
+}
+
+/// Largest fraction of the rows in which a driven channel leaps.
+pub(crate) fn leaping(columns: &Columns) -> f64 {
+    let count = columns.len();
+    let leaps =
+        |(values, range): (&[f64], f64)| Way::of(values, &[count], range).leaps as f64 / count.max(1) as f64;
+    driven(columns).into_iter().map(leaps).fold(0.0, f64::max)
+}
+
+/// Pressure and motion that aren't held, with their ranges.
+fn driven(columns: &Columns) -> Vec<(&[f64], f64)> {
     let motion = columns.motion.values();
     let scale = if matches!(columns.motion, Trace::Contraction(_)) { 1.0 } else { inner(motion)[1].abs() };
     let channels = [
         (columns.pressure_pa.as_slice(), HELD_PRESSURE * inner(&columns.pressure_pa)[1].abs()),
         (motion, HELD_LENGTH * scale),
     ];
-    let ways: Vec<Way> = channels
-        .into_iter()
-        .filter_map(|(values, held)| {
-            let [low, high] = inner(values);
-            (high - low > held).then(|| Way::of(values, rows, high - low))
-        })
-        .collect();
-    columns.len() >= FEWEST
-        && ways.iter().all(|way| way.leaps as f64 <= LEAPS * columns.len() as f64)
-        && ways.iter().any(|way| way.strokes.iter().all(|strokes| *strokes > 0))
+    let driven = channels.into_iter().filter_map(|(values, held)| {
+        let [low, high] = inner(values);
+        (high - low > held).then_some((values, high - low))
+    });
+    driven.collect()
 }
 
 /// The ends of values without the outer fiftieth on either side: an impossible reading is no range.

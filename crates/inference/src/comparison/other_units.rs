@@ -199,7 +199,7 @@ fn likeliest(tried: Vec<(f64, Meaning)>, usual: f64) -> Option<(f64, Meaning)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use bulge_measurements::Columns;
+    use bulge_measurements::{Columns, ReadOptions};
     use bulge_model::Wanted;
     use bulge_muscles::{Quantity, preset};
 
@@ -284,6 +284,34 @@ mod tests {
         let mut columns = whole.clone();
         columns.force_n[..120].iter_mut().for_each(|force| *force *= 100.0);
         assert_eq!(found(&muscle, columns), []);
+    }
+
+    #[test]
+    fn displacements_of_a_sweep_in_another_unit_or_of_the_other_sign() {
+        let muscle = preset("ppam-2-r16").unwrap();
+        let (columns, length) = (loops(&muscle), muscle.length().si());
+        for (factor, says) in [
+            (1.0, None),
+            (0.1, Some("10.00 times")),
+            (1.0 / 25.4, Some("inches")),
+            (-1.0, Some("of the other sign")),
+        ] {
+            let row = |row: usize| {
+                let factor = if (40..80).contains(&row) { factor } else { 1.0 };
+                let way = 1e3 * (length - columns.motion.values()[row]) * factor;
+                format!("{},{way},{},{}\n", columns.pressure_pa[row], columns.force_n[row], row / 40)
+            };
+            let rows: String = (0..200).map(row).collect();
+            let text = format!("pressure [Pa],shortening [mm],force [N],sweep\n{rows}");
+            let options = ReadOptions { l0_m: Some(length), ..ReadOptions::default() };
+            let data = Data::from_bytes(text.as_bytes(), "d.csv", &options).unwrap();
+            let record = Record::new(&data, length);
+            let found = in_other_units(&data, &muscle, &Model::new(&muscle), &record, &[true; 200]);
+            let rows: Vec<Vec<usize>> = found.iter().map(|(rows, _)| rows.clone()).collect();
+            let expected: Vec<Vec<usize>> = says.iter().map(|_| (40..80).collect()).collect();
+            assert_eq!(rows, expected, "{found:?}");
+            assert!(found.iter().zip(says).all(|((_, why), says)| why.contains(says)), "{found:?}");
+        }
     }
 
     #[test]
