@@ -6,6 +6,8 @@ use super::column::Column;
 const FEWEST: usize = 3;
 /// Least ratio of the smallest of the others to the largest of them.
 const GAP: f64 = 10.0;
+/// Largest ratio of the least thousand to the largest of the others.
+const ABOVE: f64 = 1.5;
 /// Where one follows another reading, its thousandfold is within this fraction of the largest from that, in most cases.
 const NEAR: f64 = 0.4;
 const MOSTLY: f64 = 0.5;
@@ -22,8 +24,8 @@ pub(super) fn rows(column: &Column<'_>) -> Vec<usize> {
     let places = FEWEST..sizes.len().saturating_sub(FEWEST - 1);
     let Some(gap) = places.max_by(|a, b| ratio(*a).total_cmp(&ratio(*b))) else { return Vec::new() };
     let (least, largest, limit) = (sizes[0], sizes[sizes.len() - 1], sizes[gap]);
-    // All thousands are larger than all that are none.
-    if ratio(gap) < GAP || 1e3 * least < largest {
+    // Thousands begin where the others end.
+    if ratio(gap) < GAP || !(largest..=ABOVE * largest).contains(&(1e3 * least)) {
         return Vec::new();
     }
     let is_small = |value: f64| value.abs() < limit && value != 0.0;
@@ -61,6 +63,13 @@ mod tests {
         // A muscle that goes slack now and then reads less than a thousandth of the rest, or not where the rest ends.
         let slack: Vec<f64> = curve.iter().map(|value| if *value < 400.0 { 0.3 } else { *value }).collect();
         assert!(found(&slack).is_empty());
+        // A sweep with a lost comma is a hundred times too large.
+        let sweep: Vec<f64> = curve
+            .iter()
+            .enumerate()
+            .map(|(row, value)| if row < 80 { 1e2 * value } else { *value })
+            .collect();
+        assert!(found(&sweep).is_empty());
         let other: Vec<f64> = curve.iter().map(|value| if *value < 500.0 { 1.6 } else { *value }).collect();
         assert!(found(&other).is_empty());
     }
