@@ -310,4 +310,26 @@ mod tests {
         assert!(!data.is_path() && data.time().is_none() && data.sweeps().len() == 1);
         assert!(data.reading().notes[0].contains("only rises or only falls"), "{:?}", data.reading().notes);
     }
+
+    /// Three loops at pressures that scatter by more than from row to row, without labels: sorted by pressure the motion leaps.
+    #[test]
+    fn rows_that_were_sorted_without_labels_are_a_static_map() {
+        let mut rows: Vec<[f64; 2]> = (0..120)
+            .map(|row| {
+                let at = row % 40;
+                let scatter = 1e-3 * f64::from(at * 17 % 40);
+                [f64::from(1 + row / 40) + scatter, 0.01 + 0.2 * (1.0 - (f64::from(at) / 20.0 - 1.0).abs())]
+            })
+            .collect();
+        let is_path = |rows: &[[f64; 2]]| {
+            let mut text = "time [s],pressure [bar],contraction,force [N]\n".to_owned();
+            for (row, [p, c]) in rows.iter().enumerate() {
+                let _ = writeln!(text, "{row},{p},{c},{}", 300.0 * p * (1.0 - 3.0 * c));
+            }
+            Data::from_bytes(text.as_bytes(), "d.csv", &ReadOptions::default()).unwrap().is_path()
+        };
+        assert!(is_path(&rows));
+        rows.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        assert!(!is_path(&rows));
+    }
 }

@@ -539,4 +539,13 @@ mod tests {
         columns.force_n.fill(1.0);
         assert_eq!(Data::from_columns(columns).unwrap().repeats(0.3).pure_error(), None);
     }
+
+    #[test]
+    fn the_scatter_of_two_pairs_is_exact() {
+        let motion = Trace::Length(vec![0.3; 4]);
+        let columns = Columns::new(vec![1e5, 1e5, 2e5, 2e5], motion, vec![10.0, 12.0, 20.0, 22.0]);
+        let found = Data::from_columns(columns).unwrap().repeats(0.3).pure_error().unwrap();
+        // Squares of 1 N on either side of two means: 4 N^2 with two degrees of freedom.
+        assert!((found.sd_n - 2.0_f64.sqrt()).abs() < 1e-12 && found.degrees_of_freedom == 2.0, "{found:?}");
+    }
 }
