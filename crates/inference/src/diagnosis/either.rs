@@ -14,6 +14,7 @@ use bulge_model::{Model, ModelError};
 
 use crate::diagnosis::averaged_data::AveragedData;
 use crate::diagnosis::linearised_model::Context;
+use crate::diagnosis::noise::kurtosis;
 use crate::diagnosis::pure_error::BetweenCycles;
 use crate::diagnosis::search::Search;
 use crate::diagnosis::something_else::smooth_evidence;
@@ -70,7 +71,10 @@ fn noise_of_base(
     let found = NoiseLaw::estimate(context.record, &vec![true; n], inputs, &design, &tangents.residual);
     let Ok(law) = found else { return Ok(None) };
     let law = match BetweenCycles::of(context.record, &tangents.residual) {
-        Some(cycles) => cycles.bounds(law, median(&mut inputs.to_vec())),
+        Some(cycles) => {
+            let kurtosis = kurtosis(&tangents.residual, &[], inputs, &law);
+            cycles.bounds(law, median(&mut inputs.to_vec()), kurtosis)
+        }
         None => law,
     };
     let likelihood = |law| log_likelihood(law, context.record, inputs, &design, &tangents.residual);

@@ -17,7 +17,7 @@ use crate::fit::nuisance::Prepared;
 use crate::median::median;
 use crate::noise::inputs::{Scatter, input_noise};
 use crate::noise::law::{NoiseLaw, NoiseSource};
-use bulge_numerics::vector::norm;
+use bulge_numerics::vector::{add, dot, norm};
 
 /// Most independent columns of the saturated model relative to the rows: for effects here, for all columns in
 /// the next constant. Fewer along a path, because a model with many parameters follows correlated noise and
@@ -105,7 +105,10 @@ impl Source<'_> {
                 let cycles = BetweenCycles::of(self.record, residual);
                 // Use the median, because rows of uncertain direction have a large variance of their own.
                 let law = match cycles {
-                    Some(cycles) => cycles.bounds(law, median(&mut inputs.clone())),
+                    Some(cycles) => {
+                        let kurtosis = kurtosis(residual, &design, &inputs, &law);
+                        cycles.bounds(law, median(&mut inputs.clone()), kurtosis)
+                    }
                     None => law,
                 };
                 Some((law, inputs))
@@ -118,6 +121,22 @@ impl Source<'_> {
             })
         }))
     }
+}
+
+/// Kurtosis of what orthonormal columns leave of the residuals, in standard deviations of single readings: 3 for
+/// normal noise.
+pub(crate) fn kurtosis(residual: &[f64], design: &[Vec<f64>], inputs: &[f64], law: &NoiseLaw) -> f64 {
+    let mut left = residual.to_vec();
+    for column in design {
+        let part = dot(column, &left);
+        add(&mut left, -part, column);
+    }
+    let alike = law.white_n * law.white_n + law.correlated_n * law.correlated_n;
+    let squares =
+        left.iter().zip(inputs).map(|(value, own)| value * value / (alike + own).max(f64::MIN_POSITIVE));
+    let squares: Vec<f64> = squares.collect();
+    let mean = squares.iter().sum::<f64>() / squares.len() as f64;
+    squares.iter().map(|square| square * square).sum::<f64>() / (squares.len() as f64 * mean * mean)
 }
 
 /// The saturated model as orthonormal columns. Within the sweeps it contains the tangents of the base,

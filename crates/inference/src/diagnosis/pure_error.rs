@@ -8,9 +8,15 @@
 //! same specimen, pressure level and direction. At held length they are neighbours in pressure at the same
 //! length. Under a noise law, s^2 is the white noise plus the part of the correlated noise that has decayed
 //! since the other cycle. Cycles may also differ by physics (creep, softening), so the pure error bounds the
-//! noise from above, never from below. In the same way, repeated sweeps at one level bound the offsets, by
-//! half the mean square of their mean differences: an offset that recurs at a pressure is a function of the
-//! pressure.
+//! noise from above, never from below:
+//!
+//! ```text
+//! sigma^2 <= s^2 f/chi^2(f; 5 %),    f = 2 m/(k - 1)
+//! ```
+//! m is the number of independent pairs and k the kurtosis of the noise, 3 if it is normal. With tails as
+//! heavy as Student's t of 3 degrees, k is ten and more, and s^2 of few pairs is mostly too small. In the same
+//! way, repeated sweeps at one level bound the offsets, by half the mean square of their mean differences: an
+//! offset that recurs at a pressure is a function of the pressure.
 
 use bulge_model::Record;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
@@ -28,12 +34,12 @@ const ENOUGH: usize = 20;
 /// Fewest pairs between strokes of different sweeps. Fewer pairs share their neighbours, and subtracting
 /// their mean would remove noise as well.
 const FEWEST: usize = 6;
-/// Fewest pairs of sweeps that bound the offsets; then the probability that the offsets are larger than the
-/// bound.
+/// Fewest pairs of sweeps that bound the offsets.
 const PAIRS: usize = 3;
+/// Probability that the true variance is larger than its bound.
 const LARGER: f64 = 0.05;
-/// Least relative standard deviation of the pure error, for any number of pairs.
-const SURE: f64 = 0.1;
+/// A law whose variance exceeds the bound by less than this fraction is kept.
+const CLEAR: f64 = 0.2;
 /// A correlated part beyond this multiple of the pure error repeats and is not noise.
 const REPEATS: f64 = 1.5;
 
@@ -44,6 +50,8 @@ pub(crate) struct BetweenCycles {
     pub(crate) variance: f64,
     /// Time lag between the residuals of each pair \[s\], or in rows without time.
     lags: Vec<f64>,
+    /// Number of independent pairs: those with the next stroke.
+    independent: f64,
     /// Total duration of all sweeps \[s\], or in rows without time.
     span: f64,
     /// Mean difference of each pair of sweeps at the same level \[N\].
@@ -60,7 +68,7 @@ impl BetweenCycles {
             return None;
         }
         let at = moment_of(record, seconds(record));
-        let (mut sum, mut lags, mut offsets) = (0.0, Vec::new(), Offsets::new());
+        let (mut sum, mut lags, mut offsets, mut independent) = (0.0, Vec::new(), Offsets::new(), 0.0);
         // The first cycle of a sweep is left out if there are enough others, because its history differs from
         // theirs.
         let mut alike: BTreeMap<_, Vec<Stroke>> = BTreeMap::new();
@@ -71,10 +79,13 @@ impl BetweenCycles {
             let half = strokes.len() / 2;
             for (place, stroke) in strokes.iter().enumerate() {
                 // Compare with the next stroke, and with one that is far in time.
-                let others = [place + 1, place + half.max(2)];
-                for other in others.iter().filter_map(|other| strokes.get(*other)) {
-                    sum += compared(stroke, other, residual, &at, (&mut lags, &mut offsets));
-                }
+                let next = strokes.get(place + 1);
+                let before = lags.len();
+                sum +=
+                    next.map_or(0.0, |next| compared(stroke, next, residual, &at, (&mut lags, &mut offsets)));
+                independent += (lags.len() - before) as f64;
+                let far = strokes.get(place + half.max(2));
+                sum += far.map_or(0.0, |far| compared(stroke, far, residual, &at, (&mut lags, &mut offsets)));
             }
         }
         let of_sweep =
@@ -84,6 +95,7 @@ impl BetweenCycles {
         (lags.len() >= ENOUGH && sum > 0.0).then(|| Self {
             variance: sum / lags.len() as f64,
             lags,
+            independent,
             span,
             offsets,
         })
@@ -93,12 +105,11 @@ impl BetweenCycles {
     /// excluded.
     fn bounds_offsets(&self, mut law: NoiseLaw) -> NoiseLaw {
         let pairs = self.offsets.len();
-        let Some(chi) = ChiSquared::new(pairs as f64).ok().filter(|_| pairs >= PAIRS && law.offset_n > 0.0)
-        else {
+        if pairs < PAIRS || law.offset_n <= 0.0 {
             return law;
-        };
-        let square: f64 = self.offsets.iter().map(|d| 0.5 * d * d).sum();
-        let most = (square / chi.inverse_cdf(LARGER)).sqrt();
+        }
+        let square = self.offsets.iter().map(|d| 0.5 * d * d).sum::<f64>() / pairs as f64;
+        let most = largest(square, pairs as f64).sqrt();
         if law.offset_beliefs.iter().all(|belief| belief.sd_n <= most) && law.offset_n <= most {
             return law;
         }
@@ -122,8 +133,9 @@ impl BetweenCycles {
     /// Limits the noise of a law to the differences between cycles; variance beyond that is misfit that
     /// repeats.
     ///
-    /// `inputs` is the mean variance from noise of the inputs, which the scatter contains as well \[N^2\].
-    pub(crate) fn bounds(&self, law: NoiseLaw, inputs: f64) -> NoiseLaw {
+    /// `inputs` is the mean variance from noise of the inputs, which the scatter contains as well \[N^2\];
+    /// `kurtosis` is that of the noise.
+    pub(crate) fn bounds(&self, law: NoiseLaw, inputs: f64, kurtosis: f64) -> NoiseLaw {
         let mut law = self.bounds_offsets(law);
         let time = law.time.map_or(1.0, CorrelationTime::value);
         let decayed = |lag: &f64| -(-lag / time).exp_m1();
@@ -132,15 +144,16 @@ impl BetweenCycles {
         let expected = white + inputs + correlated * part;
         // Pairs within a correlation time are not independent.
         let slow = if correlated > white { self.span / (2.0 * time) } else { f64::INFINITY };
-        let sure = SURE + 1.0 / (2.0 * slow.clamp(1.0, self.lags.len() as f64)).sqrt();
-        if expected <= self.variance * (1.0 + 2.0 * sure) {
+        let pairs = slow.clamp(1.0, self.independent.max(1.0));
+        let most = largest(self.variance, 2.0 * pairs / (kurtosis.max(3.0) - 1.0));
+        if expected <= most * (1.0 + CLEAR) {
             return law;
         }
-        let left = (self.variance - inputs).max(0.01 * self.variance);
+        let left = (most - inputs).max(0.01 * most);
         // The white part is known from neighbours; variance beyond the pure error repeats.
         let white = white.min(left);
         let rest = (left - white) / part.max(0.1);
-        let refused = correlated > REPEATS * REPEATS * self.variance;
+        let refused = correlated > REPEATS * REPEATS * most;
         law.white_n = white.sqrt();
         law.correlated_n = correlated.min(rest).sqrt();
         if law.correlated_n <= 0.0 {
@@ -152,13 +165,18 @@ impl BetweenCycles {
             "a part of it repeats"
         };
         law.says = format!(
-            "{}; cycles differ by {:.3} N only ({} pairs): {what}",
+            "{}; cycles differ by at most {:.3} N ({} pairs): {what}",
             law.says,
-            self.variance.sqrt(),
+            most.sqrt(),
             self.lags.len()
         );
         law
     }
+}
+
+/// Upper bound of a variance from an estimate with so many degrees of freedom.
+fn largest(variance: f64, freedom: f64) -> f64 {
+    ChiSquared::new(freedom).map_or(f64::INFINITY, |chi| variance * freedom / chi.inverse_cdf(LARGER))
 }
 
 /// The unit of the lags.
@@ -285,9 +303,10 @@ mod tests {
                 time: Some(CorrelationTime::Seconds(30.0)),
                 ..NoiseLaw::white(1.4, NoiseSource::Saturated, 100.0, String::new())
             };
-            let law = found.bounds(rippled, 0.0);
+            let law = found.bounds(rippled, 0.0, 3.0);
             let total = law.white_n.hypot(law.correlated_n);
-            assert!((total / 1.5 - 1.0).abs() < 0.2, "{cycles} cycles: {total}");
+            // The upper bound of a variance from five correlation times, for two cycles: four times the estimate.
+            assert!((1.2..3.4).contains(&total), "{cycles} cycles: {total}");
         }
         assert!(BetweenCycles::of(&record(1), &[0.0; 80]).is_none());
     }
@@ -319,7 +338,7 @@ mod tests {
                 offset_n: 5.0,
                 ..NoiseLaw::white(1.5, NoiseSource::Saturated, 500.0, String::new())
             };
-            found.bounds(law, 0.0)
+            found.bounds(law, 0.0, 3.0)
         };
         let recurring = law(&|sweep| sizes[sweep % 6]);
         assert!(recurring.offset_n < 0.6, "{}", recurring.offset_n);
@@ -368,6 +387,40 @@ mod tests {
         assert_eq!(BetweenCycles::of(&record, &residual), None);
     }
 
+    /// Noise with the tails of Student's t of 3 degrees and variance 1, which three cycles of one pressure show.
+    #[test]
+    fn tails_make_the_scatter_between_few_cycles_a_poor_bound() {
+        let record = record(3);
+        let truth = NoiseLaw::white(1.0, NoiseSource::Saturated, 200.0, String::new());
+        let lowered = |kurtosis: f64| {
+            let of = |seed: &u64| {
+                let mut random = Random::new(*seed, 5);
+                let mut t = || {
+                    let normal = random.normal();
+                    let square: f64 = (0..3).map(|_| random.normal().powi(2)).sum();
+                    normal / square.sqrt()
+                };
+                let noise: Vec<f64> = (0..240).map(|_| t()).collect();
+                let law = BetweenCycles::of(&record, &noise).unwrap().bounds(truth.clone(), 0.0, kurtosis);
+                law.white_n < 1.0
+            };
+            (0..400).filter(of).count()
+        };
+        let [normal, heavy] = [3.0, 20.0].map(lowered);
+        assert!(normal > 40 && heavy < 20, "{normal} {heavy}");
+    }
+
+    /// 100 degrees of freedom, of which the 5 % quantile is 77.93.
+    #[test]
+    fn the_largest_variance_is_that_of_chi_squared() {
+        assert!((largest(2.0, 100.0) - 200.0 / 77.929_465).abs() < 1e-6);
+        // Left by two columns: 1, -1 and 3 in standard deviations of sqrt(1 + 3) N.
+        let columns = [vec![0.0, 0.0, 0.0, 1.0], vec![0.0; 4]];
+        let law = NoiseLaw::white(1.0, NoiseSource::Saturated, 3.0, String::new());
+        let found = super::super::noise::kurtosis(&[2.0, -2.0, 6.0, 9.0], &columns, &[3.0; 4], &law);
+        assert!((found - 4.0 * 83.0 / 121.0).abs() < 1e-12, "{found}");
+    }
+
     #[test]
     fn noise_that_is_slow_stays_in_the_law() {
         // The correlation time is 400 s and a cycle takes 160 s, so the cycles differ by a part of the noise
@@ -382,7 +435,7 @@ mod tests {
         for seed in 0..20 {
             let noise = truth.simulate(&record, &vec![true; record.len()], &[], seed);
             let found = BetweenCycles::of(&record, &noise).unwrap();
-            let law = found.bounds(truth.clone(), 0.0);
+            let law = found.bounds(truth.clone(), 0.0, 3.0);
             sum += law.correlated_n / 20.0;
         }
         assert!(sum > 2.5, "{sum}");

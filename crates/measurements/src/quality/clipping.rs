@@ -74,7 +74,7 @@ pub(super) fn in_columns(gate: &Gate) -> Vec<(&'static str, Vec<usize>)> {
         ("pressure", in_column(gate, pressure, &stuck_pressure)),
     ];
     found[0].1.extend(repeated_end(gate, force, 1.0));
-    if gate.columns[2].is_noisy {
+    if gate.columns[2].is_noisy() {
         found[2].1.extend([1.0, -1.0].iter().flat_map(|side| repeated_end(gate, pressure, *side)));
     }
     for (_, rows) in &mut found {

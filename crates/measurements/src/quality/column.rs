@@ -3,9 +3,9 @@
 use crate::resolution::Resolution;
 use std::ops::Range;
 
-/// With noise of this many quantisation steps, neighbours differ: two normal readings are equal with a
-/// probability of 1/(2 * 2 sqrt(pi)) = 14 %.
-const STEPS: f64 = 2.0;
+/// Readings are noisy if two of one state are equal with less than this probability: that of noise with a
+/// standard deviation of two quantisation steps, 1/(4 sqrt(pi)).
+const EQUAL: f64 = 0.141;
 /// Noise below this fraction of the range comes from arithmetic, not from measuring.
 const LEAST: f64 = 1e-7;
 /// Fraction of neighbouring fourth differences with opposite signs from which a channel is noisy. White noise
@@ -18,8 +18,9 @@ pub(super) struct Column<'a> {
     pub(super) name: &'static str,
     pub(super) values: &'a [f64],
     pub(super) resolution: Resolution,
-    /// Whether the readings have white noise above their resolution.
-    pub(super) is_noisy: bool,
+    /// Probability that two readings of one state are equal: step/(2 sqrt(pi) noise) for normal noise, 1 if
+    /// what changes is no white noise.
+    equal: f64,
 }
 
 impl<'a> Column<'a> {
@@ -29,10 +30,19 @@ impl<'a> Column<'a> {
         resolution: Resolution,
         sweeps: &[Range<usize>],
     ) -> Self {
-        let is_noisy = resolution.noise > STEPS * resolution.step
-            && resolution.noise > LEAST * resolution.range
-            && turns(values, sweeps) > TURNS;
-        Self { name, values, resolution, is_noisy }
+        let is_white = resolution.noise > LEAST * resolution.range && turns(values, sweeps) > TURNS;
+        let equal = resolution.step / (2.0 * std::f64::consts::PI.sqrt() * resolution.noise);
+        Self { name, values, resolution, equal: if is_white { equal.min(1.0) } else { 1.0 } }
+    }
+
+    /// Whether the readings have white noise above their resolution, so that they differ in a state at rest.
+    pub(super) fn is_noisy(&self) -> bool {
+        self.equal < EQUAL
+    }
+
+    /// Whether rows of these columns differ in a state at rest.
+    pub(super) fn are_noisy(columns: &[Self]) -> bool {
+        columns.iter().map(|column| column.equal).product::<f64>() < EQUAL
     }
 
     /// Readings closer than this are the same but for rounding.
@@ -66,7 +76,7 @@ mod tests {
         let whole = 0..4000;
         let sweeps = std::slice::from_ref(&whole);
         let is_noisy =
-            |values: &[f64]| Column::new("force", values, Resolution::of(values, sweeps), sweeps).is_noisy;
+            |values: &[f64]| Column::new("force", values, Resolution::of(values, sweeps), sweeps).is_noisy();
         let white: Vec<f64> = (0..4000).map(|_| noise.normal()).collect();
         // The share of a long record: 1/2 + asin(4/5)/pi.
         assert!((turns(&white, sweeps) - 0.795).abs() < 0.02, "{}", turns(&white, sweeps));
@@ -75,5 +85,14 @@ mod tests {
         assert!(is_noisy(&white) && is_noisy(&noisy) && !is_noisy(&curve));
         let coarse: Vec<f64> = noisy.iter().map(|value| (value / 2.0).round() * 2.0).collect();
         assert!(!is_noisy(&coarse));
+        // Noise of half a step: one column says nothing, three together do.
+        let column = Column::new("force", &coarse, Resolution::of(&coarse, sweeps), sweeps);
+        let found = (0..3998).filter(|i| (white[*i].round() - white[i + 2].round()).abs() < 0.5).count();
+        let step =
+            Column::new("force", &white, Resolution { step: 1.0, ..Resolution::of(&white, sweeps) }, sweeps);
+        assert!((found as f64 / 3998.0 / step.equal - 1.0).abs() < 0.1, "{found} {}", step.equal);
+        assert!(
+            !Column::are_noisy(&[column]) && !Column::are_noisy(&[step]) && Column::are_noisy(&[step; 2])
+        );
     }
 }

@@ -28,10 +28,9 @@ pub(super) struct Copied {
 }
 
 pub(super) fn rows(gate: &Gate) -> Copied {
-    let is_measured = |column: &Column<'_>| {
-        column.is_noisy && column.resolution.levels().is_none_or(|levels| levels > LEVELS)
-    };
-    if !gate.columns.iter().any(is_measured) {
+    let is_fine = |column: &Column<'_>| column.resolution.levels().is_none_or(|levels| levels > LEVELS);
+    let is_measured = |column: &Column<'_>| column.is_noisy() && is_fine(column);
+    if !(Column::are_noisy(&gate.columns) && gate.columns.iter().any(is_fine)) {
         return Copied { all: Vec::new(), alone: Vec::new() };
     }
     let key = |row: usize| gate.columns.map(|column| column.values[row].to_bits());

@@ -70,8 +70,7 @@ impl Filled {
 }
 
 pub(super) fn rows(gate: &Gate) -> Frozen {
-    // One noisy column is enough if all columns repeat.
-    let all = if gate.columns.iter().any(|column| column.is_noisy) {
+    let all = if Column::are_noisy(&gate.columns) {
         let is_equal = |row: usize| gate.columns.iter().all(|column| repeats(column.values, row));
         runs(gate, is_equal).into_iter().filter(|run| run.len() >= RUN - 1).collect()
     } else {
@@ -79,7 +78,7 @@ pub(super) fn rows(gate: &Gate) -> Frozen {
     };
     let mut alone = Vec::new();
     for column in &gate.columns {
-        let Column { name, values, resolution, is_noisy } = *column;
+        let (Column { name, values, resolution, .. }, is_noisy) = (*column, column.is_noisy());
         let is_force = name == "force";
         let tolerance = (LINE * resolution.step).max(column.rounding());
         if let Some(slower) = slower::rows(gate, column, tolerance) {
