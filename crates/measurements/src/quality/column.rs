@@ -40,9 +40,11 @@ impl<'a> Column<'a> {
         self.equal < EQUAL
     }
 
-    /// Whether rows of these columns differ in a state at rest.
-    pub(super) fn are_noisy(columns: &[Self]) -> bool {
-        columns.iter().map(|column| column.equal).product::<f64>() < EQUAL
+    /// How many rows of these columns are equal in a state at rest as seldom as one noisy reading; infinite if
+    /// nothing scatters.
+    pub(super) fn rows_for_one(columns: &[Self]) -> f64 {
+        let equal: f64 = columns.iter().map(|column| column.equal).product();
+        if equal < 1.0 { (EQUAL.ln() / equal.ln()).max(1.0) } else { f64::INFINITY }
     }
 
     /// Readings closer than this are the same but for rounding.
@@ -91,8 +93,9 @@ mod tests {
         let step =
             Column::new("force", &white, Resolution { step: 1.0, ..Resolution::of(&white, sweeps) }, sweeps);
         assert!((found as f64 / 3998.0 / step.equal - 1.0).abs() < 0.1, "{found} {}", step.equal);
-        assert!(
-            !Column::are_noisy(&[column]) && !Column::are_noisy(&[step]) && Column::are_noisy(&[step; 2])
-        );
+        let rows = [&[column][..], &[step], &[step; 2]].map(Column::rows_for_one);
+        assert!(rows[0] > 1.0 && rows[1] > 1.0 && rows[2] <= 1.0, "{rows:?}");
+        let quiet = Column::new("force", &curve, Resolution::of(&curve, sweeps), sweeps);
+        assert!(Column::rows_for_one(&[quiet]).is_infinite());
     }
 }

@@ -4,8 +4,8 @@ use super::column::Column;
 use super::{Finding, FindingKind, Gate, Severity, rows_in_words};
 use std::collections::{BTreeMap, HashMap, HashSet};
 
-/// Fewest consecutive rows that must agree. Readings with a noise of some steps agree so with a probability of 10^-8,
-/// those of a moving muscle hardly ever.
+/// Fewest consecutive rows that must agree. Noisy readings agree so with a probability of at most 10^-7, those
+/// of a moving muscle hardly ever. Readings that are equal more often must agree in more rows.
 const BLOCK: usize = 8;
 /// Fewest different readings among them.
 const DIFFERENT: usize = 6;
@@ -30,11 +30,15 @@ pub(super) struct Copied {
 pub(super) fn rows(gate: &Gate) -> Copied {
     let is_fine = |column: &Column<'_>| column.resolution.levels().is_none_or(|levels| levels > LEVELS);
     let is_measured = |column: &Column<'_>| column.is_noisy() && is_fine(column);
-    if !(Column::are_noisy(&gate.columns) && gate.columns.iter().any(is_fine)) {
+    let fewest = BLOCK as f64 * Column::rows_for_one(&gate.columns);
+    if !(fewest <= gate.data.len() as f64 && gate.columns.iter().any(is_fine)) {
         return Copied { all: Vec::new(), alone: Vec::new() };
     }
     let key = |row: usize| gate.columns.map(|column| column.values[row].to_bits());
     let pairs = blocks(gate.data.len(), 0.0, key);
+    let goes_on = |a: &(usize, usize), b: &(usize, usize)| b.0.abs_diff(a.0) == 1 && b.1.abs_diff(a.1) == 1;
+    let is_long = |run: &&[(usize, usize)]| (BLOCK - 1 + run.len()) as f64 >= fewest;
+    let pairs: Vec<_> = pairs.chunk_by(goes_on).filter(is_long).flatten().copied().collect();
     // Rows that are equal in their times as well are another finding.
     let is_later = |(earlier, later): &(usize, usize)| {
         gate.data.time().map_or(gate.data.is_path(), |time| time[*earlier].total_cmp(&time[*later]).is_ne())

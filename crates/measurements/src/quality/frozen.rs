@@ -70,7 +70,7 @@ impl Filled {
 }
 
 pub(super) fn rows(gate: &Gate) -> Frozen {
-    let all = if Column::are_noisy(&gate.columns) {
+    let all = if Column::rows_for_one(&gate.columns) <= 1.0 {
         let is_equal = |row: usize| gate.columns.iter().all(|column| repeats(column.values, row));
         runs(gate, is_equal).into_iter().filter(|run| run.len() >= RUN - 1).collect()
     } else {

@@ -292,6 +292,22 @@ fn copied_blocks() {
         columns.pressure_pa.copy_within(200..260, 700);
         motion(columns).copy_within(200..260, 700);
     });
+    // On coarse grids, of which no column is noisy, a long block is needed.
+    let coarse = |columns: &mut Columns, rows: usize| {
+        let on = |values: &mut [f64], step: f64| {
+            values.iter_mut().for_each(|value| *value = step * (*value / step).round());
+        };
+        on(&mut columns.force_n, 1.0);
+        on(&mut columns.pressure_pa, 500.0);
+        on(motion(columns), 2e-4);
+        columns.force_n.copy_within(200..200 + rows, 700);
+        columns.pressure_pa.copy_within(200..200 + rows, 700);
+        motion(columns).copy_within(200..200 + rows, 700);
+    };
+    plants(FindingKind::DuplicateRow, &copied, |columns| coarse(columns, 60));
+    let mut short = clean_loops(2, 1);
+    coarse(&mut short, 9);
+    assert_eq!(quality(short).of(FindingKind::DuplicateRow).count(), 0);
     // Of one channel alone nobody knows which block was measured.
     let both: Vec<usize> = (200..260).chain(700..760).collect();
     plants(FindingKind::DuplicateRow, &both, |columns| columns.force_n.copy_within(200..260, 700));
