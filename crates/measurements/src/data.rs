@@ -54,8 +54,7 @@ pub struct Data {
     /// Rows at which a stated sweep contradicts itself.
     pub(crate) contradictions: Vec<(usize, Contradiction)>,
     reading: Reading,
-    /// Whether the rows of files without time and labels follow each other.
-    is_recorded: bool,
+    order: Order,
     pub(crate) structure: Structure,
 }
 
@@ -141,7 +140,7 @@ impl Data {
             sweeps: Vec::new(),
             between: Vec::new(),
             contradictions: Vec::new(),
-            is_recorded: false,
+            order: Order::Stated,
             structure: Structure::default(),
         }
     }
@@ -166,7 +165,7 @@ impl Data {
         let rows: Vec<usize> = self.files.iter().map(|file| file.rows).collect();
         let order = Order::of(&self.columns, &rows);
         self.reading.notes.extend(order.says().map(str::to_owned));
-        self.is_recorded = order == Order::Recorded;
+        self.order = order;
         if order == Order::Lost {
             let columns = Arc::make_mut(&mut self.columns);
             (columns.time_s, columns.sweep) = (None, None);
@@ -243,7 +242,13 @@ impl Data {
     /// steps.
     #[must_use]
     pub fn is_path(&self) -> bool {
-        self.columns.time_s.is_some() || self.columns.sweep.is_some() || self.is_recorded
+        self.columns.time_s.is_some() || self.columns.sweep.is_some() || self.order == Order::Recorded
+    }
+
+    /// Whether the rows of a file were sorted, so that nothing says in which order they were measured.
+    #[must_use]
+    pub fn is_out_of_order(&self) -> bool {
+        self.order == Order::Lost
     }
 
     /// A quantity that grows when the muscle shortens: the contraction, or the negative length \[m\].

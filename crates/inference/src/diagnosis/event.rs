@@ -6,7 +6,8 @@
 //! - *odd rows* ask for what the others deny,
 //! - *a late column*: nothing is missing if it is moved by some rows,
 //! - *each sweep* has a zero or a gain of its own, which is the likelier cause of what isn't seen within the sweeps,
-//! - *readings that are wrong*, or a specimen that changes within a sweep, stand beside what no effect explains,
+//! - *readings that are wrong*, rows out of their order, or a specimen that changes within a sweep, stand beside what no effect
+//!   explains,
 //! - *a wrong channel*: nothing is left if a bit of its converter is stuck, if it bends below a ceiling, or if it stands in the
 //!   reverse order in some sweeps,
 //! - *exchanged specimens*: if nothing is missing when two specimens have each other's numbers, they may have
@@ -78,8 +79,8 @@ pub(crate) fn event(
     event.or_else(|| exchanged(found, data, anew)).or_else(|| disturbed(found, analysis))
 }
 
-/// What no effect explains beside a specimen that changes within a sweep, or beside readings that are known to be wrong:
-/// what spoilt those may have spoilt others, less visibly.
+/// What no effect explains beside a specimen that changes within a sweep, in rows whose order is lost, or beside readings that
+/// are known to be wrong: what spoilt those may have spoilt others, less visibly.
 fn disturbed(found: &Findings<'_>, analysis: &Analysis<'_>) -> Option<String> {
     let data = &analysis.data;
     if found.verdict().0 != Verdict::Unknown {
@@ -93,6 +94,12 @@ fn disturbed(found: &Findings<'_>, analysis: &Analysis<'_>) -> Option<String> {
              was on the bench, and ask again",
             lines(data, &changes)
         ));
+    }
+    if data.is_out_of_order() {
+        return Some(
+            "no effect of the catalogue explains these data, whose rows aren't in the order in which they were measured: noise, friction and drift, which follow the              time, look like a structure there. Export the rows as they were measured, and ask again"
+                .to_owned(),
+        );
     }
     let against = data.against_the_motion();
     if !against.is_empty() {

@@ -458,6 +458,30 @@ fn what_nothing_explains_beside_readings_that_contradict_themselves_may_be_their
     assert!(cell.contains("line 1-15 (pushing as hard as a muscle pulls"), "{cell}");
 }
 
+/// A wave along the contraction in a file that was sorted by its forces, with times numbered anew.
+#[test]
+fn what_nothing_explains_in_rows_out_of_order_may_be_slow_noise() {
+    let data = measured(&[], &protocol(2.0, 0.0), 10);
+    let contraction = data.columns().motion.values();
+    let row = |i: usize| {
+        let force = data.force()[i] + 8.0 * (90.0 * contraction[i]).sin();
+        [data.pressure()[i], contraction[i], force]
+    };
+    let mut rows: Vec<[f64; 3]> = (0..data.len()).map(row).collect();
+    rows.sort_by(|a, b| a[2].total_cmp(&b[2]));
+    let mut text = "time [s],pressure [Pa],contraction,force [N]\n".to_owned();
+    for (second, [pressure, contraction, force]) in rows.iter().enumerate() {
+        writeln!(text, "{second},{pressure},{contraction},{force}").unwrap();
+    }
+    let file = std::env::temp_dir().join(format!("bulge-out-of-order-{}.csv", std::process::id()));
+    std::fs::write(&file, text).unwrap();
+    let read = Data::read_with(std::slice::from_ref(&file), &ReadOptions::default());
+    std::fs::remove_file(&file).unwrap();
+    let found = diagnosed(&read.unwrap());
+    assert_eq!((found.verdict, names(&found)), (Verdict::CannotTell, vec![]), "{}", found.says);
+    assert!(found.says.contains("aren't in the order in which they were measured"), "{}", found.says);
+}
+
 /// The diagnosis of a set of `validation/damage`.
 fn damaged(name: &str) -> Diagnosis {
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/all/damaged");
