@@ -295,7 +295,9 @@ fn copied_blocks() {
     // On coarse grids, of which no column is noisy, a long block is needed.
     let coarse = |columns: &mut Columns, rows: usize| {
         let on = |values: &mut [f64], step: f64| {
-            values.iter_mut().for_each(|value| *value = step * (*value / step).round());
+            for value in values {
+                *value = step * (*value / step).round();
+            }
         };
         on(&mut columns.force_n, 1.0);
         on(&mut columns.pressure_pa, 500.0);
