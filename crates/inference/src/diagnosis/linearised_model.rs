@@ -314,8 +314,9 @@ impl LinearisedModel {
     }
 
     /// The period \[s\] of an oscillation in the residuals; none if there is none.
-    pub(crate) fn oscillation(&self, record: &Record) -> Option<f64> {
-        oscillation(record, &self.space.outside_of_left_out(&self.white))
+    pub(crate) fn oscillation(&self, context: &Context<'_>) -> Option<f64> {
+        let is_slow = context.law.correlated_n > 0.0;
+        oscillation(context.record, &self.space.outside_of_left_out(&self.white), is_slow)
     }
 
     /// A jump within a sweep in the residuals; none if there is none.

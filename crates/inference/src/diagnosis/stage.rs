@@ -150,7 +150,7 @@ impl Context<'_> {
 
     /// The misfit that no smooth function follows, the most specific kind first.
     fn unsmooth(&self, linear: &LinearisedModel) -> Option<Unsmooth> {
-        let oscillation = || linear.oscillation(self.record).map(Unsmooth::Oscillation);
+        let oscillation = || linear.oscillation(self).map(Unsmooth::Oscillation);
         let jump = || linear.jump(self).map(Unsmooth::Jump);
         let chance = || linear.lack_of_fit(self.record).filter(|chance| *chance < RULE.near_replicates);
         oscillation().or_else(jump).or_else(|| chance().map(|_| Unsmooth::Recurs))

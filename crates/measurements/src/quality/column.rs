@@ -1,11 +1,15 @@
 //! A column of readings with its resolution.
 
 use crate::resolution::Resolution;
+use std::collections::HashSet;
 use std::ops::Range;
 
 /// Readings are noisy if two of one state are equal with less than this probability: that of noise with a
 /// standard deviation of two quantisation steps, 1/(4 sqrt(pi)).
 const EQUAL: f64 = 0.141;
+/// Noise below this fraction of a quantisation step is mostly that of rounding, and says nothing of what is
+/// equal.
+const SEEN: f64 = 0.7;
 /// Noise below this fraction of the range comes from arithmetic, not from measuring.
 const LEAST: f64 = 1e-7;
 /// Fraction of neighbouring fourth differences with opposite signs from which a channel is noisy. White noise
@@ -30,7 +34,8 @@ impl<'a> Column<'a> {
         resolution: Resolution,
         sweeps: &[Range<usize>],
     ) -> Self {
-        let is_white = resolution.noise > LEAST * resolution.range && turns(values, sweeps) > TURNS;
+        let is_white = resolution.noise > (LEAST * resolution.range).max(SEEN * resolution.step)
+            && turns(values, sweeps) > TURNS;
         let equal = resolution.step / (2.0 * std::f64::consts::PI.sqrt() * resolution.noise);
         Self { name, values, resolution, equal: if is_white { equal.min(1.0) } else { 1.0 } }
     }
@@ -42,9 +47,18 @@ impl<'a> Column<'a> {
 
     /// How many rows of these columns are equal in a state at rest as seldom as one noisy reading; infinite if
     /// nothing scatters.
-    pub(super) fn rows_for_one(columns: &[Self]) -> f64 {
-        let equal: f64 = columns.iter().map(|column| column.equal).product();
+    pub(super) fn rows_for_one<'c>(columns: impl IntoIterator<Item = &'c Self>) -> f64
+    where
+        'a: 'c,
+    {
+        let equal: f64 = columns.into_iter().map(|column| column.equal).product();
         if equal < 1.0 { (EQUAL.ln() / equal.ln()).max(1.0) } else { f64::INFINITY }
+    }
+
+    /// Whether values on no grid come back in most rows, as set points such as 1.00, 1.33 and 1.67 do.
+    pub(super) fn are_set_points(&self) -> bool {
+        let different: HashSet<u64> = self.values.iter().map(|value| value.to_bits()).collect();
+        self.resolution.step <= 0.0 && 2 * different.len() < self.values.len()
     }
 
     /// Readings closer than this are the same but for rounding.
@@ -87,14 +101,18 @@ mod tests {
         assert!(is_noisy(&white) && is_noisy(&noisy) && !is_noisy(&curve));
         let coarse: Vec<f64> = noisy.iter().map(|value| (value / 2.0).round() * 2.0).collect();
         assert!(!is_noisy(&coarse));
-        // Noise of half a step: one column says nothing, three together do.
+        // Noise of half a step: it says nothing. Of one step: one column says nothing, two together do.
         let column = Column::new("force", &coarse, Resolution::of(&coarse, sweeps), sweeps);
         let found = (0..3998).filter(|i| (white[*i].round() - white[i + 2].round()).abs() < 0.5).count();
         let step =
             Column::new("force", &white, Resolution { step: 1.0, ..Resolution::of(&white, sweeps) }, sweeps);
         assert!((found as f64 / 3998.0 / step.equal - 1.0).abs() < 0.1, "{found} {}", step.equal);
         let rows = [&[column][..], &[step], &[step; 2]].map(Column::rows_for_one);
-        assert!(rows[0] > 1.0 && rows[1] > 1.0 && rows[2] <= 1.0, "{rows:?}");
+        assert!(rows[0].is_infinite() && rows[1] > 1.0 && rows[2] <= 1.0, "{rows:?}");
+        let set: Vec<f64> = (0..4000).map(|i| [1.0, 1.33, 1.67, 2.0, 2.33, 1.67][i % 6]).collect();
+        let set = Column::new("pressure", &set, Resolution::of(&set, sweeps), sweeps);
+        let free = Column::new("force", &noisy, Resolution::of(&noisy, sweeps), sweeps);
+        assert!(set.are_set_points() && !free.are_set_points() && !column.are_set_points());
         let quiet = Column::new("force", &curve, Resolution::of(&curve, sweeps), sweeps);
         assert!(Column::rows_for_one(&[quiet]).is_infinite());
     }

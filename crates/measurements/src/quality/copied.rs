@@ -28,10 +28,12 @@ pub(super) struct Copied {
 }
 
 pub(super) fn rows(gate: &Gate) -> Copied {
-    let is_fine = |column: &Column<'_>| column.resolution.levels().is_none_or(|levels| levels > LEVELS);
-    let is_measured = |column: &Column<'_>| column.is_noisy() && is_fine(column);
-    let fewest = BLOCK as f64 * Column::rows_for_one(&gate.columns);
-    if !(fewest <= gate.data.len() as f64 && gate.columns.iter().any(is_fine)) {
+    let is_fine = |column: &&Column<'_>| {
+        column.resolution.levels().is_none_or(|levels| levels > LEVELS) && !column.are_set_points()
+    };
+    let is_measured = |column: &&Column<'_>| column.is_noisy() && is_fine(column);
+    let fewest = BLOCK as f64 * Column::rows_for_one(gate.columns.iter().filter(is_fine));
+    if fewest > gate.data.len() as f64 {
         return Copied { all: Vec::new(), alone: Vec::new() };
     }
     let key = |row: usize| gate.columns.map(|column| column.values[row].to_bits());
@@ -46,7 +48,7 @@ pub(super) fn rows(gate: &Gate) -> Copied {
     let later: Vec<(usize, usize)> = pairs.iter().copied().filter(is_later).collect();
     let all = marked(&later, false);
     let of_all = marked(&pairs, true);
-    let alone = gate.columns.iter().filter(|column| is_measured(column)).filter_map(|column| {
+    let alone = gate.columns.iter().filter(is_measured).filter_map(|column| {
         let (name, values) = (column.name, column.values);
         let rows = marked(&blocks(values.len(), OTHERS, |row| values[row].to_bits()), true);
         let rows: Vec<usize> = rows.into_iter().filter(|row| of_all.binary_search(row).is_err()).collect();

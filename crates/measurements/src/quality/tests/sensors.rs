@@ -299,7 +299,7 @@ fn copied_blocks() {
                 *value = step * (*value / step).round();
             }
         };
-        on(&mut columns.force_n, 1.0);
+        on(&mut columns.force_n, 0.5);
         on(&mut columns.pressure_pa, 500.0);
         on(motion(columns), 2e-4);
         columns.force_n.copy_within(200..200 + rows, 700);
