@@ -284,6 +284,24 @@ fn a_channel_that_is_read_more_slowly_than_the_others() {
     assert_eq!(quality(columns).of(FindingKind::Frozen).count(), 0);
 }
 
+/// A test that was repeated: set points, and a force that is read in steps of three times its noise.
+#[test]
+fn repeated_set_points_are_no_copies() {
+    for seed in 0..8 {
+        let mut noise = Noise::new(seed);
+        let level = |i: usize| (i % 24).min(24 - i % 24);
+        let pressure = |i: usize| (100.0 + 100.0 * level(i) as f64 / 3.0).round() * 1e3;
+        let held = |i: usize| 0.02 + 0.04 * ((i / 72) % 4) as f64;
+        let pulls = |i: usize| 270e-5 * pressure(i) * (1.0 - held(i)) + 3.0 * noise.normal();
+        let mut forces: Vec<f64> = (0..576).map(pulls).collect();
+        on_grid(&mut forces, 9.0);
+        let motion = Trace::Contraction((0..576).map(held).collect());
+        let mut repeated = Columns::new((0..576).map(pressure).collect(), motion, forces);
+        repeated.time_s = Some((0..576).map(f64::from).collect());
+        assert_eq!(quality(repeated).of(FindingKind::DuplicateRow).count(), 0, "{seed}");
+    }
+}
+
 #[test]
 fn copied_blocks() {
     let copied: Vec<usize> = (700..760).collect();
@@ -294,14 +312,9 @@ fn copied_blocks() {
     });
     // On coarse grids, of which no column is noisy, a long block is needed.
     let coarse = |columns: &mut Columns, rows: usize| {
-        let on = |values: &mut [f64], step: f64| {
-            for value in values {
-                *value = step * (*value / step).round();
-            }
-        };
-        on(&mut columns.force_n, 0.5);
-        on(&mut columns.pressure_pa, 500.0);
-        on(motion(columns), 2e-4);
+        on_grid(&mut columns.force_n, 0.5);
+        on_grid(&mut columns.pressure_pa, 500.0);
+        on_grid(motion(columns), 2e-4);
         columns.force_n.copy_within(200..200 + rows, 700);
         columns.pressure_pa.copy_within(200..200 + rows, 700);
         motion(columns).copy_within(200..200 + rows, 700);
