@@ -97,7 +97,8 @@ fn disturbed(found: &Findings<'_>, analysis: &Analysis<'_>) -> Option<String> {
     }
     if data.is_out_of_order() {
         return Some(
-            "no effect of the catalogue explains these data, whose rows aren't in the order in which they were measured: noise, friction and drift, which follow the              time, look like a structure there. Export the rows as they were measured, and ask again"
+            "no effect of the catalogue explains these data, whose rows aren't in the order in which they were measured: noise, friction and drift, which follow the \
+             time, look like a structure there. Export the rows as they were measured, and ask again"
                 .to_owned(),
         );
     }

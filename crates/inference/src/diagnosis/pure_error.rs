@@ -401,7 +401,13 @@ mod tests {
                     normal / square.sqrt()
                 };
                 let noise: Vec<f64> = (0..240).map(|_| t()).collect();
-                let law = BetweenCycles::of(&record, &noise).unwrap().bounds(truth.clone(), 0.0, kurtosis);
+                let found = BetweenCycles::of(&record, &noise).unwrap();
+                let law = found.bounds(truth.clone(), 0.0, kurtosis);
+                // Pairs with the next stroke only.
+                assert!(found.independent > 0.0 && found.independent <= found.lags.len() as f64);
+                let most = largest(found.variance, 2.0 * found.independent / (kurtosis - 1.0));
+                let expected = if most * 1.2 < 1.0 { most.sqrt() } else { 1.0 };
+                assert!((law.white_n - expected).abs() < 1e-12, "{} {expected}", law.white_n);
                 law.white_n < 1.0
             };
             (0..400).filter(of).count()
