@@ -190,6 +190,17 @@ pub(crate) struct Middle<D> {
 }
 
 impl<D: Real> Middle<D> {
+    /// The same without derivatives.
+    pub(crate) fn constant(&self) -> Middle<f64> {
+        Middle {
+            bulge: self.bulge.value(),
+            curvature: self.curvature.value(),
+            tension: self.tension.value(),
+            force: self.force.value(),
+            straight: self.straight.value(),
+        }
+    }
+
     /// A middle whose curvature is exp(-`below`) of the one stated. Along a saddle, `rho'' = lambda^2 rho`
     /// with
     ///

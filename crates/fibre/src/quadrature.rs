@@ -299,137 +299,178 @@ impl<D: Real> Meridian<D> for Inextensible<'_, D> {
     }
 }
 
-/// The points of the quadrature.
+/// A part of the quadrature: its ends in u, and whether the cloth is slack there although it is taut at mid-length.
+type Piece = (f64, f64, bool);
+
+/// The sums of both rules over the points of a piece, the larger rule with derivatives.
+struct Sums<D> {
+    kronrod: [D; 3],
+    /// The other rule less that one, and the sizes of the terms, of fibre length and shortening.
+    difference: [f64; 2],
+    size: [f64; 2],
+}
+
+impl<D: Real> Sums<D> {
+    /// `None` where the fibres can't be.
+    #[inline]
+    fn of(meridian: &impl Meridian<D>, points: &[Point; 21]) -> Option<Self> {
+        let mut sums = Self { kronrod: [D::from(0.0); 3], difference: [0.0; 2], size: [0.0; 2] };
+        for (i, point) in points.iter().enumerate() {
+            let (_, kronrod, gauss) = PAIR[i.div_ceil(2)];
+            let rates = meridian.rates(point)?;
+            for (sum, rate) in sums.kronrod.iter_mut().zip(rates) {
+                *sum = rate.scale_add(point.weight, *sum);
+            }
+            for k in 0..2 {
+                let term = rates[k].value() * point.weight;
+                sums.difference[k] += term * (1.0 - gauss / kronrod);
+                sums.size[k] += term.abs();
+            }
+        }
+        Some(sums)
+    }
+
+    /// Whether both rules agree on fibre length and shortening.
+    fn agree(&self, ends: &Ends<D>) -> bool {
+        let mut size = self.size;
+        // An angle shortens or lengthens the muscle by itself. Near the straight meridian the sum is a difference
+        // with rounding.
+        if ends.q2.value() > 0.0 {
+            size[1] += ANGLE * size[0];
+        }
+        (0..2).all(|k| self.difference[k].abs() <= DIFFERENCE * size[k])
+    }
+}
+
+/// The pieces of a quadrature.
 struct Plan {
-    points: ArrayVec<Point, { 21 * MOST_PIECES }>,
+    pieces: ArrayVec<Piece, MOST_PIECES>,
+    ratio: f64,
     evaluations: u32,
 }
 
 impl Plan {
-    /// Fills the plan in place: moving it as a value would cost as much as making it.
-    fn fill(&mut self, meridian: &impl Meridian<f64>) -> Result<(), NoTrajectory> {
-        let ratio = meridian.ratio().max(LEAST_RATIO);
-        let end = ratio.sqrt().asinh();
+    /// Halves pieces until both rules agree on each. Returns the sums over all.
+    fn fill<D: Real>(&mut self, meridian: &impl Meridian<D>) -> Result<[D; 3], NoTrajectory> {
+        self.ratio = meridian.ratio().max(LEAST_RATIO);
+        let end = self.ratio.sqrt().asinh();
         if !(end.is_finite() && end > 0.0) {
             return Err(NoTrajectory { evaluations: 1 });
         }
         // The cloth comes taut at a border between two pieces.
-        let kink = meridian.kink().map(|part| (ratio * part).sqrt().asinh().min(end));
+        let kink = meridian.kink().map(|part| (self.ratio * part).sqrt().asinh().min(end));
         // On the stack: a solve allocates nothing.
-        let mut pieces: ArrayVec<(f64, f64, bool), MOST_PIECES> = ArrayVec::new();
+        let mut open: ArrayVec<Piece, MOST_PIECES> = ArrayVec::new();
         // The pieces begin at the fitting, where the integrands change most, and grow towards mid-length.
         for (low, high, slack) in [(0.0, kink.unwrap_or(end), false), (kink.unwrap_or(end), end, true)] {
             let (mut top, mut length) = (high, PIECE);
             while top > low {
                 let bottom = if top - low < 1.3 * length { low } else { top - length };
-                pieces.try_push((bottom, top, slack)).map_err(|_| NoTrajectory { evaluations: 1 })?;
+                open.try_push((bottom, top, slack)).map_err(|_| NoTrajectory { evaluations: 1 })?;
                 (top, length) = (bottom, 2.0 * length);
             }
         }
-        let mut count = pieces.len();
-        // A piece on which the two rules disagree is halved.
-        while let Some((low, high, slack)) = pieces.pop() {
-            let points = points(low, high, slack, ratio);
+        let mut total = [D::from(0.0); 3];
+        while let Some(piece) = open.pop() {
             self.evaluations += 21;
-            let agree = agree(meridian, &points).ok_or(NoTrajectory { evaluations: self.evaluations })?;
-            if agree {
-                self.points.extend(points);
-            } else if count >= MOST_PIECES {
-                return Err(NoTrajectory { evaluations: self.evaluations });
+            let none = NoTrajectory { evaluations: self.evaluations };
+            let sums = Sums::of(meridian, &points(piece, self.ratio)).ok_or(none)?;
+            if sums.agree(meridian.ends()) {
+                self.pieces.push(piece);
+                total = plus(total, sums.kronrod);
+            } else if self.pieces.len() + open.len() + 1 >= MOST_PIECES {
+                return Err(none);
             } else {
+                let (low, high, slack) = piece;
                 let middle = 0.5 * (low + high);
-                pieces.extend([(low, middle, slack), (middle, high, slack)]);
-                count += 1;
+                open.extend([(low, middle, slack), (middle, high, slack)]);
             }
         }
-        Ok(())
+        Ok(total)
+    }
+
+    /// The sums over the same pieces with other derivatives.
+    fn again<D: Real>(&self, meridian: &impl Meridian<D>) -> Option<[D; 3]> {
+        self.pieces.iter().try_fold([D::from(0.0); 3], |total, piece| {
+            Some(plus(total, Sums::of(meridian, &points(*piece, self.ratio))?.kronrod))
+        })
     }
 }
 
-/// Kronrod's points between two values of u, symmetric about the middle: the first one, then pairs.
-fn points(low: f64, high: f64, slack: bool, ratio: f64) -> [Point; 21] {
+fn plus<D: Real>(a: [D; 3], b: [D; 3]) -> [D; 3] {
+    std::array::from_fn(|i| a[i] + b[i])
+}
+
+/// Kronrod's points of a piece, symmetric about its middle: the first one, then pairs.
+fn points((low, high, slack): Piece, ratio: f64) -> [Point; 21] {
     let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
     let per_end = 1.0 / ratio.sqrt();
-    std::array::from_fn(|i| {
-        let (node, weight, _) = PAIR[i.div_ceil(2)];
-        let u = if i % 2 == 0 { middle - half * node } else { middle + half * node };
-        let growth = u.exp();
-        let (sinh, cosh) = if u < 1e-2 {
-            (u.sinh(), u.cosh())
-        } else {
-            (0.5 * (growth - 1.0 / growth), 0.5 * (growth + 1.0 / growth))
-        };
-        Point { part: (sinh * per_end).powi(2), weight: weight * half * cosh * per_end, slack }
-    })
-}
-
-/// Whether both rules agree on fibre length and shortening. `None` where the fibres can't be.
-fn agree(meridian: &impl Meridian<f64>, points: &[Point; 21]) -> Option<bool> {
-    let (mut difference, mut size) = ([0.0; 2], [0.0; 2]);
-    for (i, point) in points.iter().enumerate() {
-        let (_, kronrod, gauss) = PAIR[i.div_ceil(2)];
-        let rates = meridian.rates(point)?;
-        for k in 0..2 {
-            let term = rates[k] * point.weight;
-            difference[k] += term * (1.0 - gauss / kronrod);
-            size[k] += term.abs();
+    let at_middle = middle.exp();
+    let mut points = [Point { part: 0.0, weight: 0.0, slack }; 21];
+    for (pair, (node, weight, _)) in PAIR.into_iter().enumerate() {
+        let away = (half * node).exp();
+        // The middle is a point of its own.
+        for (i, growth) in
+            [(2 * pair, at_middle / away), (2 * pair - usize::from(pair > 0), at_middle * away)]
+        {
+            let u = if i % 2 == 0 { middle - half * node } else { middle + half * node };
+            let (sinh, cosh) = if u < 1e-2 {
+                (u.sinh(), u.cosh())
+            } else {
+                (0.5 * (growth - 1.0 / growth), 0.5 * (growth + 1.0 / growth))
+            };
+            points[i].part = (sinh * per_end).powi(2);
+            points[i].weight = weight * half * cosh * per_end;
         }
     }
-    // An angle shortens or lengthens the muscle by itself. Near the straight meridian the sum is a difference
-    // with rounding.
-    let ends = meridian.ends();
-    if ends.q2 > 0.0 {
-        size[1] += ANGLE * size[0];
-    }
-    Some((0..2).all(|k| difference[k].abs() <= DIFFERENCE * size[k]))
+    points
 }
+
+/// Derivatives up to which a piece that is halved costs less than a pass without derivatives that finds the pieces.
+const FEW: usize = 4;
 
 /// The meridian from the middle to the fitting.
 pub(crate) fn trajectory<D: Real>(net: &Net<D>, middle: Middle<D>) -> Result<Trajectory<D>, NoTrajectory> {
-    let values = Middle {
-        bulge: middle.bulge.value(),
-        curvature: middle.curvature.value(),
-        tension: middle.tension.value(),
-        force: middle.force.value(),
-        straight: 0.0,
-    };
+    let values = middle.constant();
     let plain = net.constant();
-    let mut plan = Plan { points: ArrayVec::new(), evaluations: 0 };
+    let few = size_of::<D>() <= (1 + FEW) * size_of::<f64>();
+    let mut plan = Plan { pieces: ArrayVec::new(), ratio: 0.0, evaluations: 0 };
     if plain.compliance == 0.0 {
         if !plain.has_energy() {
-            plan.fill(&Inextensible::of(&plain, &values, None))?;
-            return along(net, &middle, &Inextensible::of(net, &middle, None), &plan);
+            if !few {
+                plan.fill(&Inextensible::of(&plain, &values, None))?;
+            }
+            return along(net, &middle, &Inextensible::of(net, &middle, None), plan);
         }
         // A formula that no grid resolves takes the pieces of the other way.
         if let Some(bend) = Bend::resolved(&plain, &values, &mut plan.evaluations) {
-            plan.fill(&Inextensible::of(&plain, &values, Some(&bend)))?;
+            if !few {
+                plan.fill(&Inextensible::of(&plain, &values, Some(&bend)))?;
+            }
             let bend = Bend::on(&bend, net, &middle);
-            return along(net, &middle, &Inextensible::of(net, &middle, bend.as_ref()), &plan);
+            return along(net, &middle, &Inextensible::of(net, &middle, bend.as_ref()), plan);
         }
     }
     let tensions = Tensions::of(&plain, &values, &mut plan.evaluations);
     let none = NoTrajectory { evaluations: plan.evaluations };
     let tensions = tensions.ok_or(none)?;
-    plan.fill(&Elastic::of(&plain, &values, &tensions).ok_or(none)?)?;
-    along(net, &middle, &Elastic::of(net, &middle, &tensions).ok_or(none)?, &plan)
+    if !few {
+        plan.fill(&Elastic::of(&plain, &values, &tensions).ok_or(none)?)?;
+    }
+    along(net, &middle, &Elastic::of(net, &middle, &tensions).ok_or(none)?, plan)
 }
 
-/// The integrals along a meridian, at the points of a plan made from its values.
+/// The integrals along a meridian: over the pieces of a plan, or over those that it finds itself.
 fn along<D: Real>(
     net: &Net<D>,
     middle: &Middle<D>,
     meridian: &impl Meridian<D>,
-    plan: &Plan,
+    mut plan: Plan,
 ) -> Result<Trajectory<D>, NoTrajectory> {
+    let sums = if plan.pieces.is_empty() { Some(plan.fill(meridian)?) } else { plan.again(meridian) };
     let evaluations = plan.evaluations;
     let none = NoTrajectory { evaluations };
-    let mut sums = [D::from(0.0); 3];
-    for point in &plan.points {
-        let rates = meridian.rates(point).ok_or(none)?;
-        for (sum, rate) in sums.iter_mut().zip(rates) {
-            *sum = rate.scale_add(point.weight, *sum);
-        }
-    }
+    let sums = sums.ok_or(none)?;
     let mid_radius = net.end_radius + middle.bulge;
     let at_middle = net.acting_at(mid_radius.value());
     let mid_force = middle.force;
@@ -446,7 +487,7 @@ fn along<D: Real>(
         end: middle.with_straight(&at_middle, end.state),
         force,
         mid_tension: middle.tension,
-        steps: u32::try_from(plan.points.len() / 21).unwrap_or(u32::MAX),
+        steps: u32::try_from(plan.pieces.len()).unwrap_or(u32::MAX),
         evaluations,
         first_integral,
     })

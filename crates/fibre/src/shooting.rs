@@ -27,7 +27,7 @@ use bulge_numerics::{Dual, Real};
 
 use crate::FibreError;
 use crate::continuation::{continuation, softening, stiffening};
-use crate::meridian::{NoTrajectory, SHORTENING, Trajectory, VOLUME, trajectory};
+use crate::meridian::{Middle, NoTrajectory, SHORTENING, Trajectory, VOLUME, trajectory};
 use crate::net::Net;
 use crate::outcome::{BURSTING, SOFT};
 use crate::quadrature;
@@ -372,7 +372,8 @@ pub(crate) struct Total<const N: usize> {
 /// How the last trajectory is computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Way {
-    /// By the equilibrium ODE. Its first integral and end conditions then check everything before.
+    /// By the equilibrium ODE. Its first integral and end conditions then check everything before. Derivatives come from a
+    /// quadrature where the net allows it.
     Ode,
     /// By quadrature where the net allows it, ten times faster.
     Quadrature,
@@ -398,6 +399,7 @@ pub(crate) fn finish<const N: usize>(
         let middle = at.seeded(net).ok_or_else(|| failed.clone())?;
         let run = match way {
             Way::Quadrature if quadrature::suits(net) => quadrature::trajectory(net, middle),
+            Way::Ode if quadrature::suits(net) => values_of_ode(net, middle, tolerance),
             _ => trajectory(net, middle, tolerance),
         };
         let run = match run {
@@ -469,6 +471,29 @@ pub(crate) fn finish<const N: usize>(
         residual,
         trajectory: run,
         step,
+    })
+}
+
+/// The values of the ODE, with the derivatives of the quadrature: an integration with derivatives would take three times as
+/// long, and what is to be checked are values.
+fn values_of_ode<const N: usize>(
+    net: &Net<Dual<N>>,
+    middle: Middle<Dual<N>>,
+    tolerance: f64,
+) -> Result<Trajectory<Dual<N>>, NoTrajectory> {
+    let values = trajectory(&net.constant(), middle.constant(), tolerance)?;
+    let Ok(slopes) = quadrature::trajectory(net, middle) else {
+        return trajectory(net, middle, tolerance);
+    };
+    let both = |value: f64, slope: Dual<N>| Dual::new(value, *slope.gradient());
+    Ok(Trajectory {
+        half_fibre: both(values.half_fibre, slopes.half_fibre),
+        end: std::array::from_fn(|i| both(values.end[i], slopes.end[i])),
+        force: both(values.force, slopes.force),
+        mid_tension: both(values.mid_tension, slopes.mid_tension),
+        steps: values.steps,
+        evaluations: values.evaluations + slopes.evaluations,
+        first_integral: values.first_integral,
     })
 }
 
