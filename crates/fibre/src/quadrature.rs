@@ -163,13 +163,13 @@ struct Inextensible<'a, D> {
     /// g_1.
     slope: D,
     /// Coefficient of y^2 in W, and those of 1/y and 1/sigma^2 in the second divided difference of W.
-    wall: [D; 3],
+    wall: Option<[D; 3]>,
     /// That of a user's own formula for the energy.
     formula: Option<&'a Bend<D>>,
     /// Coefficients of y and r in A - u.
     area: [D; 2],
-    /// 1/(2 r_m), 1/(2 sigma_m).
-    halves: [D; 2],
+    /// 1/(2 r_m), 1/(2 sigma_m), q^2/(2 sigma_m).
+    halves: [D; 3],
     cloth: Option<Cloth<D>>,
 }
 
@@ -207,7 +207,8 @@ impl<'a, D: Real> Inextensible<'a, D> {
         let v_m = -(q2 * y_m) + 1.0;
         let sigma_m = v_m.sqrt();
         let force = middle.force;
-        let halves = [one / (r_m * 2.0), one / (sigma_m * 2.0)];
+        let half_sigma = one / (sigma_m * 2.0);
+        let halves = [one / (r_m * 2.0), half_sigma, q2 * half_sigma];
         let mut area = [net.area_factor * PI, net.area_factor * net.depth * (2.0 * PI)];
         let mut pull = force;
         if let Some(cloth) = &net.cloth {
@@ -216,12 +217,10 @@ impl<'a, D: Real> Inextensible<'a, D> {
             area = [area[0] - kappa, area[1] + kappa * cloth.radius * 2.0];
             pull = pull - kappa * (r_m - cloth.radius).squared();
         }
-        let zero = D::from(0.0);
-        let mut wall = [zero; 3];
-        if let Some(rubber) = &net.rubber {
+        let wall = net.rubber.as_ref().map(|rubber| {
             let [of_square, of_inverse, of_sigma] = rubber.along_fibres(q2, net.cos_rest * net.cos_rest);
-            wall = [of_square, of_inverse / (y_m * y_m), of_sigma * q2 * q2 / (v_m * v_m)];
-        }
+            [of_square, of_inverse / (y_m * y_m), of_sigma * q2 * q2 / (v_m * v_m)]
+        });
         Self {
             sigma_m,
             pull,
@@ -253,8 +252,10 @@ impl<'a, D: Real> Inextensible<'a, D> {
         let area_2 = -(self.area[1] * r_1 * r_1 * self.halves[0]);
         let sigma_2 = -(sigma_1 * sigma_1 * self.halves[1]);
         let mut pull = self.pull - area_1 * z * self.ends.side;
-        let product = self.sigma_m * area_2 - q2 * self.halves[1] * area_1 + sigma_2 * pull;
-        let mut curve = self.wall[0] + self.wall[1] / y + self.wall[2] / v - product;
+        let mut curve = self.halves[2] * area_1 - self.sigma_m * area_2 - sigma_2 * pull;
+        if let Some(wall) = &self.wall {
+            curve += wall[0] + wall[1] / y + wall[2] / v;
+        }
         if let Some(formula) = self.formula {
             curve += formula.at(part) * r_1 * r_1;
         }

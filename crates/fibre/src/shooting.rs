@@ -114,9 +114,12 @@ pub(crate) const FITTED: Ending = Ending { most: 15_000, ..EXACT };
 pub(crate) const BESIDE: Ending = Ending { most: 7_500, ..FITTED };
 /// Newton iterations from a given start after which the search begins anew. A good start takes two or three.
 const MOST_FROM_NEAR: u32 = 8;
-/// Newton step at which the iterations end if the meridian is a quadrature, which has no tolerance and costs
-/// little. After this step the next one is as small as rounding allows.
-const QUADRATURE: f64 = 1e-5;
+/// Where the meridian is a quadrature, which has no tolerance, the iterations end when the step after the next one is
+/// expected to be below [`DERIVATIVES`] by this factor. Steps shrink as C times their squares.
+const SURELY: f64 = 0.3;
+/// C before two steps have told it, and the largest step from which it is believed.
+const SQUARES: f64 = 3.0;
+const TOLD: f64 = 1e-3;
 /// Step after which the next one is expected to be the last.
 const LAST_BUT_ONE: f64 = 1e-2;
 
@@ -256,7 +259,7 @@ fn newton_within(
     // tighter.
     let excess = straight_contraction(net).map_or(1.0, |straight| (contraction - straight).abs());
     let mut tolerance = (1e-2 * excess).clamp(TOLERANCE, first);
-    let mut previous = f64::INFINITY;
+    let (mut previous, mut before) = (f64::INFINITY, f64::INFINITY);
     let mut last_step = [0.0, 0.0];
     let mut halvings = 0;
     let mut loosest = first;
@@ -308,9 +311,16 @@ fn newton_within(
         if !moved.is_finite() {
             break;
         }
-        if if exact { moved < QUADRATURE } else { moved < ending.step && tolerance <= ending.tolerance } {
+        let squares = if before.is_finite() { moved / (before * before) } else { SQUARES };
+        let ends = if exact {
+            moved < TOLD && squares * moved * moved < SURELY * DERIVATIVES
+        } else {
+            moved < ending.step && tolerance <= ending.tolerance
+        };
+        if ends {
             return Ok(at);
         }
+        before = moved;
         // The next residual will be about the square of this step. A more exact integration would be wasted.
         let most = if moved < LAST_BUT_ONE { ending.last_but_one } else { 1e-5 };
         tolerance = (1e-2 * moved * moved).clamp(TOLERANCE, most.min(loosest));

@@ -1,6 +1,6 @@
 //! Evaluation of a model along a history: the force of every row, with exact derivatives.
 
-use bulge_effects::{self as effects, Action, Input, Jet, Moment, Setting, Stage};
+use bulge_effects::{self as effects, Action, Give, Input, Jet, Moment, Setting, Stage};
 use bulge_fibre::Parts;
 use bulge_numerics::{Dual, Real};
 use rayon::prelude::*;
@@ -296,12 +296,11 @@ impl Run<'_> {
     ) -> Option<Arc<Lattice>> {
         let matters = self.matters(record, counts);
         let counted = matters.iter().filter(|matters| **matters).count();
-        let around = |levels: bool| {
-            let unsolved = Lattice::unsolved(equilibrium, self.shapes.len(), self.model.refinement, levels);
-            let spans = self.spans(record, &matters, &unsolved);
-            (unsolved.around(&spans), spans)
-        };
-        let (even, of_levels) = (around(false), around(true));
+        let unsolved = [false, true]
+            .map(|levels| Lattice::unsolved(equilibrium, self.shapes.len(), self.model.refinement, levels));
+        let [even, of_levels] = self.spans(record, &matters, &unsolved);
+        let [for_even, for_levels] = unsolved;
+        let (even, of_levels) = ((for_even.around(&even), even), (for_levels.around(&of_levels), of_levels));
         let (lattice, spans) = if of_levels.0.needed() < even.0.needed() { of_levels } else { even };
         // A node costs as much as a row. A held lattice serves several evaluations.
         let evaluations = if slots.holds { HELD_FOR } else { 1 };
@@ -338,7 +337,8 @@ impl Run<'_> {
         let Some(equilibrium) = (alone > FEWEST_NODES).then(there).flatten() else { return };
         let levels = held.lattice.is_of_levels();
         let unsolved = Lattice::unsolved(&equilibrium, held.shapes.len(), self.model.refinement, levels);
-        let mut spans = self.spans(record, &self.matters(record, counts), &unsolved);
+        let matters = self.matters(record, counts);
+        let [mut spans] = self.spans(record, &matters, std::array::from_ref(&unsolved));
         spans.extend(&held.spans);
         spans.sort_unstable();
         spans.dedup();
@@ -431,8 +431,13 @@ impl Run<'_> {
         input
     }
 
-    /// Lattice nodes needed for the pressures and contractions of rows that matter, without duplicates.
-    fn spans(&self, record: &Record, matters: &[bool], lattice: &Lattice) -> Vec<Span> {
+    /// Nodes that the rows that matter need of each lattice, nearly without duplicates.
+    fn spans<const N: usize>(
+        &self,
+        record: &Record,
+        matters: &[bool],
+        lattices: &[Lattice; N],
+    ) -> [Vec<Span>; N] {
         let pass = Pass {
             theta: self.theta.iter().map(|v| Jet::from(*v)).collect(),
             pressure_lane: None,
@@ -440,32 +445,43 @@ impl Run<'_> {
             shape_lanes: Vec::new(),
             columns: Vec::new(),
         };
-        let span = |memory: &mut Vec<Vec<Jet>>, moment: &Moment| {
-            if moment.begins {
-                *memory = self.memory();
-            }
+        // The pressure, and the contractions between which a row may be.
+        let reach = |memory: &mut [Vec<Jet>], moment: &Moment| {
             let input = self.input(moment, &pass, memory);
             let pressure = (input.pressure * input.area / input.wall).value();
             let e = input.contraction.value();
+            let spread = NORMAL[1].0 * input.spread.value().abs();
+            let gives = [input.give_force, input.give_tension];
+            if gives.iter().all(Give::is_none) {
+                return (pressure, [e - spread, e + spread]);
+            }
             // The force isn't known yet. No muscle exceeds p pi (3 r0)^2 at usable contractions.
             let most = Jet::from(pressure * std::f64::consts::PI * (3.0 * self.setting.radius).powi(2));
-            let give = (input.give_force.under(most) + input.give_tension.under(most)).value();
-            let spread = NORMAL[1].0 * input.spread.value().abs();
-            lattice.span(pressure, [e - spread + give.min(0.0), e + spread + give.max(0.0)])
+            let give: f64 = gives.iter().map(|give| give.under(most).value()).sum();
+            (pressure, [e - spread + give.min(0.0), e + spread + give.max(0.0)])
         };
         let of_segment = |rows: &Range<usize>| {
             let mut memory = self.memory();
-            let mut found: Vec<Span> = Vec::new();
+            let mut found = [const { Vec::new() }; N];
             for (moment, matters) in record.moments()[rows.clone()].iter().zip(&matters[rows.clone()]) {
-                let own = span(&mut memory, moment).filter(|own| *matters && found.last() != Some(own));
-                found.extend(own);
+                if moment.begins {
+                    memory = self.memory();
+                }
+                let (pressure, contractions) = reach(&mut memory, moment);
+                for (lattice, found) in lattices.iter().zip(&mut found).filter(|_| *matters) {
+                    found
+                        .extend(lattice.span(pressure, contractions).filter(|own| found.last() != Some(own)));
+                }
             }
-            found.sort_unstable();
-            found.dedup();
+            for found in &mut found {
+                found.sort_unstable();
+                found.dedup();
+            }
             found
         };
         let segments = self.segments(record);
-        segments.par_iter().flat_map_iter(of_segment).collect()
+        let of_each: Vec<[Vec<Span>; N]> = segments.par_iter().map(of_segment).collect();
+        std::array::from_fn(|i| of_each.iter().flat_map(|of_one| &of_one[i]).copied().collect())
     }
 
     /// Whether a row starts from the row before it: within a fit, if nothing takes shooting.

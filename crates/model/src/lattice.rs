@@ -280,8 +280,9 @@ impl Lattice {
     /// direction. None outside the range of a lattice.
     pub(crate) fn span(&self, pressure: f64, [low, high]: [f64; 2]) -> Option<Span> {
         let p = self.place(0, self.pressure_axis(pressure)?)?;
-        let [a, b] = [self.contraction_axis(low)?, self.contraction_axis(high)?];
-        let [a, b] = [self.place(1, a)?, self.place(1, b)?];
+        let at = |contraction| self.place(1, self.contraction_axis(contraction)?);
+        let a = at(low)?;
+        let b = if high > low { at(high)? } else { a };
         let [pressures, contractions] = [0, 1].map(|axis| self.last(axis));
         let p = if self.scale_free { 0 } else { p.first };
         Some([[p, p + pressures], [a.first.min(b.first), b.first.max(a.first) + contractions]])
@@ -295,7 +296,9 @@ impl Lattice {
         if self.singular {
             return (contraction > 0.0).then(|| contraction.ln());
         }
-        contraction.is_finite().then(|| (contraction / BEND).asinh())
+        // asinh(x) to within 1e-16: a place needs no relative accuracy.
+        let x = (contraction / BEND).abs();
+        contraction.is_finite().then(|| (x + (x * x + 1.0).sqrt()).ln().copysign(contraction))
     }
 
     /// Distance from the first to the last node of a stencil.
