@@ -60,14 +60,14 @@ impl MembraneCommand {
                 Ok((row, state, fields)) => {
                     bar.set_message(line(&row));
                     bar.inc(1);
-                    output.take(row, &state, &fields)?;
+                    output.take(row, state, fields)?;
                 }
                 Err(error) => {
                     bar.finish_and_clear();
                     let rescued = run.rescued();
                     let is_rescued = rescued.is_some();
                     if let Some((row, state, fields)) = rescued {
-                        output.take(row, &state, &fields)?;
+                        output.take(row, state, fields)?;
                     }
                     output.finish(&mut run)?;
                     return Err(refused(error, kept(&output, is_rescued)));

@@ -431,7 +431,7 @@ fn states(
             Err(error) => {
                 let rescued = run.rescued();
                 if let (Some(folder), Some((row, state, fields))) = (folder.as_mut(), rescued) {
-                    folder.take(row, &state, &fields).or_raise()?;
+                    folder.take(row, state, fields).or_raise()?;
                 }
                 if let Some(folder) = folder {
                     folder.finish(run).or_raise()?;
@@ -440,7 +440,7 @@ fn states(
             }
         };
         if let Some(folder) = folder.as_mut() {
-            folder.take(row.clone(), &state, &fields).or_raise()?;
+            folder.take(row.clone(), state, fields).or_raise()?;
         }
         rows.push(row);
         watch.at(share(rows.len()), "states");

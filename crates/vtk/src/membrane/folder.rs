@@ -1,8 +1,11 @@
 //! The folder of a run: states.csv, forces.csv, a `.vtu` for each state and the whole muscle in the last one.
+//!
+//! A state is written by a thread while the next one is sought: packing it takes a third as long as finding it.
 
 use bulge_membrane::case::{Case, CaseRun, Row, Written, forces_csv, states_csv};
 use bulge_membrane::{Fields, State};
 use std::path::{Path, PathBuf};
+use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
 use super::series::remove;
@@ -18,7 +21,7 @@ pub struct CaseFolder {
     folder: PathBuf,
     stem: String,
     series: PathBuf,
-    states: MembraneSeries,
+    states: States,
     rows: Vec<Row>,
     /// What is drawn of each state, and of the last one.
     each: Whole,
@@ -26,6 +29,53 @@ pub struct CaseFolder {
     has_forces: bool,
     writing: Duration,
     note: Option<String>,
+}
+
+/// The files of the states: at rest, or in the hands of the thread that writes one.
+#[derive(Debug)]
+enum States {
+    Resting(MembraneSeries),
+    Writing(JoinHandle<(MembraneSeries, Result<(), VtkError>)>),
+    /// Its thread has panicked.
+    Lost,
+}
+
+impl States {
+    /// Waits until the last state is written.
+    fn rest(&mut self) -> Result<(), VtkError> {
+        let (series, done) = match std::mem::replace(self, Self::Lost) {
+            Self::Resting(series) => (series, Ok(())),
+            Self::Writing(thread) => thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)),
+            Self::Lost => return Ok(()),
+        };
+        *self = Self::Resting(series);
+        done
+    }
+
+    /// Waits for the last state, and begins to write another one.
+    fn begin(
+        &mut self,
+        write: impl FnOnce(&mut MembraneSeries) -> Result<(), VtkError> + Send + 'static,
+    ) -> Result<(), VtkError> {
+        self.rest()?;
+        *self = match std::mem::replace(self, Self::Lost) {
+            Self::Resting(mut series) => Self::Writing(thread::spawn(move || {
+                let done = write(&mut series);
+                (series, done)
+            })),
+            other => other,
+        };
+        Ok(())
+    }
+}
+
+impl Drop for CaseFolder {
+    fn drop(&mut self) {
+        // A program that ends would leave half a file. A run that gets here without its end has failed otherwise.
+        if let States::Writing(thread) = std::mem::replace(&mut self.states, States::Lost) {
+            let _ = thread.join();
+        }
+    }
 }
 
 impl CaseFolder {
@@ -48,7 +98,7 @@ impl CaseFolder {
             folder: folder.to_path_buf(),
             stem,
             series: states.path(),
-            states,
+            states: States::Resting(states),
             rows: Vec::new(),
             each,
             whole,
@@ -58,25 +108,31 @@ impl CaseFolder {
         })
     }
 
-    /// Writes one more state.
+    /// Takes one more state, which is written beside what follows.
     ///
     /// # Errors
-    /// A file can't be written.
-    pub fn take(&mut self, row: Row, state: &State, fields: &Fields) -> Result<(), VtkError> {
+    /// A file of the state before can't be written.
+    pub fn take(&mut self, row: Row, state: State, fields: Fields) -> Result<(), VtkError> {
         let clock = Instant::now();
-        self.states.append(&MembranePicture { state, fields, whole: self.each, time: row.state as f64 })?;
+        let (whole, time) = (self.each, row.state as f64);
         self.rows.push(row);
-        whole_file::write(&self.folder.join("states.csv"), states_csv(&self.rows).as_bytes())?;
+        let (path, csv) = (self.folder.join("states.csv"), states_csv(&self.rows));
+        self.states.begin(move |series| {
+            series.append(&MembranePicture { state: &state, fields: &fields, whole, time })?;
+            whole_file::write(&path, csv.as_bytes())
+        })?;
         self.writing += clock.elapsed();
         Ok(())
     }
 
-    /// Writes the whole muscle in its last state, and the forces for other commands.
+    /// Waits for the files of the states, then writes the whole muscle in its last state, and the forces for other
+    /// commands.
     ///
     /// # Errors
     /// A file can't be written. A whole muscle that is too large for a file is told of by [`Self::note`].
     pub fn finish(&mut self, run: &mut CaseRun<'_>) -> Result<(), VtkError> {
         let clock = Instant::now();
+        self.states.rest()?;
         if self.each != self.whole && !self.rows.is_empty() {
             let (state, fields) = run.last();
             let time = self.rows.len() as f64;
@@ -120,7 +176,7 @@ impl CaseFolder {
         self.has_forces
     }
 
-    /// Time spent on files.
+    /// Time spent waiting for files.
     #[must_use]
     pub const fn writing(&self) -> Duration {
         self.writing
