@@ -17,18 +17,9 @@ struct Gather {
 }
 
 impl Gather {
-    /// From pairs (entry, source), in the order of the sources.
-    fn new(entries: usize, mut pairs: Vec<(u32, u32)>) -> Result<Self, TryReserveError> {
-        pairs.sort_unstable();
-        let mut starts = filled(entries + 1, 0_u32)?;
-        for (entry, _) in &pairs {
-            starts[*entry as usize + 1] += 1;
-        }
-        for i in 0..entries {
-            starts[i + 1] += starts[i];
-        }
-        let mut sources = with_room(pairs.len())?;
-        sources.extend(pairs.into_iter().map(|(_, source)| source));
+    /// From pairs (entry, source), whose order the sources of an entry keep.
+    fn new(entries: usize, pairs: &[(u32, u32)]) -> Result<Self, TryReserveError> {
+        let (starts, sources) = grouped(entries, pairs.len(), pairs.iter().copied())?;
         Ok(Self { starts, sources })
     }
 
@@ -47,6 +38,30 @@ impl Gather {
             out.par_iter_mut().enumerate().with_min_len(1024).for_each(one);
         }
     }
+}
+
+/// Numbers of groups 0.. with the first place of each group, and the end of the last. Within a group they keep their order.
+fn grouped<T: Copy + Default>(
+    groups: usize,
+    count: usize,
+    of: impl Iterator<Item = (u32, T)> + Clone,
+) -> Result<(Vec<u32>, Vec<T>), TryReserveError> {
+    let mut starts = filled(groups + 1, 0_u32)?;
+    for (group, _) in of.clone() {
+        starts[group as usize + 1] += 1;
+    }
+    for i in 0..groups {
+        starts[i + 1] += starts[i];
+    }
+    let mut next = with_room(groups)?;
+    next.extend_from_slice(&starts[..groups]);
+    let mut all = filled(count, T::default())?;
+    for (group, one) in of {
+        let place = &mut next[group as usize];
+        all[*place as usize] = one;
+        *place += 1;
+    }
+    Ok((starts, all))
 }
 
 /// The buffers of all elements, and the destinations of their numbers.
@@ -129,12 +144,15 @@ impl Assembly {
             }
             count += set.count();
         }
-        stiffness.par_sort_unstable();
+        let by_column = stiffness.iter().map(|entry| (entry.0.0, *entry));
+        let (_, mut sorted) = grouped(dofs.free, stiffness.len(), by_column)?;
+        drop(stiffness);
+        sorted.par_chunk_by_mut(|a, b| a.0.0 == b.0.0).for_each(<[_]>::sort_unstable);
         let (mut columns, mut rows) = (with_room(dofs.free + 1)?, Vec::new());
         columns.push(0_usize);
-        let mut pairs = with_room(stiffness.len())?;
+        let mut pairs = with_room(sorted.len())?;
         let mut diagonal = with_room(dofs.free)?;
-        let mut next = stiffness.into_iter().peekable();
+        let mut next = sorted.into_iter().peekable();
         for column in 0..short(dofs.free) {
             let mut last = NONE;
             while let Some(((_, row), source)) = next.next_if(|((c, _), _)| *c == column) {
@@ -153,9 +171,9 @@ impl Assembly {
             columns.push(rows.len());
         }
         Ok(Self {
-            stiffness: Gather::new(rows.len(), pairs)?,
-            force: Gather::new(dofs.all, force)?,
-            sweep: Gather::new(dofs.all, sweep)?,
+            stiffness: Gather::new(rows.len(), &pairs)?,
+            force: Gather::new(dofs.all, &force)?,
+            sweep: Gather::new(dofs.all, &sweep)?,
             columns,
             rows,
             diagonal,
