@@ -109,6 +109,15 @@ fn main() -> Result<(), Failure> {
     for contraction in [0.02, 0.1, 0.2] {
         row("shooting, braid + bladder", &rubber, Approach::Shooting, contraction, None)?;
     }
+    let long = braid(25.0)?;
+    for contraction in [0.02, 0.1, 0.2, 0.3] {
+        let exact = solve(&long, contraction, Approach::Shooting)?.force_n;
+        row("quadrature, braid l0/r0 25", &long, Approach::Auto, contraction, Some(exact))?;
+    }
+    for contraction in [0.02, 0.1, 0.2] {
+        let exact = solve(&rubber, contraction, Approach::Shooting)?.force_n;
+        row("quadrature, bladder", &rubber, Approach::Auto, contraction, Some(exact))?;
+    }
     let cylinder = cylinder()?;
     let exact = |contraction: f64| {
         // F = p pi r0^2 (a (1 - eps)^2 - b), a = 3/tan^2(alpha0), b = 1/sin^2(alpha0): S2 eq. 12.

@@ -39,7 +39,7 @@ pub enum Approach {
     /// The closed form, or an error.
     ClosedForm,
     /// Shooting that ends with an integration of the equilibrium ODE: an answer that is independent of closed
-    /// forms and quadratures.
+    /// forms and quadratures. Its derivatives are those of a quadrature, where there is one.
     Shooting,
 }
 

@@ -17,7 +17,7 @@ use std::sync::Arc;
 use crate::diagnosis::bending::may_bend;
 use crate::diagnosis::confirm::Confirmed;
 use crate::diagnosis::decision_rule::RULE;
-use crate::diagnosis::hypotheses::{Hypothesis, effect_log_prior, singles};
+use crate::diagnosis::hypotheses::{Hypothesis, Tried, effect_log_prior, singles};
 use crate::diagnosis::linearised_model::{Context, LinearisedModel};
 use crate::diagnosis::search::{MOST_EFFECTS, Search, names};
 use crate::diagnosis::stage::Stage;
@@ -33,6 +33,16 @@ struct Set {
     confirmed: Confirmed,
     /// Log evidence including the log priors of the effects, relative to the base.
     value: f64,
+}
+
+/// What was fitted beside a set.
+struct Beside {
+    /// Its sorted names.
+    key: Vec<String>,
+    effects: Vec<Arc<dyn Effect>>,
+    /// Its own fit with its stage, if it had none.
+    new: Option<(Vec<Arc<dyn Effect>>, Confirmed, Option<Stage>)>,
+    tried: Vec<Tried>,
 }
 
 /// Fitted sets of effects by their sorted names, and stages that were linearised on the way.
@@ -125,8 +135,11 @@ impl Context<'_> {
             if set.effects.len() < MOST_EFFECTS {
                 from.push(set.effects.clone());
             }
-            for effects in from {
-                self.fit_beside(base, search, sets, (effects, &parent));
+            // None of them has a set beside it that another one has, so they need not wait for each other.
+            let beside = |effects| self.fit_beside(base, search, sets, (effects, &parent));
+            let all: Vec<_> = from.into_par_iter().filter_map(beside).collect();
+            for found in all {
+                self.keep(search, sets, found);
             }
             let next = sets.best_beside(&here).filter(|next| sets.known[*next].value > value + RULE.swap);
             let Some(next) = next else { return };
@@ -139,32 +152,46 @@ impl Context<'_> {
         &self,
         base: &Model,
         search: &Search,
-        sets: &mut Sets<'_>,
+        sets: &Sets<'_>,
         (effects, parent): (Vec<Arc<dyn Effect>>, &Confirmed),
-    ) {
+    ) -> Option<Beside> {
         let key = names(effects.iter());
-        if search.of_effects(&effects).is_none() && !sets.stages.contains_key(&key) {
-            let known = sets.known.get(&key).map(|set| (set.effects.clone(), set.confirmed.clone()));
-            let fitted = || Some((effects.clone(), self.refitted(base, parent, &effects).ok()?));
-            let Some((effects, confirmed)) = known.or_else(fitted) else { return };
-            sets.add(effects.clone(), confirmed.clone());
-            let Ok(stage) = self.stage(effects, confirmed) else { return };
-            sets.stages.insert(key.clone(), stage);
+        let known = search.of_effects(&effects).or_else(|| sets.stages.get(&key));
+        let new = if known.is_none() {
+            let (effects, confirmed) = match sets.known.get(&key) {
+                Some(set) => (set.effects.clone(), set.confirmed.clone()),
+                None => (effects.clone(), self.refitted(base, parent, &effects).ok()?),
+            };
+            Some((effects.clone(), confirmed.clone(), self.stage(effects, confirmed).ok()))
+        } else {
+            None
+        };
+        let tried = known.or_else(|| new.as_ref()?.2.as_ref()).map_or(Vec::new(), |stage| {
+            let effect = |h: &Hypothesis| &stage.linear.sensitivities.effects[h.effects[0]].effect;
+            let is_other = |h: &Hypothesis| {
+                stage.added.iter().all(|added| added.card().family != effect(h).card().family)
+            };
+            let best: Vec<Hypothesis> = singles(&stage.linear, &stage.confirmed.prepared.model)
+                .into_iter()
+                .filter(is_other)
+                .take(MOVES)
+                .filter(|h| !sets.known.contains_key(&names(stage.with(&h.effects).iter())))
+                .collect();
+            let known = Context { kin: Some(&stage.confirmed.form.kin), ..*self };
+            best.into_par_iter().map(|hypothesis| known.fitted(base, stage, hypothesis)).collect()
+        });
+        Some(Beside { key, effects, new, tried })
+    }
+
+    /// Keeps what was fitted beside a set.
+    fn keep(&self, search: &Search, sets: &mut Sets<'_>, found: Beside) {
+        let Beside { key, effects, new, tried } = found;
+        if let Some((effects, confirmed, stage)) = new {
+            sets.add(effects, confirmed);
+            sets.stages.extend(stage.map(|stage| (key.clone(), stage)));
         }
         let Some(stage) = search.of_effects(&effects).or_else(|| sets.stages.get(&key)) else { return };
-        let effect = |h: &Hypothesis| &stage.linear.sensitivities.effects[h.effects[0]].effect;
-        let is_other =
-            |h: &Hypothesis| stage.added.iter().all(|added| added.card().family != effect(h).card().family);
-        let best: Vec<Hypothesis> = singles(&stage.linear, &stage.confirmed.prepared.model)
-            .into_iter()
-            .filter(is_other)
-            .take(MOVES)
-            .filter(|h| !sets.known.contains_key(&names(stage.with(&h.effects).iter())))
-            .collect();
-        let known = Context { kin: Some(&stage.confirmed.form.kin), ..*self };
-        let tried: Vec<_> =
-            best.into_par_iter().map(|hypothesis| known.fitted(base, stage, hypothesis)).collect();
-        let mut found = Vec::new();
+        let mut fitted = Vec::new();
         for one in tried {
             self.remember(stage, &one);
             let all = stage.with(&one.hypothesis.effects);
@@ -173,10 +200,10 @@ impl Context<'_> {
                 && !confirmed.is_absurd(new, self.record)
                 && !confirmed.is_idle(new)
             {
-                found.push((all, confirmed));
+                fitted.push((all, confirmed));
             }
         }
-        for (effects, confirmed) in found {
+        for (effects, confirmed) in fitted {
             sets.add(effects, confirmed);
         }
     }
