@@ -295,7 +295,7 @@ fn shot(
 ) -> Kernel {
     Kernel {
         name,
-        counted: "two passes over the nodes of one or two pieces, one of them with two derivatives",
+        counted: "two passes over the nodes of one or two pieces, one of them with two derivatives, and no check",
         // Two numbers of a table each, in both passes.
         needed: node[0].and(node[1]).times(nodes).with_bytes(32.0 * nodes),
         calls: Box::new(move |count| {
@@ -355,7 +355,7 @@ const KERNELS: [(&str, Maker); 8] = [
     ("equilibrium in closed form", |name, _| Ok(closed(name, false))),
     ("equilibrium in closed form, many in one call", |name, _| Ok(closed(name, true))),
     ("clamped braid, l0/r0 = 25", |name, _| Ok(shot(name, (braid(25.0)?, Approach::Auto), BRAID, 42.0, 300))),
-    ("the same, checked by an integration of the ODE", |name, _| {
+    ("clamped braid, l0/r0 = 25, checked by an integration of the ODE", |name, _| {
         Ok(shot(name, (braid(25.0)?, Approach::Shooting), BRAID, 42.0, 300))
     }),
     ("pleated muscle by shooting, checked by an integration of the ODE", |name, _| {

@@ -24,8 +24,8 @@
 //! The substitution z = rho (r_mid + r) with rho = |r_mid - r| = (g_1/(2 r_mid g_2)) sinh^2(u) removes both
 //! the square root at mid-length and the long way along a saddle from the integrands, which become smooth in
 //! u. (In z itself they would contain 1/r, singular at the axis, not far beyond a fitting.) A Gauss-Kronrod
-//! pair of 10 and 21 points (R. Piessens et al., *QUADPACK*, Springer 1983) places the points by the values.
-//! The integrals of numbers with derivatives are then sums over these points.
+//! pair of 10 and 21 points (R. Piessens et al., *QUADPACK*, Springer 1983) finds the pieces by the values. With
+//! many derivatives a pass without them finds the pieces first.
 
 use arrayvec::ArrayVec;
 use bulge_numerics::Real;
@@ -306,7 +306,7 @@ type Piece = (f64, f64, bool);
 /// The sums of both rules over the points of a piece, the larger rule with derivatives.
 struct Sums<D> {
     kronrod: [D; 3],
-    /// The other rule less that one, and the sizes of the terms, of fibre length and shortening.
+    /// That rule less the other one, and the sizes of the terms, of fibre length and shortening.
     difference: [f64; 2],
     size: [f64; 2],
 }
@@ -322,8 +322,8 @@ impl<D: Real> Sums<D> {
             for (sum, rate) in sums.kronrod.iter_mut().zip(rates) {
                 *sum = rate.scale_add(point.weight, *sum);
             }
-            for k in 0..2 {
-                let term = rates[k].value() * point.weight;
+            let [fibre, shortening, _] = rates.map(|rate| rate.value() * point.weight);
+            for (k, term) in [fibre, shortening].into_iter().enumerate() {
                 sums.difference[k] += term * (1.0 - gauss / kronrod);
                 sums.size[k] += term.abs();
             }
@@ -402,27 +402,25 @@ fn plus<D: Real>(a: [D; 3], b: [D; 3]) -> [D; 3] {
     std::array::from_fn(|i| a[i] + b[i])
 }
 
-/// Kronrod's points of a piece, symmetric about its middle: the first one, then pairs.
+/// Kronrod's points of a piece: its middle, then the pairs on both sides of it.
 fn points((low, high, slack): Piece, ratio: f64) -> [Point; 21] {
     let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
     let per_end = 1.0 / ratio.sqrt();
     let at_middle = middle.exp();
-    let mut points = [Point { part: 0.0, weight: 0.0, slack }; 21];
-    for (pair, (node, weight, _)) in PAIR.into_iter().enumerate() {
-        let away = (half * node).exp();
-        // The middle is a point of its own.
-        for (i, growth) in
-            [(2 * pair, at_middle / away), (2 * pair - usize::from(pair > 0), at_middle * away)]
-        {
-            let u = if i % 2 == 0 { middle - half * node } else { middle + half * node };
-            let (sinh, cosh) = if u < 1e-2 {
-                (u.sinh(), u.cosh())
-            } else {
-                (0.5 * (growth - 1.0 / growth), 0.5 * (growth + 1.0 / growth))
-            };
-            points[i].part = (sinh * per_end).powi(2);
-            points[i].weight = weight * half * cosh * per_end;
-        }
+    // `growth` is e^u.
+    let point = |u: f64, growth: f64, weight: f64| {
+        let (sinh, cosh) = if u < 1e-2 {
+            (u.sinh(), u.cosh())
+        } else {
+            (0.5 * (growth - 1.0 / growth), 0.5 * (growth + 1.0 / growth))
+        };
+        Point { part: (sinh * per_end).powi(2), weight: weight * half * cosh * per_end, slack }
+    };
+    let mut points = [point(middle, at_middle, PAIR[0].1); 21];
+    for (sides, (node, weight, _)) in points[1..].chunks_exact_mut(2).zip(&PAIR[1..]) {
+        let (away, growth) = (half * node, (half * node).exp());
+        sides[0] = point(middle + away, at_middle * growth, *weight);
+        sides[1] = point(middle - away, at_middle / growth, *weight);
     }
     points
 }
@@ -590,6 +588,15 @@ mod tests {
                         continue;
                     };
                     let Ok(found) = found else { panic!("{name} {side} {ln_bulge} {second}") };
+                    // With few derivatives one pass finds pieces and sums.
+                    let few = net.map(|_, d| Dual::<2>::from(d));
+                    let few = trajectory(&few, at.middle(&few, Dual::variable).unwrap()).unwrap();
+                    for (many, few) in [(found.half_fibre, few.half_fibre), (found.end[1], few.end[1])] {
+                        let first = many.gradient().iter().zip(few.gradient());
+                        let slopes = first.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+                        let largest = few.gradient().iter().fold(few.value().abs(), |m, v| m.max(v.abs()));
+                        assert!(slopes <= 1e-11 * largest, "{name} {side} {ln_bulge} {second}: {slopes:e}");
+                    }
                     let pairs = [
                         (ode.half_fibre, found.half_fibre, 0.0),
                         (ode.end[1], found.end[1], 1e-2 * ode.half_fibre.value()),

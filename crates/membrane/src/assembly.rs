@@ -64,6 +64,18 @@ fn grouped<T: Copy + Default>(
     Ok((starts, all))
 }
 
+/// An entry of the stiffness by column and row, and a source of it.
+type Entry = ((u32, u32), u32);
+
+/// Entries in the order of columns, rows and sources. There are few in a column, so grouping leaves little to sort.
+fn sorted(columns: usize, entries: Vec<Entry>) -> Result<Vec<Entry>, TryReserveError> {
+    let by_column = entries.iter().map(|entry| (entry.0.0, *entry));
+    let (_, mut sorted) = grouped(columns, entries.len(), by_column)?;
+    drop(entries);
+    sorted.par_chunk_by_mut(|a, b| a.0.0 == b.0.0).for_each(<[_]>::sort_unstable);
+    Ok(sorted)
+}
+
 /// The buffers of all elements, and the destinations of their numbers.
 #[derive(Debug)]
 pub(crate) struct Assembly {
@@ -144,15 +156,12 @@ impl Assembly {
             }
             count += set.count();
         }
-        let by_column = stiffness.iter().map(|entry| (entry.0.0, *entry));
-        let (_, mut sorted) = grouped(dofs.free, stiffness.len(), by_column)?;
-        drop(stiffness);
-        sorted.par_chunk_by_mut(|a, b| a.0.0 == b.0.0).for_each(<[_]>::sort_unstable);
+        let entries = sorted(dofs.free, stiffness)?;
         let (mut columns, mut rows) = (with_room(dofs.free + 1)?, Vec::new());
         columns.push(0_usize);
-        let mut pairs = with_room(sorted.len())?;
+        let mut pairs = with_room(entries.len())?;
         let mut diagonal = with_room(dofs.free)?;
-        let mut next = sorted.into_iter().peekable();
+        let mut next = entries.into_iter().peekable();
         for column in 0..short(dofs.free) {
             let mut last = NONE;
             while let Some(((_, row), source)) = next.next_if(|((c, _), _)| *c == column) {
@@ -300,6 +309,19 @@ mod tests {
         fn held(&mut self) -> Vec<&mut f64> {
             Vec::new()
         }
+    }
+
+    #[test]
+    fn entries_are_sorted_and_sources_keep_their_order() {
+        let entry = |i: u32| ((i * i % 7, i * 5 % 3), 100 - i);
+        let entries: Vec<Entry> = (0..60).map(entry).collect();
+        let mut expected = entries.clone();
+        expected.sort_unstable();
+        assert_eq!(sorted(9, entries).unwrap(), expected);
+        let pairs: Vec<(u32, u32)> = (0..10).map(|i| (i % 3 * 2, i)).collect();
+        let gather = Gather::new(6, &pairs).unwrap();
+        assert_eq!(gather.starts, [0, 4, 4, 7, 7, 10, 10]);
+        assert_eq!(gather.sources, [0, 3, 6, 9, 1, 4, 7, 2, 5, 8]);
     }
 
     #[test]

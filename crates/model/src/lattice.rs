@@ -296,7 +296,7 @@ impl Lattice {
         if self.singular {
             return (contraction > 0.0).then(|| contraction.ln());
         }
-        // asinh(x) to within 1e-16: a place needs no relative accuracy.
+        // asinh(x) to within 1e-15: a place needs no relative accuracy.
         let x = (contraction / BEND).abs();
         contraction.is_finite().then(|| (x + (x * x + 1.0).sqrt()).ln().copysign(contraction))
     }

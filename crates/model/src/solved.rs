@@ -48,17 +48,23 @@ impl Solved {
         unsolved: Lattice,
         solve: impl FnOnce(Lattice) -> (Lattice, Starts),
     ) -> (Arc<Lattice>, Starts) {
-        let is_it = |kept: &&Arc<Kept>| kept.lattice.has_nodes_of(&unsolved) && kept.asked == asked;
-        let found = self.lock().iter().find(is_it).map(Arc::clone);
+        let find = |all: &VecDeque<Arc<Kept>>, lattice: &Lattice, asked: &Asked| {
+            let is_it = |kept: &&Arc<Kept>| kept.lattice.has_nodes_of(lattice) && kept.asked == *asked;
+            all.iter().find(is_it).map(Arc::clone)
+        };
+        let found = find(&self.lock(), &unsolved, &asked);
         let kept = found.unwrap_or_else(|| {
             let (lattice, starts) = solve(unsolved);
-            let kept = Arc::new(Kept { asked, lattice: Arc::new(lattice), starts });
             let mut all = self.lock();
-            if all.len() >= KEPT {
-                all.pop_front();
-            }
-            all.push_back(Arc::clone(&kept));
-            kept
+            // Another thread may have solved the same one meanwhile.
+            find(&all, &lattice, &asked).unwrap_or_else(|| {
+                let kept = Arc::new(Kept { asked, lattice: Arc::new(lattice), starts });
+                if all.len() >= KEPT {
+                    all.pop_front();
+                }
+                all.push_back(Arc::clone(&kept));
+                kept
+            })
         });
         (Arc::clone(&kept.lattice), Arc::clone(&kept.starts))
     }

@@ -7,6 +7,7 @@ mod drawing;
 mod folder;
 mod map;
 mod series;
+mod writer;
 mod xml;
 
 pub use folder::CaseFolder;

@@ -17,7 +17,7 @@ use bulge_membrane::mesher::Pleated;
 use bulge_membrane::{
     CellKind, Copies, Fields, Fitting, Mesh, Part, Solver, State, Structure, Support, Thread, Tolerance,
 };
-use bulge_vtk::{MembranePicture, MembraneSeries, Whole, write_vtu};
+use bulge_vtk::{CaseFolder, MembranePicture, MembraneSeries, Whole, write_vtu};
 use std::f64::consts::{PI, TAU};
 use std::fs;
 use std::path::Path;
@@ -279,6 +279,38 @@ fn a_series_grows_state_by_state() {
         MembraneSeries::new(dir.path().join("other"), "up/down").is_err()
             && !dir.path().join("other").exists()
     );
+}
+
+/// A state is written while the next one is sought: what stops that is told with the state after it, or at the end, and
+/// the states before it stay.
+#[test]
+fn a_state_that_cannot_be_written_is_told() {
+    let text = TUBE.replace("\"-2 mm\" }", "\"-2 mm\" }\nstates = 3");
+    let case = Case::from_toml(&text, "case.toml", None).unwrap();
+    // The state whose file can't be written, and the rows that are taken before that is told.
+    for (obstructed, taken) in [(None, 3), (Some(1), 2), (Some(2), 3)] {
+        let dir = tempfile::tempdir().unwrap();
+        let mut run = case.start().unwrap();
+        let mut folder = CaseFolder::new(dir.path(), &case, false).unwrap();
+        let stem = folder.pvd().file_stem().unwrap().to_str().unwrap().to_owned();
+        if let Some(state) = obstructed {
+            fs::create_dir(dir.path().join(format!("{stem}_000{state}.vtu"))).unwrap();
+        }
+        let mut told = None;
+        while let Some(next) = run.advance(|_, _| ()) {
+            let (row, state, fields) = next.unwrap();
+            told = told.or(folder.take(row, state, fields).err());
+        }
+        assert_eq!(told.is_some(), obstructed == Some(1));
+        told = told.or(folder.finish(&mut run).err());
+        assert_eq!(folder.rows().len(), taken);
+        let error = told.map(|error| error.to_string());
+        assert_eq!(error.is_some(), obstructed.is_some(), "{error:?}");
+        let written = obstructed.unwrap_or(3);
+        assert!(error.is_none_or(|error| error.contains(&format!("{stem}_000{written}.vtu"))));
+        let pvd = fs::read_to_string(folder.pvd()).unwrap();
+        assert!(pvd.matches("<DataSet").count() >= written, "{pvd}");
+    }
 }
 
 #[test]

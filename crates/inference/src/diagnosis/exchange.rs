@@ -41,7 +41,7 @@ struct Beside {
     key: Vec<String>,
     effects: Vec<Arc<dyn Effect>>,
     /// Its own fit with its stage, if it had none.
-    new: Option<(Vec<Arc<dyn Effect>>, Confirmed, Option<Stage>)>,
+    new: Option<(Confirmed, Option<Stage>)>,
     tried: Vec<Tried>,
 }
 
@@ -135,7 +135,7 @@ impl Context<'_> {
             if set.effects.len() < MOST_EFFECTS {
                 from.push(set.effects.clone());
             }
-            // None of them has a set beside it that another one has, so they need not wait for each other.
+            // The one set that two of them have beside them is `here`, which is known: none waits for another one's fits.
             let beside = |effects| self.fit_beside(base, search, sets, (effects, &parent));
             let all: Vec<_> = from.into_par_iter().filter_map(beside).collect();
             for found in all {
@@ -157,16 +157,16 @@ impl Context<'_> {
     ) -> Option<Beside> {
         let key = names(effects.iter());
         let known = search.of_effects(&effects).or_else(|| sets.stages.get(&key));
-        let new = if known.is_none() {
-            let (effects, confirmed) = match sets.known.get(&key) {
-                Some(set) => (set.effects.clone(), set.confirmed.clone()),
-                None => (effects.clone(), self.refitted(base, parent, &effects).ok()?),
-            };
-            Some((effects.clone(), confirmed.clone(), self.stage(effects, confirmed).ok()))
-        } else {
-            None
+        let (effects, new) = match (known, sets.known.get(&key)) {
+            (Some(_), _) => (effects, None),
+            (None, Some(set)) => (set.effects.clone(), Some(set.confirmed.clone())),
+            (None, None) => {
+                let fitted = self.refitted(base, parent, &effects).ok()?;
+                (effects, Some(fitted))
+            }
         };
-        let tried = known.or_else(|| new.as_ref()?.2.as_ref()).map_or(Vec::new(), |stage| {
+        let new = new.map(|confirmed| (confirmed.clone(), self.stage(effects.clone(), confirmed).ok()));
+        let tried = known.or_else(|| new.as_ref()?.1.as_ref()).map_or(Vec::new(), |stage| {
             let effect = |h: &Hypothesis| &stage.linear.sensitivities.effects[h.effects[0]].effect;
             let is_other = |h: &Hypothesis| {
                 stage.added.iter().all(|added| added.card().family != effect(h).card().family)
@@ -186,8 +186,8 @@ impl Context<'_> {
     /// Keeps what was fitted beside a set.
     fn keep(&self, search: &Search, sets: &mut Sets<'_>, found: Beside) {
         let Beside { key, effects, new, tried } = found;
-        if let Some((effects, confirmed, stage)) = new {
-            sets.add(effects, confirmed);
+        if let Some((confirmed, stage)) = new {
+            sets.add(effects.clone(), confirmed);
             sets.stages.extend(stage.map(|stage| (key.clone(), stage)));
         }
         let Some(stage) = search.of_effects(&effects).or_else(|| sets.stages.get(&key)) else { return };

@@ -14,7 +14,7 @@ pub struct Written<'a> {
     pub folder: Option<&'a Path>,
     /// The file that lists the states.
     pub pvd: Option<&'a Path>,
-    /// Time that writing took, s.
+    /// Time for which the run waited for its files, s.
     pub seconds: f64,
 }
 

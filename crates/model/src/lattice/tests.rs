@@ -124,6 +124,17 @@ fn a_singular_muscle_has_nodes_above_zero() {
     assert_eq!(spans(&braid(10.0, 1e5).1), [true; 3]);
 }
 
+/// Places of negative, tiny and large contractions are the inverse of those of the nodes.
+#[test]
+fn places_lead_back_to_contractions() {
+    let lattice = Lattice::unsolved(&braid(10.0, 1e5).1, 0, 1.0, false);
+    for e in [-0.3, -0.02, -1e-9, 0.0, 1e-12, 1e-3, 0.02, 0.2, 0.9] {
+        let back = BEND * lattice.contraction_axis(e).unwrap().sinh();
+        assert!((back - e).abs() < 2e-15 * (1.0 + e.abs()), "{e}: {back}");
+    }
+    assert_eq!(lattice.contraction_axis(f64::INFINITY), None);
+}
+
 /// Nodes of both lattices are called by their place on the finer one, so that one starts from the other.
 #[test]
 fn a_node_has_one_name() {

@@ -1,14 +1,14 @@
 //! The folder of a run: states.csv, forces.csv, a `.vtu` for each state and the whole muscle in the last one.
 //!
-//! A state is written by a thread while the next one is sought: packing it takes a third as long as finding it.
+//! A state is written by a thread while the next one is sought.
 
 use bulge_membrane::case::{Case, CaseRun, Row, Written, forces_csv, states_csv};
 use bulge_membrane::{Fields, State};
 use std::path::{Path, PathBuf};
-use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
 use super::series::remove;
+use super::writer::Writer;
 use super::{MembranePicture, MembraneSeries, Whole, write_vtu};
 use crate::{VtkError, whole_file};
 
@@ -21,7 +21,7 @@ pub struct CaseFolder {
     folder: PathBuf,
     stem: String,
     series: PathBuf,
-    states: States,
+    states: Writer,
     rows: Vec<Row>,
     /// What is drawn of each state, and of the last one.
     each: Whole,
@@ -29,53 +29,6 @@ pub struct CaseFolder {
     has_forces: bool,
     writing: Duration,
     note: Option<String>,
-}
-
-/// The files of the states: at rest, or in the hands of the thread that writes one.
-#[derive(Debug)]
-enum States {
-    Resting(MembraneSeries),
-    Writing(JoinHandle<(MembraneSeries, Result<(), VtkError>)>),
-    /// Its thread has panicked.
-    Lost,
-}
-
-impl States {
-    /// Waits until the last state is written.
-    fn rest(&mut self) -> Result<(), VtkError> {
-        let (series, done) = match std::mem::replace(self, Self::Lost) {
-            Self::Resting(series) => (series, Ok(())),
-            Self::Writing(thread) => thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)),
-            Self::Lost => return Ok(()),
-        };
-        *self = Self::Resting(series);
-        done
-    }
-
-    /// Waits for the last state, and begins to write another one.
-    fn begin(
-        &mut self,
-        write: impl FnOnce(&mut MembraneSeries) -> Result<(), VtkError> + Send + 'static,
-    ) -> Result<(), VtkError> {
-        self.rest()?;
-        *self = match std::mem::replace(self, Self::Lost) {
-            Self::Resting(mut series) => Self::Writing(thread::spawn(move || {
-                let done = write(&mut series);
-                (series, done)
-            })),
-            other => other,
-        };
-        Ok(())
-    }
-}
-
-impl Drop for CaseFolder {
-    fn drop(&mut self) {
-        // A program that ends would leave half a file. A run that gets here without its end has failed otherwise.
-        if let States::Writing(thread) = std::mem::replace(&mut self.states, States::Lost) {
-            let _ = thread.join();
-        }
-    }
 }
 
 impl CaseFolder {
@@ -98,7 +51,7 @@ impl CaseFolder {
             folder: folder.to_path_buf(),
             stem,
             series: states.path(),
-            states: States::Resting(states),
+            states: Writer::new(states),
             rows: Vec::new(),
             each,
             whole,
@@ -115,6 +68,7 @@ impl CaseFolder {
     pub fn take(&mut self, row: Row, state: State, fields: Fields) -> Result<(), VtkError> {
         let clock = Instant::now();
         let (whole, time) = (self.each, row.state as f64);
+        self.states.rest()?;
         self.rows.push(row);
         let (path, csv) = (self.folder.join("states.csv"), states_csv(&self.rows));
         self.states.begin(move |series| {
