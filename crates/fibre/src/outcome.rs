@@ -384,10 +384,15 @@ fn by_shooting<const N: usize>(
     (ending, way): (Ending, Way),
 ) -> Result<(Outcome<N>, [Total<N>; 2]), FibreError> {
     let (unknowns, effort) = shooting::solve(plain, contraction, from, ending)?;
-    if unknowns.is_slack(plain) {
-        return Err(FibreError::Slack { contraction, limit: None });
+    let slack = FibreError::Slack { contraction, limit: None };
+    let found = match shooting::finish(net, contraction, unknowns, way) {
+        Err(_) if unknowns.is_slack(plain) => return Err(slack),
+        found => found?,
+    };
+    // At the border the unknowns of a search that has just ended may lie on the wrong side of it.
+    if found.unknowns.is_slack(plain) {
+        return Err(slack);
     }
-    let found = shooting::finish(net, contraction, unknowns, way)?;
     let run = &found.trajectory;
     let volume = Total {
         value: 2.0 * found.half_volume.value,

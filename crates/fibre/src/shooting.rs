@@ -504,11 +504,11 @@ fn values_of_ode<const N: usize>(
 ) -> Result<Trajectory<Dual<N>>, NoTrajectory> {
     let values = trajectory(&net.constant(), middle.constant(), tolerance)?;
     let agrees = |slopes: &Trajectory<Dual<N>>| {
-        let apart =
+        let is_close =
             |value: f64, other: Dual<N>| (value - other.value()).abs() <= BOTH_WAYS * values.half_fibre;
         slopes.first_integral <= FIRST_INTEGRAL
-            && apart(values.half_fibre, slopes.half_fibre)
-            && apart(values.end[SHORTENING], slopes.end[SHORTENING])
+            && is_close(values.half_fibre, slopes.half_fibre)
+            && is_close(values.end[SHORTENING], slopes.end[SHORTENING])
     };
     let slopes = quadrature::trajectory(net, middle);
     let spent =

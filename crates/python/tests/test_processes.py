@@ -41,6 +41,49 @@ def test_a_forked_child_has_threads_of_its_own(ppam):
     assert child.exitcode == 0
 
 
+TUBE = """
+name = "tube"
+[mesher]
+kind = "tube"
+radius = "10 mm"
+length = "60 mm"
+cells = [20]
+order = 2
+[[material]]
+name = "rubber"
+law = "neo-hooke"
+thickness = "1 mm"
+shear = "0.4 MPa"
+[[part]]
+group = "wall"
+kind = "sheet"
+material = "rubber"
+[[step]]
+pressure = "30 kPa"
+states = 2
+"""
+
+
+def _writing_child(out, answers):
+    answers.put(len(bulge.membrane(TUBE, out).to_dict()["states"]))
+
+
+@pytest.mark.skipif("fork" not in multiprocessing.get_all_start_methods(), reason="nothing forks here")
+@pytest.mark.filterwarnings("ignore::DeprecationWarning")
+def test_a_forked_child_writes_as_its_parent_did(tmp_path):
+    """States are written by a thread, which must not wait for threads that a child doesn't have."""
+    expected = len(bulge.membrane(TUBE, tmp_path / "parent").to_dict()["states"])
+    fork = multiprocessing.get_context("fork")
+    answers = fork.Queue()
+    child = fork.Process(target=_writing_child, args=(tmp_path / "child", answers))
+    child.start()
+    assert answers.get(timeout=20) == expected == 2
+    child.join(20)
+    assert child.exitcode == 0
+    names = [sorted(file.name for file in (tmp_path / who).iterdir()) for who in ("parent", "child")]
+    assert names[0] == names[1]
+
+
 @pytest.mark.parametrize("output", ["volume", "force_f", "volume_v", "max_radius"])
 def test_no_pressure_is_made_up(ppam, output):
     """Where nothing stretches the pressure does nothing; where something does, it is asked for."""
