@@ -1,5 +1,6 @@
 //! Shape, force and volume of pressurised fibre nets: one meridian equation for pleated and braided pneumatic
 //! muscles.
+mod both_ways;
 mod branches;
 pub mod closed_form;
 mod continuation;

@@ -26,8 +26,9 @@
 use bulge_numerics::{Dual, Real};
 
 use crate::FibreError;
+use crate::both_ways::values_of_ode;
 use crate::continuation::{continuation, softening, stiffening};
-use crate::meridian::{Middle, NoTrajectory, SHORTENING, Trajectory, VOLUME, trajectory};
+use crate::meridian::{NoTrajectory, SHORTENING, Trajectory, VOLUME, trajectory};
 use crate::net::Net;
 use crate::outcome::{BURSTING, SOFT};
 use crate::quadrature;
@@ -62,7 +63,7 @@ const ROUNDING: f64 = 1e-13;
 const STRAIGHT: f64 = 1e-9;
 /// Largest accepted departure of a solution from the first integral. It is far above the integration error
 /// and far below any departure that matters.
-const FIRST_INTEGRAL: f64 = 1e-9;
+pub(crate) const FIRST_INTEGRAL: f64 = 1e-9;
 /// Largest last step of an accepted solution. [`finish`] corrects the values by this step to second order.
 const ACCEPTED: f64 = 1e-6;
 /// When Newton's method stops and leaves the rest to [`finish`]. That function has to integrate once anyway
@@ -488,44 +489,6 @@ pub(crate) fn finish<const N: usize>(
         residual,
         trajectory: run,
         step,
-    })
-}
-
-/// Largest difference of both ways in lengths, relative to that of the fibres, at which the quadrature's derivatives
-/// stand for those of the ODE.
-const BOTH_WAYS: f64 = 1e-7;
-
-/// The values of the ODE, with the derivatives of the quadrature: an integration with derivatives would take three times as
-/// long, and what is to be checked are values.
-fn values_of_ode<const N: usize>(
-    net: &Net<Dual<N>>,
-    middle: Middle<Dual<N>>,
-    tolerance: f64,
-) -> Result<Trajectory<Dual<N>>, NoTrajectory> {
-    let values = trajectory(&net.constant(), middle.constant(), tolerance)?;
-    let agrees = |slopes: &Trajectory<Dual<N>>| {
-        let is_close =
-            |value: f64, other: Dual<N>| (value - other.value()).abs() <= BOTH_WAYS * values.half_fibre;
-        slopes.first_integral <= FIRST_INTEGRAL
-            && is_close(values.half_fibre, slopes.half_fibre)
-            && is_close(values.end[SHORTENING], slopes.end[SHORTENING])
-    };
-    let slopes = quadrature::trajectory(net, middle);
-    let spent =
-        values.evaluations + slopes.as_ref().map_or_else(|none| none.evaluations, |run| run.evaluations);
-    let Some(slopes) = slopes.ok().filter(agrees) else {
-        let run = trajectory(net, middle, tolerance)?;
-        return Ok(Trajectory { evaluations: run.evaluations + spent, ..run });
-    };
-    let both = |value: f64, slope: Dual<N>| Dual::new(value, *slope.gradient());
-    Ok(Trajectory {
-        half_fibre: both(values.half_fibre, slopes.half_fibre),
-        end: std::array::from_fn(|i| both(values.end[i], slopes.end[i])),
-        force: both(values.force, slopes.force),
-        mid_tension: both(values.mid_tension, slopes.mid_tension),
-        steps: values.steps,
-        evaluations: spent,
-        first_integral: values.first_integral,
     })
 }
 
