@@ -96,7 +96,6 @@ pub(crate) const USUAL: Ending = Ending {
     tolerance: 1e-7,
     first: 1e-4,
     last_but_one: 1e-5,
-    // One that is too early costs no more than one that is too late, and is rarer (3 of 232 braids).
     surely: 0.3,
     most: MOST_EVALUATIONS,
     alone: false,
@@ -390,8 +389,7 @@ pub(crate) struct Total<const N: usize> {
 /// How the last trajectory is computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Way {
-    /// By the equilibrium ODE. Its first integral and end conditions then check everything before. Derivatives come from a
-    /// quadrature where the net allows it.
+    /// By the equilibrium ODE, which checks everything before. Derivatives are a quadrature's where the net allows it.
     Ode,
     /// By quadrature where the net allows it, ten times faster.
     Quadrature,
