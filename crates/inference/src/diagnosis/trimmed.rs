@@ -327,7 +327,10 @@ impl Linearised {
         let alike = channels.iter().filter(|(gain, _, _)| *gain >= ALIKE * most);
         let by = alike.map(|(_, by, _)| *by).collect();
         let rest_n = (dot(&rest, &rest) / rows as f64).sqrt();
-        let is_clear = *most > least && *most > chance;
+        // What a shift of all rows explains as well is no event, however few of them could deny it.
+        let in_all =
+            slopes.iter().filter_map(|slopes| Some(tried(slopes, &(0..rows))?.0)).fold(0.0, f64::max);
+        let is_clear = *most > least && *most > chance && in_all < ALIKE * most;
         is_clear.then(|| Shift { window, by, explained: *most, more: most - chance, rest_n })
     }
 }
@@ -463,6 +466,9 @@ mod tests {
             assert_eq!(shift.window, window);
             assert!(shift.by[0].0 == slopes[channel].0 && (shift.by[0].1 - 0.5).abs() < 0.05, "{shift:?}");
         }
+        // A channel that is off in all rows is off in all but a few as well: those few can't deny it.
+        line.residual = whole.iter().zip(&slopes[1].1).map(|(left, slope)| left + 0.5 * slope).collect();
+        assert_eq!(line.shift(&slopes, &sweeps, 0.0), None);
         // A channel that explains as much is named beside it, by its own size.
         let half = (Channel::Pressure, slopes[0].1.iter().map(|slope| 0.5 * slope).collect());
         line.residual = (37..100).fold(whole, |mut residual, row| {
