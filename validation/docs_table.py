@@ -170,15 +170,22 @@ def ratios(measured):
 
 
 def limits(measured):
-    """What each kernel takes beside what its operations need at least."""
-    lines = ["| a call of | needs: + x, divisions, roots; bytes | instructions | time | limit as compiled | limit in four lanes |", "|---|---|---|---|---|---|"]
+    """What each kernel takes beside what its operations need at least, and beside the fastest of other libraries."""
+    names = ("a call of", "needs: + x, divisions, roots; bytes", "instructions", "time", "limit as compiled", "limit in four lanes", "the fastest of others")
+    lines = ["| " + " | ".join(names) + " |", "|" + "---|" * len(names)]
     for row in measured["rows"]:
         needs = f"{_count(row['arithmetic'])}, {_count(row['divisions'])}, {_count(row['roots'])}; {_count(row['bytes'])}"
         instructions = _count(row["instructions"]) if row["instructions"] else ""
-        bounds = [f"{_time(1e-9 * row[key])}: {float(format(row['time_ns'] / row[key], '.2g')):g} times" for key in ("compiled_ns", "lanes_ns")]
-        cells = [f"{row['kernel']} ({row['counted']})", needs, instructions, _time(1e-9 * row["time_ns"]), *bounds]
+        bounds = [f"{_time(1e-9 * row[key])}: {_rough(row['time_ns'] / row[key])} times" for key in ("compiled_ns", "lanes_ns")]
+        peer = f"{row['peer']}: {_time(1e-9 * row['peer_ns'])}, {_rough(row['peer_ns'] / row['time_ns'])} times Bulge's" if row["peer"] else ""
+        cells = [f"{row['kernel']} ({row['counted']})", needs, instructions, _time(1e-9 * row["time_ns"]), *bounds, peer]
         lines.append("| " + " | ".join(cells) + " |")
     return "\n".join(lines)
+
+
+def _rough(number):
+    """Two digits, without a power of ten."""
+    return f"{float(format(number, '.2g')):g}"
 
 
 def _count(number):

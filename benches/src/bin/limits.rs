@@ -16,6 +16,8 @@
 //! ```
 //! t_b is that of a copy of [`COPIED`] numbers by one thread, what is read and written.
 //!
+//! Beside it stands the fastest of other libraries, timed in the same run by `benches/peers/limits.py`, where `python3` has SciPy.
+//!
 //! Instructions are counted by `valgrind --tool=callgrind` in two runs of this program, one with twice as many calls, where
 //! valgrind is there. Virtual machines seldom have the counters of `perf`.
 
@@ -381,6 +383,19 @@ fn instructions(kernel: &Kernel, table: &Path) -> Option<f64> {
     Some((count(2 * kernel.traced)? - count(kernel.traced)?) / kernel.traced as f64)
 }
 
+/// What computes a kernel fastest elsewhere, and its nanoseconds; nothing without SciPy.
+fn peers() -> Vec<(String, String, f64)> {
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("peers/limits.py");
+    let Some(run) = Command::new("python3").arg(script).output().ok().filter(|run| run.status.success()) else {
+        return Vec::new();
+    };
+    let row = |line: &str| {
+        let mut cells = line.split('\t').map(str::to_owned);
+        Some((cells.next()?, cells.next()?, cells.next()?.parse().ok()?))
+    };
+    String::from_utf8_lossy(&run.stdout).lines().filter_map(row).collect()
+}
+
 /// Triangles of the square airbag and its factors: nanoseconds of one in an iteration, nanoseconds of a
 /// factor, the operations that a factor with so many entries needs at least, sum c_j^2 >= (sum c_j)^2/n of its columns, and its
 /// bytes, each entry written and read.
@@ -403,8 +418,10 @@ fn membrane() -> Result<[f64; 4], Failure> {
 fn measured(table: &Path) -> Result<Value, Failure> {
     let byte = copied();
     let [compiled, lanes] = [Rates::as_compiled(byte), Rates::in_lanes(byte)];
+    let peers = peers();
     let mut rows = Vec::new();
     let row = |name: &str, counted: &str, needed: &Operations, time_ns: f64, instructions: Option<f64>| {
+        let peer = peers.iter().find(|(kernel, ..)| kernel == name);
         json!({
             "kernel": name,
             "counted": counted,
@@ -416,6 +433,8 @@ fn measured(table: &Path) -> Result<Value, Failure> {
             "time_ns": time_ns,
             "compiled_ns": compiled.limit(needed),
             "lanes_ns": lanes.limit(needed),
+            "peer": peer.map(|(_, peer, _)| peer),
+            "peer_ns": peer.map(|(.., ns)| ns),
         })
     };
     for (name, maker) in KERNELS {
