@@ -386,7 +386,8 @@ fn instructions(kernel: &Kernel, table: &Path) -> Option<f64> {
 /// What computes a kernel fastest elsewhere, and its nanoseconds; nothing without SciPy.
 fn peers() -> Vec<(String, String, f64)> {
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("peers/limits.py");
-    let Some(run) = Command::new("python3").arg(script).output().ok().filter(|run| run.status.success()) else {
+    let Some(run) = Command::new("python3").arg(script).output().ok().filter(|run| run.status.success())
+    else {
         return Vec::new();
     };
     let row = |line: &str| {

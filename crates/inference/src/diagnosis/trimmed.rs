@@ -286,7 +286,8 @@ impl Determined<'_> {
 
 impl Linearised {
     /// The shift of a channel within a window of rows that explains most of the misfit, if that is a sum of squares
-    /// of at least `least` \[N^2\] and no chance. `slopes` are the changes of the force by each channel.
+    /// of at least `least` \[N^2\], no chance, and more than a shift of all rows explains. `slopes` are the changes of
+    /// the force by each channel.
     pub(crate) fn shift(
         &self,
         slopes: &[(Channel, Vec<f64>)],
