@@ -331,7 +331,8 @@ impl Linearised {
         // What a shift of all rows explains as well is no event, however few of them could deny it.
         let in_all =
             slopes.iter().filter_map(|slopes| Some(tried(slopes, &(0..rows))?.0)).fold(0.0, f64::max);
-        let is_clear = *most > least && *most > chance && in_all < ALIKE * most;
+        let is_event = *most - in_all > chance || in_all < ALIKE * most;
+        let is_clear = *most > least && *most > chance && is_event;
         is_clear.then(|| Shift { window, by, explained: *most, more: most - chance, rest_n })
     }
 }
