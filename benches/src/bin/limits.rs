@@ -383,12 +383,16 @@ fn instructions(kernel: &Kernel, table: &Path) -> Option<f64> {
     Some((count(2 * kernel.traced)? - count(kernel.traced)?) / kernel.traced as f64)
 }
 
-/// What computes a kernel fastest elsewhere, and its nanoseconds; nothing without SciPy.
+/// What computes a kernel fastest elsewhere, and its nanoseconds; nothing without SciPy, and the reason on standard error.
 fn peers() -> Vec<(String, String, f64)> {
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("peers/limits.py");
-    let Some(run) = Command::new("python3").arg(script).output().ok().filter(|run| run.status.success())
-    else {
-        return Vec::new();
+    let run = match Command::new("python3").arg(script).output() {
+        Ok(run) if run.status.success() => run,
+        found => {
+            let why = found.map_or_else(|e| e.to_string(), |run| String::from_utf8_lossy(&run.stderr).into());
+            eprintln!("no peers: {}", why.trim().lines().last().unwrap_or("python3 failed"));
+            return Vec::new();
+        }
     };
     let row = |line: &str| {
         let mut cells = line.split('\t').map(str::to_owned);

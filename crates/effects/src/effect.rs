@@ -174,6 +174,7 @@ impl Give {
     pub const SEATED: f64 = 1.0;
 
     /// No compliance.
+    #[inline]
     #[must_use]
     pub fn none() -> Self {
         let [zero, power] = [0.0, 1.0].map(Jet::from);
@@ -181,6 +182,7 @@ impl Give {
     }
 
     /// Whether there is no compliance and no derivative of it.
+    #[inline]
     #[must_use]
     pub fn is_none(&self) -> bool {
         let still = |x: &Jet| x.value() == 0.0 && x.gradient().iter().all(|d| *d == 0.0);
@@ -205,6 +207,7 @@ impl Give {
 
 impl Input {
     /// The input that equals the readings.
+    #[inline]
     #[must_use]
     pub fn of(pressure: Jet, contraction: Jet) -> Self {
         let [zero, one] = [0.0, 1.0].map(Jet::from);

@@ -11,7 +11,7 @@ use crate::structure::Structure;
 use crate::sweep::{self, Contradiction, Sweep, SweepKind};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// A set of measurements: at least pressure, motion and force of each row, all finite, in SI.
 ///
@@ -178,7 +178,6 @@ impl Data {
             Some(labels) => labels.names().to_vec(),
             None => vec!["1".to_owned()],
         };
-        let is_one = self.files.len() == 1;
         let mut start = 0;
         let files: Vec<_> = self
             .files
@@ -187,7 +186,7 @@ impl Data {
                 let rows = start..start + file.rows;
                 start = rows.end;
                 let stem = Path::new(&file.name).file_stem().unwrap_or_default().to_string_lossy();
-                (rows, if is_one { String::new() } else { format!("{stem}/") })
+                (rows, if self.files.len() == 1 { String::new() } else { format!("{stem}/") })
             })
             .collect();
         let found = sweep::find(&self.columns, &files, self.is_path());
@@ -198,18 +197,17 @@ impl Data {
 
     /// Finds the stretches and the kinds of the sweeps.
     fn finished(mut self) -> Self {
-        let motion = self.columns.motion.values();
         let rows: Vec<Range<usize>> = self.sweeps.iter().map(|sweep| sweep.rows.clone()).collect();
-        let resolution = Resolution::of(motion, &rows);
+        let resolution = Resolution::of(self.columns.motion.values(), &rows);
         let scale = match &self.columns.motion {
             Trace::Contraction(_) => 1.0,
             Trace::Length(lengths) => bounds(lengths).1,
         };
         let longest = rows.iter().map(Range::len).max().unwrap_or(0);
         let band = DeadBand::new(&resolution, longest, scale);
-        let largest = self.columns.pressure_pa.iter().fold(0.0_f64, |m, p| m.max(p.abs()));
-        let pressure_resolution = Resolution::of(&self.columns.pressure_pa, &rows);
-        let pressure_band = DeadBand::new(&pressure_resolution, longest, largest);
+        let pressure = &self.columns.pressure_pa;
+        let largest = pressure.iter().fold(0.0_f64, |m, p| m.max(p.abs()));
+        let pressure_band = DeadBand::new(&Resolution::of(pressure, &rows), longest, largest);
         let (mut stretches, mut pressure_stretches) = (Vec::new(), Vec::new());
         if self.is_path() {
             let shortening = self.shortening();
@@ -234,7 +232,9 @@ impl Data {
                 stretches.push(if sweep.kind == SweepKind::Isometric { rest() } else { found });
             }
         }
-        self.structure = Structure { stretches, pressure_stretches, pressure_band, resolution, band, scale };
+        let disturbed = OnceLock::new();
+        self.structure =
+            Structure { stretches, pressure_stretches, pressure_band, resolution, band, scale, disturbed };
         self
     }
 
@@ -285,7 +285,7 @@ impl Data {
                 values[row] += shift;
             }
         }
-        self.lengths = lengths;
+        (self.lengths, self.structure.disturbed) = (lengths, OnceLock::new());
         self
     }
 

@@ -183,7 +183,11 @@ impl Data {
     /// Rows with impossible or frozen readings; and with spikes or clipped readings, by column, which can't be
     /// detected in a static map.
     #[must_use]
-    pub fn disturbed(&self) -> Vec<Disturbance> {
+    pub fn disturbed(&self) -> &[Disturbance] {
+        self.structure.disturbed.get_or_init(|| self.find_disturbed())
+    }
+
+    fn find_disturbed(&self) -> Vec<Disturbance> {
         if self.is_empty() {
             return Vec::new();
         }

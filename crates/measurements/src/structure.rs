@@ -1,9 +1,11 @@
 //! Properties derived from the columns of a data set and its sweeps.
 
 use crate::data::Data;
+use crate::quality::Disturbance;
 use crate::resolution::Resolution;
 use crate::stretch::{DeadBand, Stretch};
 use crate::sweep::{Sweep, SweepKind};
+use std::sync::OnceLock;
 
 /// Properties derived from columns and sweeps.
 #[derive(Debug, Clone, Default)]
@@ -20,6 +22,8 @@ pub(crate) struct Structure {
     pub(crate) band: DeadBand,
     /// 1 for contractions, the longest length for lengths: the size of the muscle if l0 isn't known.
     pub(crate) scale: f64,
+    /// What [`Data::disturbed`] found; several questions about the same rows need it.
+    pub(crate) disturbed: OnceLock<Vec<Disturbance>>,
 }
 
 impl Data {

@@ -18,6 +18,7 @@ pub(crate) struct Graded {
 impl Graded {
     /// Applies the chain rule. Pressure and contraction carry derivatives, and the shape parameter j is the
     /// variable of lane `lanes[j]`.
+    #[inline]
     pub(crate) fn carry(&self, pressure: Jet, contraction: Jet, lanes: &[Option<usize>]) -> Jet {
         let [p, e] = [pressure.gradient(), contraction.gradient()];
         let mut gradient: [f64; LANES] =
@@ -84,13 +85,12 @@ impl Carried {
         }
     }
 
-    /// Force and tension times a factor that carries derivatives.
-    pub(crate) fn stiffened(self, wall: Jet) -> Self {
-        Self {
-            force: self.force * wall,
-            tension: self.tension * wall,
-            slope: [self.slope[0] * wall.value(), self.slope[1] * wall.value(), self.slope[2]],
-            ..self
+    /// Multiplies force and tension by a factor that carries derivatives.
+    pub(crate) fn stiffen(&mut self, wall: Jet) {
+        self.force = self.force * wall;
+        self.tension = self.tension * wall;
+        for slope in &mut self.slope[..2] {
+            *slope *= wall.value();
         }
     }
 }
@@ -123,7 +123,8 @@ mod tests {
         let (one, other) = (carried(1.0), carried(10.0));
         assert_eq!(numbers(&one.scaled(2.0)), [2.0, 4.0, 6.0, 8.0, 10.0, 12.0, 14.0]);
         assert_eq!(numbers(&one.plus(other)), [11.0, 13.0, 15.0, 17.0, 19.0, 21.0, 23.0]);
-        let stiffened = one.stiffened(Jet::variable(3.0, 1));
+        let mut stiffened = one;
+        stiffened.stiffen(Jet::variable(3.0, 1));
         assert_eq!(numbers(&stiffened), [3.0, 6.0, 3.0, 4.0, 15.0, 18.0, 7.0]);
         // (F w)' = F' w + F w'.
         assert_eq!(stiffened.force.gradient()[..2], [3.0, 1.0]);

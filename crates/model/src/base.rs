@@ -72,6 +72,7 @@ impl Equilibrium {
 }
 
 impl Answer {
+    #[inline]
     fn of(found: &Linearised) -> Self {
         let graded = |linear: &Linear| Graded {
             value: linear.value,

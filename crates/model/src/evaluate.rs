@@ -47,6 +47,8 @@ pub(crate) struct Run<'a> {
     /// Index of the muscle among those of the model.
     pub(crate) body: usize,
     pub(crate) theta: &'a [f64],
+    /// The action of each effect, in the order of the effects.
+    actions: Vec<Action<'a>>,
     pub(crate) setting: Setting,
     pub(crate) strands: Strands,
     /// Parameters that change the shape, in the order of the answers' derivatives.
@@ -211,6 +213,7 @@ impl Model {
             model: self,
             body,
             theta,
+            actions: self.effects.iter().map(|chosen| chosen.effect.action()).collect(),
             setting: self.bodies[body].setting,
             strands: Strands::of(&self.bodies[body].parts),
             shapes: Vec::new(),
@@ -399,17 +402,21 @@ impl Run<'_> {
         sizes.chain([strands::MEMORY]).map(|size| vec![Jet::from(0.0); size]).collect()
     }
 
-    /// The action of each effect on a row, in the order of the effects.
+    /// The actions of some stages on a row, in the order of the effects.
     pub(crate) fn actions<'r>(
         &'r self,
+        stages: &'r [Stage],
         moment: &'r Moment,
         pass: &'r Pass,
         memory: &'r mut [Vec<Jet>],
     ) -> impl Iterator<Item = (Action<'r>, effects::Row<'r>)> {
-        self.model.effects.iter().zip(memory).map(move |(chosen, memory)| {
-            let theta = &pass.theta[self.model.range(chosen, moment.specimen)];
-            (chosen.effect.action(), effects::Row { moment, setting: &self.setting, theta, memory })
-        })
+        let all = self.actions.iter().zip(&self.model.effects).zip(memory);
+        all.filter(|((action, _), _)| stages.contains(&action.stage())).map(
+            move |((action, chosen), memory)| {
+                let theta = &pass.theta[self.model.range(chosen, moment.specimen)];
+                (*action, effects::Row { moment, setting: &self.setting, theta, memory })
+            },
+        )
     }
 
     pub(crate) fn input(&self, moment: &Moment, pass: &Pass, memory: &mut [Vec<Jet>]) -> Input {
@@ -421,7 +428,7 @@ impl Run<'_> {
             seeded(moment.pressure, pass.pressure_lane),
             seeded(moment.contraction, pass.contraction_lane),
         );
-        for (action, row) in self.actions(moment, pass, memory) {
+        for (action, row) in self.actions(&[Stage::Shape, Stage::Input], moment, pass, memory) {
             match action {
                 Action::Shape(effect) => effect.act(row, &mut input),
                 Action::Input(effect) => effect.act(row, &mut input),

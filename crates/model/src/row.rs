@@ -1,11 +1,11 @@
 //! One row of a model: input effects, equilibrium, load effects and load cell.
 
 use bulge_effects::law::LawPoint;
-use bulge_effects::{Action, Balance, Give, Input, Jet, Moment};
+use bulge_effects::{Action, Balance, Give, Input, Jet, Moment, Stage};
 use bulge_fibre::Start;
 use bulge_numerics::{Dual, Real};
 
-use crate::answer::{Answer, Carried};
+use crate::answer::Carried;
 use crate::base::Equilibrium;
 use crate::evaluate::Run;
 use crate::failure::RowError;
@@ -59,14 +59,14 @@ impl Run<'_> {
             turn: self.strands.turn(moment, &found, contraction, memory.last_mut()),
         };
         let mut load = Jet::from(0.0);
-        for (action, row) in self.actions(moment, pass, memory) {
+        for (action, row) in self.actions(&[Stage::Load], moment, pass, memory) {
             if let Action::Load(effect) = action {
                 effect.act(row, &balance, &mut load);
             }
         }
         let force = found.force + load;
         let mut reading = force;
-        for (action, row) in self.actions(moment, pass, memory) {
+        for (action, row) in self.actions(&[Stage::Output], moment, pass, memory) {
             if let Action::Output(effect) = action {
                 effect.act(row, &balance, &mut reading);
             }
@@ -127,17 +127,20 @@ impl Run<'_> {
         pass: &Pass,
         place: &mut Place<'_>,
     ) -> Result<Carried, RowError> {
-        let stiffen = |found: Carried| found.stiffened(input.wall);
         let spread = input.spread;
         if spread.value() == 0.0 {
-            return self.base(moment, [pressure, e], pass, place).map(stiffen);
+            let mut found = self.base(moment, [pressure, e], pass, place)?;
+            found.stiffen(input.wall);
+            return Ok(found);
         }
         let mut sum: Option<Carried> = None;
         for (z, weight) in NORMAL {
             let part = self.base(moment, [pressure, e + spread * z], pass, place)?.scaled(weight);
             sum = Some(sum.map_or(part, |sum| sum.plus(part)));
         }
-        sum.map(stiffen).ok_or(RowError::NotFinite)
+        let mut found = sum.ok_or(RowError::NotFinite)?;
+        found.stiffen(input.wall);
+        Ok(found)
     }
 
     /// The equilibrium, or the force law, at one pressure and contraction.
@@ -167,11 +170,14 @@ impl Run<'_> {
                 })
             }
             (Base::Equilibrium, Some(equilibrium)) => {
-                let (p, at) = (pressure.value(), e.value());
+                let at = [pressure.value(), e.value()];
                 let kept = self.answers.as_ref().and_then(|answers| answers.rows.get(place.row));
-                let answer = match known(Some(place.answered), [p, at]).or_else(|| known(kept, [p, at])) {
-                    Some(answer) => *answer,
-                    None => self.answer(equilibrium, [p, at], place)?,
+                let kept = known(kept, at);
+                if kept.is_none() && known(Some(place.answered), at).is_none() {
+                    self.answer(equilibrium, at, place)?;
+                }
+                let Some(answer) = kept.or_else(|| known(Some(place.answered), at)) else {
+                    return Err(RowError::NotFinite);
                 };
                 let lanes = &pass.shape_lanes;
                 Ok(Carried {
@@ -190,13 +196,13 @@ impl Run<'_> {
         }
     }
 
-    /// The answer at a pressure and a contraction, by the lattice or by a search.
+    /// Leaves the answer at a pressure and a contraction in its place, by the lattice or by a search.
     fn answer(
         &self,
         equilibrium: &Equilibrium,
         [pressure, contraction]: [f64; 2],
         place: &mut Place<'_>,
-    ) -> Result<Answer, RowError> {
+    ) -> Result<(), RowError> {
         // An equilibrium in closed form that starts from another one has derivatives that are good enough for a fit
         // only.
         let mut none = None;
@@ -210,7 +216,7 @@ impl Run<'_> {
         )
         .map_err(|source| RowError::Solver { pressure, contraction, source })?;
         *place.answered = Some(([pressure, contraction], answer));
-        Ok(answer)
+        Ok(())
     }
 
     fn law_slope(&self, moment: &Moment, pressure: f64, e: f64) -> f64 {

@@ -135,7 +135,7 @@ pub(crate) fn used(data: &Data) -> Used {
         used.leave_out(data, cut, why);
     }
     for disturbance in disturbed {
-        used.leave_out(data, disturbance.rows, disturbance.why);
+        used.leave_out(data, disturbance.rows.iter().copied(), disturbance.why.clone());
     }
     let between = data.between_isobars().iter().copied();
     let why = "between pressures: the pressure steps from one isobaric run to the next, and what friction does there isn't known";

@@ -7,7 +7,7 @@
 
 use bulge_effects::Effect;
 use bulge_model::{Model, ModelError, Record};
-use bulge_numerics::least_squares::{Bounds, Minimum, Options, Reason};
+use bulge_numerics::least_squares::{Bounds, Linearisation, Minimum, Options, Reason};
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -17,7 +17,7 @@ use crate::diagnosis::form_error::FormError;
 use crate::diagnosis::linearised_model::Context;
 use crate::diagnosis::sensitivity::{Sensitivity, Sign, Size, longest_sweep, relaxes, sizes};
 use crate::fit::carry_over::carry_over;
-use crate::fit::frozen::{NEAR, cost, minimise_frozen};
+use crate::fit::frozen::{NEAR, minimise_frozen, minimise_solved, solved};
 use crate::fit::nuisance::{Prepared, with_nuisances};
 use crate::fit::problem::{FitProblem, free};
 use crate::fit::states::{is_of_rows, minimise_partly, of_start};
@@ -165,53 +165,56 @@ impl Context<'_> {
     /// The starts nearest to the data, if there are many. A start at which some row has no state has an
     /// infinite distance.
     fn nearest<'s>(
-        &self,
-        prepared: &Prepared,
+        &'s self,
+        prepared: &'s Prepared,
         starts: &'s [Vec<f64>],
         priors: &[Option<(f64, f64)>],
-    ) -> Vec<&'s Vec<f64>> {
-        if starts.len() <= FOLLOWED {
-            return starts.iter().collect();
-        }
-        let distance = |start: &Vec<f64>| {
+    ) -> Vec<Begun<'s>> {
+        let begun = |start: &'s Vec<f64>| {
             let problem =
                 FitProblem::whitened(&prepared.model, self.record, self.whitening, start.clone(), priors);
-            let at = inside(problem.coordinates(start), &problem.bounds());
-            problem.hold();
-            cost(&problem, &at).unwrap_or(f64::INFINITY)
+            let bounds = problem.bounds();
+            let at = inside(problem.coordinates(start), &bounds);
+            Begun { start, problem, bounds, at, linear: None }
         };
-        let mut found: Vec<(f64, &Vec<f64>)> =
-            starts.par_iter().map(|start| (distance(start), start)).collect();
-        found.sort_by(|a, b| a.0.total_cmp(&b.0));
-        found.into_iter().take(FOLLOWED).map(|(_, start)| start).collect()
+        if starts.len() <= FOLLOWED {
+            return starts.iter().map(begun).collect();
+        }
+        let mut found: Vec<Begun<'s>> = starts
+            .par_iter()
+            .map(|start| {
+                let begun = begun(start);
+                let linear = solved(&begun.problem, &begun.at);
+                Begun { linear, ..begun }
+            })
+            .collect();
+        found.sort_by(|a, b| a.distance().total_cmp(&b.distance()));
+        found.truncate(FOLLOWED);
+        found
     }
 
     /// The lowest of the minima that several starts lead to.
     fn best(&self, prepared: Prepared, starts: &[Vec<f64>]) -> Result<Confirmed, ModelError> {
         let priors = prepared.nuisance_priors();
+        let options = Options {
+            check_curvature: false,
+            tolerance: TOLERANCE,
+            max_evaluations: EVALUATIONS,
+            least_decrease: NEAR,
+        };
         let searched: Vec<Result<(Minimum, Vec<f64>), ModelError>> = self
             .nearest(&prepared, starts, &priors)
             .into_par_iter()
-            .map(|start| {
+            .map(|Begun { start, problem, bounds, at, linear }| {
                 self.progress.beat();
-                let problem = FitProblem::whitened(
-                    &prepared.model,
-                    self.record,
-                    self.whitening,
-                    start.clone(),
-                    &priors,
-                );
-                let bounds = problem.bounds();
-                let inside = inside(problem.coordinates(start), &bounds);
-                let options = Options {
-                    check_curvature: false,
-                    tolerance: TOLERANCE,
-                    max_evaluations: EVALUATIONS,
-                    least_decrease: NEAR,
+                let from = |at: &[f64]| minimise_frozen(&problem, at, &bounds, &options).map_err(of_start);
+                let found = match linear {
+                    Some(linear) => {
+                        minimise_solved(&problem, &at, linear, &bounds, &options).map_err(of_start)
+                    }
+                    None => from(&at),
                 };
-                let from =
-                    |inside: &[f64]| minimise_frozen(&problem, inside, &bounds, &options).map_err(of_start);
-                let found = match from(&inside) {
+                let found = match found {
                     Err(error) if is_of_rows(&error) => {
                         let nearer = self.nearer(&prepared, start, &priors, &options).ok_or(error)?;
                         from(&self::inside(problem.coordinates(&nearer), &bounds))
@@ -245,6 +248,24 @@ impl Context<'_> {
         // A kink counts as converged: the cost can't decrease further by an amount that matters.
         let converged = minimum.certificate.converged || minimum.certificate.reason == Reason::Kink;
         Ok(Confirmed { prepared, theta, minimum, log_evidence, penalty, form, converged })
+    }
+}
+
+/// A fit at its start.
+struct Begun<'s> {
+    start: &'s [f64],
+    problem: FitProblem<'s>,
+    bounds: Bounds,
+    /// The start in the coordinates of the search, within the bounds.
+    at: Vec<f64>,
+    /// The problem there, if its distance was asked for.
+    linear: Option<Linearisation>,
+}
+
+impl Begun<'_> {
+    /// The sum of squares at the start.
+    fn distance(&self) -> f64 {
+        self.linear.as_ref().map_or(f64::INFINITY, Linearisation::cost)
     }
 }
 

@@ -22,7 +22,7 @@ use crate::diagnosis::document::{Diagnosis, Verdict};
 use crate::diagnosis::either::quieter;
 use crate::diagnosis::event::{Anew, event};
 use crate::diagnosis::fits::Fits;
-use crate::diagnosis::geometry::{Doubt, geometry};
+use crate::diagnosis::geometry::{Asked, Doubt, geometry};
 use crate::diagnosis::late::Late;
 use crate::diagnosis::linearised_model::Context;
 use crate::diagnosis::next::{Judged, next_experiment};
@@ -72,6 +72,12 @@ impl DiagnoseOptions {
             progress: Progress::default(),
         }
     }
+
+    /// The same question where only the verdict and the names of its answer are looked at.
+    fn names_alone(&self) -> Self {
+        let base = Options { rivals: false, held_out: false, ..self.base.clone() };
+        Self { base, progress: Progress::default(), ..self.clone() }
+    }
 }
 
 /// Finds the physical effect that is missing in the model of a muscle.
@@ -92,8 +98,14 @@ pub fn diagnose(
         let doubt = Doubt::of(muscle);
         let found = answered(data, [muscle, &doubt.doubted], options)?;
         options.progress.at(0.96, "the geometry in doubt");
-        let silent = DiagnoseOptions { progress: Progress::default(), ..options.clone() };
-        let mut found = doubt.settled(found, |exact| answered(data, [muscle, exact], &silent))?;
+        let of_exact = |exact: &Muscle, asked: Asked| {
+            let options = match asked {
+                Asked::Whole => DiagnoseOptions { progress: Progress::default(), ..options.clone() },
+                Asked::Names => options.names_alone(),
+            };
+            answered(data, [muscle, exact], &options)
+        };
+        let mut found = doubt.settled(found, of_exact)?;
         doubt.say(&mut found, &options.base.catalogue);
         found.not_looked_for = not_looked_for(&found, &options.base.catalogue);
         if let Some(among) = &options.among {
@@ -145,22 +157,17 @@ fn diagnosed(
     }
     let first = analysis.begin()?;
     let mut base = analysis.climb(options.base.effects.len(), Some(&first.climbed))?;
-    // Of these answers only the verdict and the names are looked at.
-    let silent = || {
-        let base = Options { rivals: false, held_out: false, ..options.base.clone() };
-        DiagnoseOptions { base, progress: Progress::default(), ..options.clone() }
-    };
     let without = |rows: &[usize]| {
-        let mut options = silent();
+        let mut options = options.names_alone();
         options.base.excluded.extend_from_slice(rows);
         diagnosed(data, [stated, muscle], &options, Across::Anything).ok()
     };
     let exchanged = |names: [&str; 2]| {
         let [stated, muscle] = [with_exchanged(stated, names)?, with_exchanged(muscle, names)?];
-        diagnosed(data, [&stated, &muscle], &silent(), Across::Anything).ok()
+        diagnosed(data, [&stated, &muscle], &options.names_alone(), Across::Anything).ok()
     };
     let moved = |late: Late| {
-        let mut options = silent();
+        let mut options = options.names_alone();
         options.base.excluded.extend(late.without_partner(data));
         diagnosed(&data.clone().moved(late.channel, late.rows), [stated, muscle], &options, Across::Anything)
             .ok()

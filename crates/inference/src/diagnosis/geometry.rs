@@ -102,7 +102,7 @@ pub struct OtherAnswer {
 
 impl OtherAnswer {
     fn of(other: &Diagnosis, answer: &Diagnosis) -> Self {
-        let differs = other.verdict != answer.verdict || names(other) != names(answer);
+        let differs = other.verdict != answer.verdict || !is_same_set(names(other), names(answer));
         Self { verdict: other.verdict, missing: names(other), differs }
     }
 
@@ -118,6 +118,22 @@ impl OtherAnswer {
 
 fn names(diagnosis: &Diagnosis) -> Vec<String> {
     diagnosis.missing.iter().map(|missing| missing.effect.clone()).collect()
+}
+
+/// Whether these are the same names. Their order, which tells what explains more, makes no other answer.
+fn is_same_set(mut one: Vec<String>, mut other: Vec<String>) -> bool {
+    one.sort_unstable();
+    other.sort_unstable();
+    one == other
+}
+
+/// How much of an answer is needed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Asked {
+    /// All of it.
+    Whole,
+    /// The verdict and the names.
+    Names,
 }
 
 /// A muscle with the uncertainty of the numbers that its file doesn't state.
@@ -145,7 +161,7 @@ impl Doubt {
     pub(crate) fn settled<E>(
         &self,
         mut doubtful: Diagnosis,
-        answer_on: impl FnOnce(&Muscle) -> Result<Diagnosis, E>,
+        answer_on: impl FnOnce(&Muscle, Asked) -> Result<Diagnosis, E>,
     ) -> Result<Diagnosis, E> {
         for number in &mut doubtful.geometry.doubtful {
             number.by_default = self.added.iter().any(|parameter| parameter.name() == number.number);
@@ -158,7 +174,8 @@ impl Doubt {
         if self.added.is_empty() || !(is_beyond || doubtful.geometry.departure > RULE.departed) {
             return Ok(doubtful);
         }
-        let mut exact = answer_on(&self.exact)?;
+        let may_be_taken = is_beyond || doubtful.verdict == Verdict::Unknown;
+        let mut exact = answer_on(&self.exact, if may_be_taken { Asked::Whole } else { Asked::Names })?;
         // Take the exact geometry if its diagnosis got as far as an answer, whatever a tolerance says about
         // it; and if an event explains there what nothing explains in a muscle that may have any of these numbers.
         let is_event = doubtful.verdict == Verdict::Unknown && exact.remaining.event.is_some();
@@ -425,4 +442,18 @@ fn as_stated(analysis: &Analysis<'_>) -> Option<f64> {
     let errors = analysis.with_state(&forces).map(|row| (analysis.record.force()[row] - force[row]).powi(2));
     let (rows, square) = errors.fold((0_usize, 0.0), |(n, sum), error| (n + 1, sum + error));
     (rows > 0).then(|| (square / rows as f64).sqrt())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_same_names_in_another_order_are_the_same_answer() {
+        let names = |of: &[&str]| of.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>();
+        let rubber_first = names(&["bladder-elasticity", "presliding-hysteresis"]);
+        assert!(is_same_set(rubber_first.clone(), names(&["presliding-hysteresis", "bladder-elasticity"])));
+        assert!(!is_same_set(rubber_first.clone(), names(&["bladder-elasticity", "maxwell-slip"])));
+        assert!(!is_same_set(rubber_first, names(&["bladder-elasticity"])));
+    }
 }

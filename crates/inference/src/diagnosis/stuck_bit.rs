@@ -2,6 +2,7 @@
 //! leave every second band of that width empty, whatever the muscle does, and the misfit has two values.
 
 use bulge_measurements::{Channel, Data};
+use rayon::prelude::*;
 use std::ops::Range;
 
 use crate::comparison::rows::lines;
@@ -48,9 +49,16 @@ pub(crate) fn stuck_bit(
     groups: &[Vec<usize>],
 ) -> Option<WrongChannel> {
     let record = found.context.record;
-    let tried = Channel::ALL.into_iter().flat_map(|channel| {
-        let values = readings(record, channel);
-        let signed = bands(&values).into_iter().flat_map(|bands| [(bands, 0.5), (bands, -0.5)]);
+    let searched: Vec<(Channel, Vec<f64>, Vec<Bands>)> = Channel::ALL
+        .into_par_iter()
+        .map(|channel| {
+            let values = readings(record, channel);
+            let bands = bands(&values);
+            (channel, values, bands)
+        })
+        .collect();
+    let tried = searched.into_iter().flat_map(|(channel, values, bands)| {
+        let signed = bands.into_iter().flat_map(|bands| [(bands, 0.5), (bands, -0.5)]);
         let tried = signed.filter_map(|(bands, side)| {
             let step = side * bands.period;
             let others: Vec<f64> = values.iter().map(|reading| reading + step).collect();
@@ -135,12 +143,15 @@ fn bands(values: &[f64]) -> Vec<Bands> {
         }
         best
     };
-    starts.into_iter().flat_map(of).collect()
+    starts.into_par_iter().flat_map_iter(of).collect()
 }
 
-/// The part beyond the next lower whole number, much faster than a remainder.
+/// The part beyond the next lower whole number, of a number below 2^52: much faster than a remainder, and than a floor, which is
+/// a call where processors need not have it.
 fn fraction(number: f64) -> f64 {
-    number - number.floor()
+    #[expect(clippy::cast_possible_truncation, reason = "places in at most some hundred periods")]
+    let whole = number as i64 as f64;
+    number - if whole > number { whole - 1.0 } else { whole }
 }
 
 impl Bands {
@@ -222,6 +233,15 @@ impl Bands {
 mod tests {
     use super::*;
     use bulge_numerics::Random;
+
+    #[test]
+    fn a_fraction_is_that_above_the_next_lower_whole_number() {
+        for (number, part) in [(2.25, 0.25), (-0.25, 0.75), (-3.0, 0.0), (7.0, 0.0), (0.0, 0.0)] {
+            assert!((fraction(number) - part).abs() < 1e-15, "{number}: {}", fraction(number));
+        }
+        // A hair below 0 is 1 less that hair, which rounds to 1, as it does with a floor.
+        assert_eq!(fraction(-1e-30).to_bits(), (-1e-30_f64 - (-1e-30_f64).floor()).to_bits());
+    }
 
     /// Four strokes over a range of 100 with a little noise.
     fn strokes() -> Vec<f64> {

@@ -7,7 +7,9 @@
 //! don't get there, a fit without the linearisation follows.
 
 use bulge_model::ModelError;
-use bulge_numerics::least_squares::{Bounds, LeastSquaresError, Minimum, Options, Residuals, minimise};
+use bulge_numerics::least_squares::{
+    Bounds, LeastSquaresError, Linearisation, Minimum, Options, minimise, minimise_from,
+};
 
 use crate::fit::problem::FitProblem;
 
@@ -27,44 +29,73 @@ pub(crate) fn minimise_frozen(
     bounds: &Bounds,
     options: &Options,
 ) -> Result<Minimum, LeastSquaresError<ModelError>> {
+    in_rounds(problem, start, None, bounds, options)
+}
+
+/// As [`minimise_frozen`], from a start that [`solved`] has linearised.
+pub(crate) fn minimise_solved(
+    problem: &FitProblem<'_>,
+    start: &[f64],
+    linear: Linearisation,
+    bounds: &Bounds,
+    options: &Options,
+) -> Result<Minimum, LeastSquaresError<ModelError>> {
+    in_rounds(problem, start, Some(linear), bounds, options)
+}
+
+/// Solves the equilibria at a point, holds them, and linearises the problem there; none if it has no value.
+pub(crate) fn solved(problem: &FitProblem<'_>, at: &[f64]) -> Option<Linearisation> {
+    problem.hold();
+    Linearisation::at(problem, at).ok()
+}
+
+fn in_rounds(
+    problem: &FitProblem<'_>,
+    start: &[f64],
+    first: Option<Linearisation>,
+    bounds: &Bounds,
+    options: &Options,
+) -> Result<Minimum, LeastSquaresError<ModelError>> {
     let mut at = start.to_vec();
     // The last accepted point at which the equilibria were solved, and the sum of squares there.
-    let mut solved: Option<(Vec<f64>, f64)> = None;
-    let solve = |at: &[f64]| {
-        problem.hold();
-        cost(problem, at).ok()
-    };
-    let mut here = None;
+    let mut accepted: Option<(Vec<f64>, f64)> = None;
+    let mut here = first.map(Some);
     for _ in 0..ROUNDS {
-        let solved_here = here.take().unwrap_or_else(|| solve(&at));
-        let began = solved.as_ref().map_or(f64::INFINITY, |(_, cost)| *cost);
-        let Some(cost_here) = solved_here.filter(|here| *here <= began + near(began)) else {
+        let began = accepted.as_ref().map_or(f64::INFINITY, |(_, cost)| *cost);
+        let linear = here.take().unwrap_or_else(|| solved(problem, &at));
+        let Some(linear) = linear.filter(|linear| linear.cost() <= began + near(began)) else {
             // The linearised step led to a point without equilibrium or with a larger cost: halve it.
-            let Some((before, _)) = &solved else { break };
+            let Some((before, _)) = &accepted else { break };
             at = before.iter().zip(&at).map(|(before, at)| 0.5 * (before + at)).collect();
             continue;
         };
+        let cost_here = linear.cost();
         if !problem.is_held() {
-            break;
+            // Nothing is interpolated, and what was evaluated here is the model itself. The answers of its rows serve
+            // as long as neither the muscle nor its inputs change.
+            let minimum = minimise_from(problem, linear, bounds, options);
+            problem.release();
+            return minimum;
         }
-        let minimum = minimise(problem, &at, bounds, options)?;
+        let minimum = minimise_from(problem, linear, bounds, options)?;
         let is_end = minimum.cost >= cost_here - near(cost_here);
         if is_end && is_still(&at, &minimum) {
             problem.release();
             return Ok(minimum);
         }
-        let there = solve(&minimum.theta);
+        let there = solved(problem, &minimum.theta);
         // Solving the equilibria there confirms the linearised cost.
-        if is_end && there.is_some_and(|cost| (cost - minimum.cost).abs() <= near(cost)) {
+        let is_confirmed = |there: &Linearisation| (there.cost() - minimum.cost).abs() <= near(there.cost());
+        if is_end && there.as_ref().is_some_and(is_confirmed) {
             problem.release();
             return Ok(minimum);
         }
         here = Some(there);
         let from = std::mem::replace(&mut at, minimum.theta);
-        solved = Some((from, cost_here));
+        accepted = Some((from, cost_here));
     }
     problem.release();
-    let from = solved.map_or_else(|| start.to_vec(), |(from, _)| from);
+    let from = accepted.map_or_else(|| start.to_vec(), |(from, _)| from);
     minimise(problem, &from, bounds, options)
 }
 
@@ -77,14 +108,6 @@ fn is_still(from: &[f64], minimum: &Minimum) -> bool {
 
 fn near(cost: f64) -> f64 {
     NEAR + NEAR_PART * cost
-}
-
-/// The sum of squares. The derivatives are evaluated too, because the held equilibria need them.
-pub(crate) fn cost(problem: &FitProblem<'_>, at: &[f64]) -> Result<f64, ModelError> {
-    let (rows, numbers) = (problem.rows(), problem.parameters());
-    let (mut residuals, mut jacobian) = (vec![0.0; rows], vec![0.0; rows * numbers]);
-    problem.evaluate(at, 0..rows, &mut residuals, Some(&mut jacobian))?;
-    Ok(residuals.iter().map(|r| r * r).sum())
 }
 
 #[cfg(test)]

@@ -13,17 +13,19 @@
 
 use bulge_model::ModelError;
 use bulge_numerics::Random;
-use bulge_numerics::least_squares::{Minimum, Options as Search, ProfileEnd, Residuals, profile};
+use bulge_numerics::least_squares::{
+    Linearisation, Minimum, Options as Search, ProfileEnd, Residuals, profile,
+};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::comparison::analysis::{Analysis, Climbed};
 use crate::fit::document::{Fit, Fitted};
-use crate::fit::frozen::cost;
 use crate::fit::interval::Scale;
 use crate::fit::problem::FitProblem;
 use crate::fit::search::{Task, settle, some_of_long, weights};
+use crate::fit::states::of_start;
 use crate::fit::weights::Noise;
 
 /// Chains of the walk, each from its own place.
@@ -230,7 +232,7 @@ fn walk(
     let bounds = problem.bounds();
     // With derivatives, from which the equilibria are held.
     problem.hold();
-    cost(problem, &minimum.theta)?;
+    Linearisation::at(problem, &minimum.theta).map_err(of_start)?;
     let mut residuals = vec![0.0; problem.rows()];
     let mut half = |at: &[f64]| -> Result<f64, ModelError> {
         problem.evaluate(at, 0..problem.rows(), &mut residuals, None)?;

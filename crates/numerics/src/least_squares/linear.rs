@@ -24,6 +24,32 @@ pub(super) struct Linear {
     singular: Vec<(f64, Vec<f64>)>,
 }
 
+/// A problem at a point: its residuals and their derivatives, as a triangle.
+#[derive(Debug, Clone)]
+pub struct Linearisation {
+    pub(super) theta: Vec<f64>,
+    pub(super) residuals: Vec<f64>,
+    pub(super) linear: Linear,
+}
+
+impl Linearisation {
+    /// Evaluates a problem.
+    ///
+    /// # Errors
+    /// If residuals or derivatives have no finite value there.
+    pub fn at<P: Residuals>(problem: &P, theta: &[f64]) -> Result<Self, LeastSquaresError<P::Error>> {
+        let mut residuals = vec![0.0; problem.rows()];
+        let linear = linearise(problem, theta, &mut residuals)?;
+        Ok(Self { theta: theta.to_vec(), residuals, linear })
+    }
+
+    /// The sum of squares.
+    #[must_use]
+    pub fn cost(&self) -> f64 {
+        self.linear.cost
+    }
+}
+
 /// Weight of the rows that pin flat directions: far above rounding errors, but small enough not to disturb a
 /// step along a bound, which may need a component in a flat direction.
 const PIN: f64 = 1e-5;

@@ -23,9 +23,10 @@ mod triangle;
 mod tests;
 
 pub use error::{LeastSquaresError, NotABox};
+pub use linear::Linearisation;
 pub use minimum::{Certificate, Minimum, Reason};
 pub use options::Options;
 pub use profile::{Profile, ProfileEnd, profile};
 pub use residuals::{Bounds, Residuals, Side};
-pub use search::minimise;
+pub use search::{minimise, minimise_from};
 pub use starts::starts_in_box;

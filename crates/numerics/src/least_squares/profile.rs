@@ -5,8 +5,8 @@
 //! r)_j / zeta`, as the others are at their minimum.
 
 use super::minimum::Minimum;
-use super::residuals::{Bounds, Residuals, Side};
-use super::search::{check_start, minimise};
+use super::residuals::{Bounds, Residuals, Side, check_start};
+use super::search::minimise;
 use super::{LeastSquaresError, Options};
 use crate::root::{RootError, newton_bracketed};
 

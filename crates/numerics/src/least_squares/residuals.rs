@@ -1,6 +1,7 @@
 //! A nonlinear least-squares problem: residuals with derivatives, evaluated in blocks of rows, and bounds of
 //! the parameters.
 
+use super::LeastSquaresError;
 use std::ops::Range;
 
 /// Residuals `r_i(theta)` with their derivatives, `i` in `0..rows`.
@@ -95,4 +96,33 @@ impl Bounds {
     pub fn is_fixed(&self, index: usize) -> bool {
         self.lower[index] >= self.upper[index]
     }
+}
+
+/// Refuses lists of the wrong length, crossed bounds, and starts outside them.
+pub(super) fn check_start<E>(k: usize, start: &[f64], bounds: &Bounds) -> Result<(), LeastSquaresError<E>> {
+    let lists = [
+        ("the start", start),
+        ("the list of lower bounds", &bounds.lower),
+        ("the list of upper bounds", &bounds.upper),
+    ];
+    let wrong = |what: String| Err(LeastSquaresError::Request(what));
+    for (what, list) in lists {
+        if list.len() != k {
+            return wrong(format!("{what} has {} entries; the problem has {k} parameters", list.len()));
+        }
+    }
+    for (parameter, value) in start.iter().copied().enumerate() {
+        let (lower, upper) = (bounds.lower[parameter], bounds.upper[parameter]);
+        if lower.is_nan() || upper.is_nan() || lower > upper {
+            return wrong(format!(
+                "the bounds of parameter {parameter} are [{lower}, {upper}]; the first must be at most the second, and neither NaN"
+            ));
+        }
+        if !value.is_finite() || value < lower || value > upper {
+            return wrong(format!(
+                "the start of parameter {parameter} is {value}, outside its bounds [{lower}, {upper}]"
+            ));
+        }
+    }
+    Ok(())
 }

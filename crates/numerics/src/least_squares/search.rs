@@ -5,9 +5,9 @@
 //! minimum, where the sum of squares is blunted by rounding, steps are judged by the gradient.
 
 use super::curvature::{self, Probe};
-use super::linear::{Linear, decrease, linearise, values};
+use super::linear::{Linear, Linearisation, decrease, linearise, values};
 use super::minimum::{End, Minimum, RANK_TOLERANCE, Reason, gradient_cosine, held_at};
-use super::residuals::{Bounds, Residuals, Side};
+use super::residuals::{Bounds, Residuals, Side, check_start};
 use super::second::Second;
 use super::step::{Step, StepBox, damped, of_length};
 use super::triangle::Triangle;
@@ -79,38 +79,22 @@ pub fn minimise<P: Residuals>(
 ) -> Result<Minimum, LeastSquaresError<P::Error>> {
     options.check()?;
     check_start(problem.parameters(), start, bounds)?;
-    let mut residuals = vec![0.0; problem.rows()];
-    let linear = linearise(problem, start, &mut residuals)?;
-    Ok(Search::new(problem, bounds, options, start.to_vec(), residuals, linear).run())
+    Ok(Search::new(problem, bounds, options, Linearisation::at(problem, start)?).run())
 }
 
-/// Refuses lists of the wrong length, crossed bounds, and starts outside them.
-pub(super) fn check_start<E>(k: usize, start: &[f64], bounds: &Bounds) -> Result<(), LeastSquaresError<E>> {
-    let lists = [
-        ("the start", start),
-        ("the list of lower bounds", &bounds.lower),
-        ("the list of upper bounds", &bounds.upper),
-    ];
-    let wrong = |what: String| Err(LeastSquaresError::Request(what));
-    for (what, list) in lists {
-        if list.len() != k {
-            return wrong(format!("{what} has {} entries; the problem has {k} parameters", list.len()));
-        }
-    }
-    for (parameter, value) in start.iter().copied().enumerate() {
-        let (lower, upper) = (bounds.lower[parameter], bounds.upper[parameter]);
-        if lower.is_nan() || upper.is_nan() || lower > upper {
-            return wrong(format!(
-                "the bounds of parameter {parameter} are [{lower}, {upper}]; the first must be at most the second, and neither NaN"
-            ));
-        }
-        if !value.is_finite() || value < lower || value > upper {
-            return wrong(format!(
-                "the start of parameter {parameter} is {value}, outside its bounds [{lower}, {upper}]"
-            ));
-        }
-    }
-    Ok(())
+/// As [`minimise`], from a start at which the problem was linearised before.
+///
+/// # Errors
+/// As [`minimise`].
+pub fn minimise_from<P: Residuals>(
+    problem: &P,
+    start: Linearisation,
+    bounds: &Bounds,
+    options: &Options,
+) -> Result<Minimum, LeastSquaresError<P::Error>> {
+    options.check()?;
+    check_start(problem.parameters(), &start.theta, bounds)?;
+    Ok(Search::new(problem, bounds, options, start).run())
 }
 
 /// The search at its current point.
@@ -165,9 +149,7 @@ impl<'a, P: Residuals> Search<'a, P> {
         problem: &'a P,
         bounds: &'a Bounds,
         options: &'a Options,
-        theta: Vec<f64>,
-        residuals: Vec<f64>,
-        linear: Linear,
+        Linearisation { theta, residuals, linear }: Linearisation,
     ) -> Self {
         let (scale, second) = (linear.norms.clone(), Second::none(linear.norms.len()));
         let size = norm(&product(&scale, &theta));

@@ -145,6 +145,19 @@ fn derivatives_with_every_trial_give_the_same_path_with_fewer_evaluations() {
 }
 
 #[test]
+fn a_search_goes_on_from_a_point_that_was_linearised() {
+    let (problem, bounds, options) = (rosenbrock(), Bounds::none(2), Options::default());
+    let known = Linearisation::at(&problem, &[-1.2, 1.0]).unwrap();
+    // 10 (1 - 1.44) = -4.4 and 1 + 1.2 = 2.2.
+    assert!((known.cost() - 24.2).abs() < 1e-12, "{}", known.cost());
+    let found = minimise_from(&problem, known.clone(), &bounds, &options).unwrap();
+    assert_eq!(found, minimise(&problem, &[-1.2, 1.0], &bounds, &options).unwrap());
+    let beyond = Bounds { lower: vec![-1.0; 2], upper: vec![2.0; 2] };
+    let error = minimise_from(&problem, known, &beyond, &options).unwrap_err().to_string();
+    assert!(error.contains("outside its bounds"), "{error}");
+}
+
+#[test]
 fn blocks_of_many_rows_are_split() {
     // Least squares of a line through 20 001 points in one block: sum t = 0, so the slope is sum t y/sum t^2.
     let rows = 20_001;
