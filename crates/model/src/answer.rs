@@ -16,10 +16,16 @@ pub(crate) struct Graded {
 }
 
 impl Graded {
-    /// Applies the chain rule. Pressure and contraction carry derivatives, and the shape parameter j is the
-    /// variable of lane `lanes[j]`.
+    /// The number at a contraction that is larger by `further`, to first order. Applies the chain rule: pressure and
+    /// contraction carry derivatives, and the shape parameter j is the variable of lane `lanes[j]`.
     #[inline]
-    pub(crate) fn carry(&self, pressure: Jet, contraction: Jet, lanes: &[Option<usize>]) -> Jet {
+    pub(crate) fn carry(
+        &self,
+        pressure: Jet,
+        contraction: Jet,
+        further: f64,
+        lanes: &[Option<usize>],
+    ) -> Jet {
         let [p, e] = [pressure.gradient(), contraction.gradient()];
         let mut gradient: [f64; LANES] =
             std::array::from_fn(|i| self.by_pressure * p[i] + self.by_contraction * e[i]);
@@ -28,7 +34,7 @@ impl Graded {
                 gradient[*lane] += self.by_shape[j];
             }
         }
-        Jet::new(self.value, gradient)
+        Jet::new(self.value + self.by_contraction * further, gradient)
     }
 }
 

@@ -275,8 +275,8 @@ impl Model {
             columns: Vec::new(),
         };
         let mut memory = run.memory();
-        let (start, answered) = (&mut None, &mut None);
-        match run.row(moment, &pass, &mut memory, &mut Place { row: 0, start, answered }) {
+        let (start, answered, give) = (&mut None, &mut None, &mut 0.0);
+        match run.row(moment, &pass, &mut memory, &mut Place { row: 0, start, answered, give }) {
             Ok(row) => Ok(AtRest {
                 equilibrium_n: row.equilibrium.value(),
                 force_n: row.force.value(),

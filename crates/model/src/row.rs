@@ -16,6 +16,9 @@ use crate::warm::{Answered, known};
 
 /// The largest number of Newton steps for a contraction that depends on the force.
 const MOST_GIVE_STEPS: usize = 50;
+/// The part of a contraction that a step may have beyond which no other answer is asked for. It leaves out its square, and
+/// forces grow at most with the inverse of the contraction.
+const SHORT_STEP: f64 = 3e-8;
 /// Nodes and weights of the Gauss-Hermite rule of degree 5 for a standard normal number.
 pub(crate) const NORMAL: [(f64, f64); 3] =
     [(0.0, 2.0 / 3.0), (1.732_050_807_568_877_2, 1.0 / 6.0), (-1.732_050_807_568_877_2, 1.0 / 6.0)];
@@ -28,6 +31,8 @@ pub(crate) struct Place<'a> {
     pub(crate) start: &'a mut Option<Start>,
     /// Its last answer; passes and evaluations with the same question need no search.
     pub(crate) answered: &'a mut Answered,
+    /// By how much the row before it, and then this one, contracts further than its reading.
+    pub(crate) give: &'a mut f64,
 }
 
 /// The force of one row at three stages.
@@ -82,7 +87,7 @@ impl Run<'_> {
     /// The equilibrium that belongs to an input, and its contraction.
     ///
     /// ```text
-    /// e = contraction + give_force(F(e)) + give_tension(N(e))        Newton's method, then one step more that carries the derivatives
+    /// e = contraction + give_force(F(e)) + give_tension(N(e))
     /// ```
     fn balance(
         &self,
@@ -91,51 +96,84 @@ impl Run<'_> {
         pass: &Pass,
         place: &mut Place<'_>,
     ) -> Result<(Carried, Jet), RowError> {
-        let pressure = input.pressure * input.area / input.wall;
-        let gives = [input.give_force, input.give_tension];
-        let mut e = input.contraction;
-        if !gives.iter().all(Give::is_none) {
-            let mut at = input.contraction.value();
-            for _ in 0..MOST_GIVE_STEPS {
-                let found = self.averaged(moment, [pressure, Jet::from(at)], input, pass, place)?;
-                let loads = [found.force, found.tension];
-                let mut gap = Jet::from(at) - input.contraction;
-                let mut slope = 1.0;
-                for ((give, load), by_contraction) in gives.iter().zip(loads).zip(found.slope) {
-                    gap = gap - give.under(load);
-                    slope -= give.slope(load.value()) * by_contraction;
-                }
-                // This carries derivatives: those of the gap at fixed e, divided by the slope.
-                e = Jet::from(at) - gap / slope;
-                let step = e.value() - at;
-                if step.abs() <= 1e-14 + 1e-13 * at.abs() {
-                    break;
-                }
-                at = e.value();
-            }
+        if [input.give_force, input.give_tension].iter().all(Give::is_none) {
+            let e = input.contraction;
+            let pressure = input.pressure * input.area / input.wall;
+            return Ok((self.averaged(moment, [pressure, e], e.value(), input, pass, place)?, e));
         }
-        let found = self.averaged(moment, [pressure, e], input, pass, place)?;
-        Ok((found, e))
+        let stated = input.contraction.value();
+        // Outside a fit a row's last digits depend on nothing but the row.
+        let near = if self.within_fit { self.last_contraction(input, place) } else { stated };
+        let found = match self.given(moment, near, input, pass, place) {
+            Err(_) if near.total_cmp(&stated).is_ne() => self.given(moment, stated, input, pass, place),
+            found => found,
+        };
+        *place.give = found.as_ref().map_or(0.0, |(_, e)| e.value() - stated);
+        found
     }
 
-    /// The equilibrium averaged over fibres of unequal length.
+    /// A contraction under load near that of a row: the one at which it was asked last, or what the row before gave
+    /// beside its reading.
+    fn last_contraction(&self, input: &Input, place: &Place<'_>) -> f64 {
+        let pressure = (input.pressure * input.area / input.wall).value();
+        let kept = self.answers.as_ref().and_then(|answers| answers.rows.get(place.row));
+        let asked = [Some(&*place.answered), kept].into_iter().flatten().flatten();
+        let same = asked.map(|(at, _)| at).find(|at| at[0].to_bits() == pressure.to_bits());
+        same.map_or(input.contraction.value() + *place.give, |at| at[1])
+    }
+
+    /// The equilibrium under load and its contraction, by Newton's method from a contraction. The last step carries
+    /// the derivatives, and is too short to ask for another answer.
+    fn given(
+        &self,
+        moment: &Moment,
+        from: f64,
+        input: &Input,
+        pass: &Pass,
+        place: &mut Place<'_>,
+    ) -> Result<(Carried, Jet), RowError> {
+        let pressure = input.pressure * input.area / input.wall;
+        let gives = [input.give_force, input.give_tension];
+        let (mut at, mut e) = (from, Jet::from(from));
+        for _ in 0..MOST_GIVE_STEPS {
+            let found = self.averaged(moment, [pressure, Jet::from(at)], at, input, pass, place)?;
+            let loads = [found.force, found.tension];
+            let mut gap = Jet::from(at) - input.contraction;
+            let mut slope = 1.0;
+            for ((give, load), by_contraction) in gives.iter().zip(loads).zip(found.slope) {
+                gap = gap - give.under(load);
+                slope -= give.slope(load.value()) * by_contraction;
+            }
+            // This carries derivatives: those of the gap at fixed e, divided by the slope.
+            e = Jet::from(at) - gap / slope;
+            if (e.value() - at).abs() <= 1e-14 + SHORT_STEP * at.abs() {
+                break;
+            }
+            at = e.value();
+        }
+        Ok((self.averaged(moment, [pressure, e], at, input, pass, place)?, e))
+    }
+
+    /// The equilibrium averaged over fibres of unequal length, to first order from a contraction `at`.
     fn averaged(
         &self,
         moment: &Moment,
         [pressure, e]: [Jet; 2],
+        at: f64,
         input: &Input,
         pass: &Pass,
         place: &mut Place<'_>,
     ) -> Result<Carried, RowError> {
         let spread = input.spread;
         if spread.value() == 0.0 {
-            let mut found = self.base(moment, [pressure, e], pass, place)?;
+            let mut found = self.base(moment, [pressure, e], at, pass, place)?;
             found.stiffen(input.wall);
             return Ok(found);
         }
         let mut sum: Option<Carried> = None;
         for (z, weight) in NORMAL {
-            let part = self.base(moment, [pressure, e + spread * z], pass, place)?.scaled(weight);
+            let at = at + spread.value() * z;
+            let part = self.base(moment, [pressure, e + spread * z], at, pass, place)?.scaled(weight);
             sum = Some(sum.map_or(part, |sum| sum.plus(part)));
         }
         let mut found = sum.ok_or(RowError::NotFinite)?;
@@ -143,11 +181,12 @@ impl Run<'_> {
         Ok(found)
     }
 
-    /// The equilibrium, or the force law, at one pressure and contraction.
+    /// The equilibrium, to first order from a contraction `at`, or the force law.
     fn base(
         &self,
         moment: &Moment,
         [pressure, e]: [Jet; 2],
+        at: f64,
         pass: &Pass,
         place: &mut Place<'_>,
     ) -> Result<Carried, RowError> {
@@ -170,7 +209,7 @@ impl Run<'_> {
                 })
             }
             (Base::Equilibrium, Some(equilibrium)) => {
-                let at = [pressure.value(), e.value()];
+                let (at, further) = ([pressure.value(), at], e.value() - at);
                 let kept = self.answers.as_ref().and_then(|answers| answers.rows.get(place.row));
                 let kept = known(kept, at);
                 if kept.is_none() && known(Some(place.answered), at).is_none() {
@@ -181,10 +220,10 @@ impl Run<'_> {
                 };
                 let lanes = &pass.shape_lanes;
                 Ok(Carried {
-                    force: answer.force.carry(pressure, e, lanes),
-                    tension: answer.tension.carry(pressure, e, lanes),
-                    mid_radius: answer.mid_radius.carry(pressure, e, lanes),
-                    volume: answer.volume.carry(pressure, e, lanes),
+                    force: answer.force.carry(pressure, e, further, lanes),
+                    tension: answer.tension.carry(pressure, e, further, lanes),
+                    mid_radius: answer.mid_radius.carry(pressure, e, further, lanes),
+                    volume: answer.volume.carry(pressure, e, further, lanes),
                     slope: [
                         answer.force.by_contraction,
                         answer.tension.by_contraction,

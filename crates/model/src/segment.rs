@@ -45,7 +45,7 @@ pub(crate) fn segment(
     let rows = rows.start..last + 1;
     for (number, pass) in task.passes.iter().enumerate() {
         let mut memory = runs[0].memory();
-        let mut before: Option<(usize, usize)> = None;
+        let (mut before, mut give): (Option<(usize, usize)>, f64) = (None, 0.0);
         for (i, row) in rows.clone().enumerate() {
             let (moment, counts) = (&task.record.moments()[row], (task.counts)(row));
             let run = &runs[runs[0].model.body_of(moment.specimen)];
@@ -70,7 +70,8 @@ pub(crate) fn segment(
                 answered[0] = None;
             }
             let own = if task.answers { i } else { 0 };
-            let mut place = Place { row, start: &mut slots[slot], answered: &mut answered[own] };
+            let mut place =
+                Place { row, start: &mut slots[slot], answered: &mut answered[own], give: &mut give };
             match run.row(moment, pass, &mut memory, &mut place) {
                 Ok(row) if counts => part.fill(i, number, pass, task.columns, row.reading),
                 Err(error) if counts => {

@@ -5,6 +5,7 @@ use bulge_effects::Catalogue;
 use bulge_measurements::PureError;
 use bulge_model::{ModelError, Record};
 use bulge_muscles::Muscle;
+use bulge_muscles::units::significant;
 
 use crate::comparison::levels::Levels;
 use crate::diagnosis::pure_error::BetweenCycles;
@@ -15,7 +16,7 @@ use crate::diagnosis::space::Space;
 use crate::diagnosis::tangents::Tangents;
 use crate::fit::nuisance::Prepared;
 use crate::median::median;
-use crate::noise::inputs::{Scatter, input_noise};
+use crate::noise::inputs::{Scatter, input_noise, part_of_stated};
 use crate::noise::law::{NoiseLaw, NoiseSource};
 use bulge_numerics::vector::{add, dot, norm};
 
@@ -67,7 +68,7 @@ impl Source<'_> {
         prepared: &Prepared,
         theta: &[f64],
     ) -> Result<Option<(NoiseLaw, Vec<f64>)>, ModelError> {
-        let stated_inputs = self.input_variances.to_vec();
+        let mut stated_inputs = self.input_variances.to_vec();
         if let Some(pure) =
             self.pure_error.filter(|p| !self.record.is_path() && p.degrees_of_freedom >= ENOUGH_REPEATS)
         {
@@ -90,6 +91,14 @@ impl Source<'_> {
             .then(|| {
                 let sweeps = if self.record.is_path() { self.record.sweeps() } else { &[] };
                 let is_stated = stated_inputs.iter().any(|variance| *variance > 0.0);
+                let part = if is_stated {
+                    part_of_stated(residual, sweeps, &design, &stated_inputs, self.counts, self.within)
+                } else {
+                    1.0
+                };
+                for variance in &mut stated_inputs {
+                    *variance *= part;
+                }
                 let shown = if is_stated {
                     None
                 } else {
@@ -101,7 +110,13 @@ impl Source<'_> {
                 }
                 let rows: Vec<f64> =
                     (0..n).flat_map(|i| design.iter().map(move |column| column[i])).collect();
-                let law = NoiseLaw::estimate(self.record, &vec![true; n], &inputs, &rows, residual).ok()?;
+                let mut law =
+                    NoiseLaw::estimate(self.record, &vec![true; n], &inputs, &rows, residual).ok()?;
+                if part < 1.0 {
+                    let says =
+                        "; the rows contradict the noise that the data sheets state of pressure and length:";
+                    law.says += &format!("{says} {} of its variance is taken", significant(part, 2));
+                }
                 let cycles = BetweenCycles::of(self.record, residual);
                 // Use the median, because rows of uncertain direction have a large variance of their own.
                 let law = match cycles {

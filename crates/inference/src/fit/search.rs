@@ -19,7 +19,8 @@ use crate::median::robust_sd;
 const FEW_ROWS: usize = 400;
 /// Refinement of the lattice during the trials; their minima are followed on the usual lattice.
 const COARSE: f64 = 0.5;
-/// Most starts: the given one, one nearly without effects, 2 n - 1 scattered ones for n unknown parameters.
+/// Most starts: the given one, one nearly without effects, 2 n - 1 scattered ones for n unknown parameters; and two where
+/// nothing is known if a smaller fit found some.
 const STARTS: usize = 8;
 /// Fraction of the plausible box at either end in which no start lies.
 const EDGE: f64 = 0.1;
@@ -242,6 +243,11 @@ fn search(prepared: &Prepared, start: &[f64], task: &Task<'_>) -> Result<Searche
         (start, &is_known),
         (2 * unknown).saturating_sub(1).min(STARTS - 2),
     ));
+    if task.known.contains(&true) {
+        // What a smaller fit found may have stood in for what it lacked.
+        starts.push(clamped(problem.coordinates(&prepared.start()), &bounds.lower, &bounds.upper));
+        starts.extend(scattered(prepared, &problem, (start, &|_| false), 1));
+    }
     let tried = starts.len();
     let from = |at: &Vec<f64>| minimise_frozen(&problem_of(), at, &bounds, &options);
     let followed: Vec<_> = starts.par_iter().map(from).collect();

@@ -18,6 +18,12 @@ const RATIOS: (f64, f64, u32) = (0.02, 200.0, 60);
 /// Likelihood ratio from which the scatter depends on the slope: p = 0.001 (chi-squared, one degree of
 /// freedom).
 const CLEAR: f64 = 10.83;
+/// Parts of a stated noise on the grid: least and number, evenly spaced on a logarithmic scale up to 1; and none of it.
+const PARTS: (f64, u32) = (0.003, 20);
+/// Range of the other noise in which its best variance is sought, over the mean square; and steps of that search, which end
+/// within a thousandth.
+const OTHER: [f64; 2] = [1e-4, 10.0];
+const SECTIONS: usize = 20;
 /// Fewest rows for an estimate.
 const FEWEST: usize = 60;
 /// Neighbouring differences share a row, which inflates the variance of sums of their squares by this factor.
@@ -79,6 +85,75 @@ pub(crate) fn input_noise(
         Some((clear, shape.iter().map(|s| variance * s).collect::<Vec<f64>>()))
     });
     clearest(fits)
+}
+
+/// The part of the stated variances of the inputs that the scatter of the rows agrees with: 1 unless it contradicts them (p =
+/// 0.001). Data sheets state what isn't exceeded. Where that is much more than there is, rows on steep stretches seem to
+/// scatter too little, the others too much, and what isn't there would be found in them.
+///
+/// ```text
+/// s_i^2 = w + part v_i,    v_i as stated;   w and part <= 1 by maximum likelihood
+/// ```
+/// Arguments are those of [`input_noise`]; `stated` are variances of the rows \[N^2\]. More than is stated isn't
+/// tried: what is missing in the model scatters as well.
+pub(crate) fn part_of_stated(
+    residual: &[f64],
+    sweeps: &[Range<usize>],
+    design: &[Vec<f64>],
+    stated: &[f64],
+    counts: &[f64],
+    within: &[Option<Scatter>],
+) -> f64 {
+    if residual.len() < FEWEST {
+        return 1.0;
+    }
+    // A mean square, its degrees of freedom, and the stated variance in it.
+    let shown: Vec<[f64; 3]> = if 2 * within.iter().flatten().count() > residual.len() {
+        let known = within.iter().enumerate().filter_map(|(row, one)| Some((row, (*one)?)));
+        known.map(|(row, one)| [one.sum / one.freedom, one.freedom, stated[row] * counts[row]]).collect()
+    } else {
+        let left = left(residual, design);
+        let square = |row: usize| [left[row] * left[row], 1.0, stated[row]];
+        let pair = |row: usize| {
+            [0.5 * (left[row] - left[row + 1]).powi(2), 1.0, 0.5 * (stated[row] + stated[row + 1])]
+        };
+        if sweeps.is_empty() {
+            (0..left.len()).map(square).collect()
+        } else {
+            sweeps.iter().flat_map(|sweep| (sweep.start..sweep.end.saturating_sub(1)).map(pair)).collect()
+        }
+    };
+    let shared = if sweeps.is_empty() { 1.0 } else { SHARED };
+    let (least, count) = PARTS;
+    let parts = (0..count).map(|i| least.powf(1.0 - f64::from(i) / f64::from(count - 1)));
+    let found = std::iter::once(0.0).chain(parts).map(|part| (part, with_part(&shown, part)));
+    let Some((part, (deviance, other))) = found.min_by(|a, b| a.1.0.total_cmp(&b.1.0)) else { return 1.0 };
+    let spread = shown
+        .iter()
+        .map(|[square, freedom, own]| 0.5 * freedom * (square / (other + part * own) - 1.0).powi(2));
+    let tails = (spread.sum::<f64>() / shown.len() as f64).max(1.0);
+    if (with_part(&shown, 1.0).0 - deviance) / tails / shared > CLEAR { part } else { 1.0 }
+}
+
+/// The least deviance with a part of the stated variances, and the other variance there, by golden sections of its
+/// logarithm.
+fn with_part(shown: &[[f64; 3]], part: f64) -> (f64, f64) {
+    let mean = shown.iter().map(|[square, ..]| square).sum::<f64>() / shown.len() as f64;
+    let at = |log: f64| {
+        let other = log.exp();
+        let of = |[square, freedom, own]: &[f64; 3]| {
+            let variance = (other + part * own).max(f64::MIN_POSITIVE);
+            freedom * (variance.ln() + square / variance)
+        };
+        (shown.iter().map(of).sum::<f64>(), other)
+    };
+    let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
+    let [mut low, mut high] = OTHER.map(|part| (part * mean).max(f64::MIN_POSITIVE).ln());
+    for _ in 0..SECTIONS {
+        let step = golden * (high - low);
+        if at(high - step).0 < at(low + step).0 { high = low + step } else { low = high - step }
+    }
+    at(0.5 * (low + high))
 }
 
 /// The same estimate from the scatter of the readings that each row is the mean of.
@@ -219,6 +294,34 @@ mod tests {
         assert!(found(n / 2).is_none());
         let most = found(n / 2 + 1).unwrap();
         assert!((0.7..0.9).contains(&(2.0 * (most[n / 3]).sqrt() / slope[n / 3])), "{}", most[n / 3]);
+    }
+
+    /// Data sheets that state four times the noise of an input are contradicted, by residuals and by readings of means; those
+    /// that are right, or state too little, are taken as they are.
+    #[test]
+    fn noise_that_is_stated_too_large_is_taken_in_part() {
+        let n = 2400;
+        let (slope, ones) = (steep(n), vec![1.0; n]);
+        for (real, stated, part) in [(0.4, 1.6, 0.0625), (0.0, 0.8, 0.0), (0.4, 0.4, 1.0), (0.4, 0.1, 1.0)] {
+            let variances: Vec<f64> = slope.iter().map(|s| (stated * s).powi(2)).collect();
+            for sweeps in [vec![], vec![0..n / 2, n / 2..n]] {
+                let rows = scatter(n, real, false);
+                let found = part_of_stated(&rows, &sweeps, &columns(n), &variances, &ones, &[]);
+                assert!((found - part).abs() < 0.3 * part + 0.01, "{real} {stated}: {found}");
+            }
+            let mut random = Random::new(5, 0);
+            let of_row = |s: &f64| {
+                let own: Vec<f64> =
+                    (0..8).map(|_| (1.0 + (real * s).powi(2)).sqrt() * random.normal()).collect();
+                let mean = own.iter().sum::<f64>() / 8.0;
+                Some(Scatter { sum: own.iter().map(|x| (x - mean).powi(2)).sum(), freedom: 7.0 })
+            };
+            let within: Vec<Option<Scatter>> = slope.iter().map(of_row).collect();
+            let of_means: Vec<f64> = variances.iter().map(|v| v / 8.0).collect();
+            let found = part_of_stated(&vec![0.0; n], &[], &[], &of_means, &vec![8.0; n], &within);
+            assert!((found - part).abs() < 0.3 * part + 0.01, "{real} {stated}, readings: {found}");
+        }
+        assert!(part_of_stated(&[1.0; 20], &[], &[], &[9.0; 20], &[1.0; 20], &[]) >= 1.0);
     }
 
     #[test]
