@@ -113,9 +113,11 @@ impl Source<'_> {
                 let mut law =
                     NoiseLaw::estimate(self.record, &vec![true; n], &inputs, &rows, residual).ok()?;
                 if part < 1.0 {
-                    let says =
-                        "; the rows contradict the noise that the data sheets state of pressure and length:";
-                    law.says += &format!("{says} {} of its variance is taken", significant(part, 2));
+                    law.says = format!(
+                        "{}; the rows contradict the noise that the data sheets state of pressure and length: {} of its variance is taken",
+                        law.says,
+                        significant(part, 2)
+                    );
                 }
                 let cycles = BetweenCycles::of(self.record, residual);
                 // Use the median, because rows of uncertain direction have a large variance of their own.
