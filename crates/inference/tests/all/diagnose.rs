@@ -114,8 +114,8 @@ fn where_nothing_is_hidden_nothing_is_named() {
 }
 
 /// Data sheets that state the largest noise, four times that of the pressure and forty times that of the length: the rows
-/// contradict them. Believed, they made the rows on steep stretches scatter too little and the others too much, and in every
-/// third such test of a pleated muscle something was named.
+/// contradict them. Believed, they made the rows on steep stretches scatter too little and the others too much, and three of
+/// 17 such tests of a pleated muscle named an effect.
 #[test]
 fn what_data_sheets_overstate_names_nothing() {
     let muscle = from_toml(
