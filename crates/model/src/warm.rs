@@ -140,6 +140,11 @@ impl Warm {
         (slots.holds, slots.held, slots.answers) = (true, Vec::new(), None);
     }
 
+    /// Later evaluations hold nothing more. What is held already still serves.
+    pub fn hold_no_more(&self) {
+        self.lock().holds = false;
+    }
+
     /// Solves the equilibria anew in each evaluation.
     pub fn release(&self) {
         let mut slots = self.lock();

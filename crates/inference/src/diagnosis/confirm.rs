@@ -175,19 +175,13 @@ impl Context<'_> {
                 FitProblem::whitened(&prepared.model, self.record, self.whitening, start.clone(), priors);
             let bounds = problem.bounds();
             let at = inside(problem.coordinates(start), &bounds);
-            Begun { start, problem, bounds, at, linear: None }
+            let linear = solved(&problem, &at);
+            Begun { start, problem, bounds, at, linear }
         };
-        if starts.len() <= FOLLOWED {
-            return starts.iter().map(begun).collect();
+        let mut found: Vec<Begun<'s>> = starts.par_iter().map(begun).collect();
+        if found.len() <= FOLLOWED {
+            return found;
         }
-        let mut found: Vec<Begun<'s>> = starts
-            .par_iter()
-            .map(|start| {
-                let begun = begun(start);
-                let linear = solved(&begun.problem, &begun.at);
-                Begun { linear, ..begun }
-            })
-            .collect();
         found.sort_by(|a, b| a.distance().total_cmp(&b.distance()));
         found.truncate(FOLLOWED);
         found
@@ -207,17 +201,12 @@ impl Context<'_> {
             .into_par_iter()
             .map(|Begun { start, problem, bounds, at, linear }| {
                 self.progress.beat();
-                let from = |at: &[f64]| minimise_frozen(&problem, at, &bounds, &options).map_err(of_start);
-                let found = match linear {
-                    Some(linear) => {
-                        minimise_solved(&problem, &at, linear, &bounds, &options).map_err(of_start)
-                    }
-                    None => from(&at),
-                };
-                let found = match found {
+                let found = match minimise_solved(&problem, &at, linear, &bounds, &options).map_err(of_start)
+                {
                     Err(error) if is_of_rows(&error) => {
                         let nearer = self.nearer(&prepared, start, &priors, &options).ok_or(error)?;
-                        from(&self::inside(problem.coordinates(&nearer), &bounds))
+                        let nearer = inside(problem.coordinates(&nearer), &bounds);
+                        minimise_frozen(&problem, &nearer, &bounds, &options).map_err(of_start)
                     }
                     found => found,
                 };
@@ -258,7 +247,7 @@ struct Begun<'s> {
     bounds: Bounds,
     /// The start in the coordinates of the search, within the bounds.
     at: Vec<f64>,
-    /// The problem there, if its distance was asked for.
+    /// The problem there, with its equilibria held; none if some row has no state.
     linear: Option<Linearisation>,
 }
 

@@ -29,18 +29,7 @@ pub(crate) fn minimise_frozen(
     bounds: &Bounds,
     options: &Options,
 ) -> Result<Minimum, LeastSquaresError<ModelError>> {
-    in_rounds(problem, start, None, bounds, options)
-}
-
-/// As [`minimise_frozen`], from a start that [`solved`] has linearised.
-pub(crate) fn minimise_solved(
-    problem: &FitProblem<'_>,
-    start: &[f64],
-    linear: Linearisation,
-    bounds: &Bounds,
-    options: &Options,
-) -> Result<Minimum, LeastSquaresError<ModelError>> {
-    in_rounds(problem, start, Some(linear), bounds, options)
+    minimise_solved(problem, start, solved(problem, start), bounds, options)
 }
 
 /// Solves the equilibria at a point, holds them, and linearises the problem there; none if it has no value.
@@ -49,7 +38,8 @@ pub(crate) fn solved(problem: &FitProblem<'_>, at: &[f64]) -> Option<Linearisati
     Linearisation::at(problem, at).ok()
 }
 
-fn in_rounds(
+/// As [`minimise_frozen`], from a start with what [`solved`] found there.
+pub(crate) fn minimise_solved(
     problem: &FitProblem<'_>,
     start: &[f64],
     first: Option<Linearisation>,
@@ -59,7 +49,7 @@ fn in_rounds(
     let mut at = start.to_vec();
     // The last accepted point at which the equilibria were solved, and the sum of squares there.
     let mut accepted: Option<(Vec<f64>, f64)> = None;
-    let mut here = first.map(Some);
+    let mut here = Some(first);
     for _ in 0..ROUNDS {
         let began = accepted.as_ref().map_or(f64::INFINITY, |(_, cost)| *cost);
         let linear = here.take().unwrap_or_else(|| solved(problem, &at));
@@ -71,8 +61,9 @@ fn in_rounds(
         };
         let cost_here = linear.cost();
         if !problem.is_held() {
-            // Nothing is interpolated, and what was evaluated here is the model itself. The answers of its rows serve
-            // as long as neither the muscle nor its inputs change.
+            // Nothing is interpolated, and what was evaluated here is the model itself. It stays so: no lattice may be held
+            // on the way. The answers of the rows serve as long as neither the muscle nor its inputs change.
+            problem.hold_no_more();
             let minimum = minimise_from(problem, linear, bounds, options);
             problem.release();
             return minimum;

@@ -13,9 +13,7 @@
 
 use bulge_model::ModelError;
 use bulge_numerics::Random;
-use bulge_numerics::least_squares::{
-    Linearisation, Minimum, Options as Search, ProfileEnd, Residuals, profile,
-};
+use bulge_numerics::least_squares::{Minimum, Options as Search, ProfileEnd, Residuals, profile};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -25,7 +23,6 @@ use crate::fit::document::{Fit, Fitted};
 use crate::fit::interval::Scale;
 use crate::fit::problem::FitProblem;
 use crate::fit::search::{Task, settle, some_of_long, weights};
-use crate::fit::states::of_start;
 use crate::fit::weights::Noise;
 
 /// Chains of the walk, each from its own place.
@@ -232,8 +229,8 @@ fn walk(
     let bounds = problem.bounds();
     // With derivatives, from which the equilibria are held.
     problem.hold();
-    Linearisation::at(problem, &minimum.theta).map_err(of_start)?;
-    let mut residuals = vec![0.0; problem.rows()];
+    let (rows, mut residuals) = (problem.rows(), vec![0.0; problem.rows()]);
+    problem.evaluate(&minimum.theta, 0..rows, &mut residuals, Some(&mut vec![0.0; rows * count]))?;
     let mut half = |at: &[f64]| -> Result<f64, ModelError> {
         problem.evaluate(at, 0..problem.rows(), &mut residuals, None)?;
         Ok(-0.5 * residuals.iter().map(|r| r * r).sum::<f64>() / variance)

@@ -107,6 +107,11 @@ impl<'a> FitProblem<'a> {
         self.warm.hold();
     }
 
+    /// Holds no further equilibria, see [`Warm::hold_no_more`].
+    pub(crate) fn hold_no_more(&self) {
+        self.warm.hold_no_more();
+    }
+
     /// Solves the equilibria in each evaluation again.
     pub(crate) fn release(&self) {
         self.warm.release();

@@ -76,6 +76,21 @@ fn beside_it_the_error_falls_with_the_square() {
     assert!((order - 2.0).abs() < 0.1 && errors[0] < 2.0 && errors[0] > 0.01, "{errors:?}");
 }
 
+/// A search that began where nothing is interpolated ends with the model itself, also where a lattice would pay.
+#[test]
+fn nothing_is_held_any_more_once_that_is_said() {
+    let (base, record) = (base(), record());
+    for holds in [true, false] {
+        let warm = Warm::new();
+        warm.hold();
+        if !holds {
+            warm.hold_no_more();
+        }
+        base.evaluate_warm(&record, &base.start(), &wanted(), &warm).unwrap();
+        assert_eq!(warm.is_held(), holds);
+    }
+}
+
 #[test]
 fn a_shape_that_was_held_without_derivatives_is_solved_again() {
     let (model, record) = (base(), record());

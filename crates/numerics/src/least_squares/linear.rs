@@ -36,8 +36,13 @@ impl Linearisation {
     /// Evaluates a problem.
     ///
     /// # Errors
-    /// If residuals or derivatives have no finite value there.
+    /// If the number of parameters is wrong, the problem has no value there, or residuals or derivatives aren't finite.
     pub fn at<P: Residuals>(problem: &P, theta: &[f64]) -> Result<Self, LeastSquaresError<P::Error>> {
+        if theta.len() != problem.parameters() {
+            let what =
+                format!("a point has {} numbers; the problem has {}", theta.len(), problem.parameters());
+            return Err(LeastSquaresError::Request(what));
+        }
         let mut residuals = vec![0.0; problem.rows()];
         let linear = linearise(problem, theta, &mut residuals)?;
         Ok(Self { theta: theta.to_vec(), residuals, linear })

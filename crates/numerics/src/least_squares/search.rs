@@ -82,10 +82,10 @@ pub fn minimise<P: Residuals>(
     Ok(Search::new(problem, bounds, options, Linearisation::at(problem, start)?).run())
 }
 
-/// As [`minimise`], from a start at which the problem was linearised before.
+/// As [`minimise`], from a start at which this problem was linearised before.
 ///
 /// # Errors
-/// As [`minimise`].
+/// As [`minimise`], and if the linearisation has another number of rows.
 pub fn minimise_from<P: Residuals>(
     problem: &P,
     start: Linearisation,
@@ -94,6 +94,11 @@ pub fn minimise_from<P: Residuals>(
 ) -> Result<Minimum, LeastSquaresError<P::Error>> {
     options.check()?;
     check_start(problem.parameters(), &start.theta, bounds)?;
+    if start.residuals.len() != problem.rows() {
+        let what =
+            format!("the start has {} rows; the problem has {}", start.residuals.len(), problem.rows());
+        return Err(LeastSquaresError::Request(what));
+    }
     Ok(Search::new(problem, bounds, options, start).run())
 }
 

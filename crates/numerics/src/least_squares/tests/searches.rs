@@ -153,8 +153,13 @@ fn a_search_goes_on_from_a_point_that_was_linearised() {
     let found = minimise_from(&problem, known.clone(), &bounds, &options).unwrap();
     assert_eq!(found, minimise(&problem, &[-1.2, 1.0], &bounds, &options).unwrap());
     let beyond = Bounds { lower: vec![-1.0; 2], upper: vec![2.0; 2] };
-    let error = minimise_from(&problem, known, &beyond, &options).unwrap_err().to_string();
+    let error = minimise_from(&problem, known.clone(), &beyond, &options).unwrap_err().to_string();
     assert!(error.contains("outside its bounds"), "{error}");
+    let longer = model(3, 2, |theta, i| Some((theta[0] - i as f64, vec![1.0, 0.0])));
+    let error = minimise_from(&longer, known, &bounds, &options).unwrap_err().to_string();
+    assert!(error.contains("the start has 2 rows; the problem has 3"), "{error}");
+    let error = Linearisation::at(&problem, &[1.0]).unwrap_err().to_string();
+    assert!(error.contains("1 numbers; the problem has 2"), "{error}");
 }
 
 #[test]
