@@ -112,13 +112,12 @@ pub(crate) fn part_of_stated(
         let known = within.iter().enumerate().filter_map(|(row, one)| Some((row, (*one)?)));
         known.map(|(row, one)| [one.sum / one.freedom, one.freedom, stated[row] * counts[row]]).collect()
     } else {
-        let left = left(residual, design);
-        let square = |row: usize| [left[row] * left[row], 1.0, stated[row]];
+        // Along a path a rate or a step holds the noise of the length, and a model with such columns would follow it.
         let pair = |row: usize| {
-            [0.5 * (left[row] - left[row + 1]).powi(2), 1.0, 0.5 * (stated[row] + stated[row + 1])]
+            [0.5 * (residual[row] - residual[row + 1]).powi(2), 1.0, 0.5 * (stated[row] + stated[row + 1])]
         };
         if sweeps.is_empty() {
-            (0..left.len()).map(square).collect()
+            left(residual, design).iter().zip(stated).map(|(left, own)| [left * left, 1.0, *own]).collect()
         } else {
             sweeps.iter().flat_map(|sweep| (sweep.start..sweep.end.saturating_sub(1)).map(pair)).collect()
         }
