@@ -852,7 +852,7 @@ fn a_load_cell_whose_gain_changes_over_its_range_is_neither_softening_nor_two_ot
 #[test]
 fn a_weak_effect_beside_an_accepted_one_that_does_nothing_is_named() {
     // No friction: its formula has nothing to be wrong in.
-    let (muscle, data) = pleated_with(&[("pressure-droop", &[300.0])], |_| 0.0);
+    let (muscle, data) = pleated_with(&[("pressure-droop", &[240.0])], |_| 0.0);
     let found = diagnose(&data, &muscle, &diagnosing(&["coulomb-friction"])).unwrap();
     let [one] = &found.missing[..] else { panic!("{}", found.says) };
     assert!(!one.may_be_form_error && one.log_evidence < 6.0, "{one:?}");
